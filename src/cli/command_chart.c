@@ -15,6 +15,13 @@
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 #include "studies/chart.h"
+#include "studies/chart_pages.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
+#include "studies/contenders.h"
+#include "studies/equal_time.h"
+#include "studies/piece_tables.h"
+#include "studies/scene_study.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -138,7 +145,7 @@ static bool write_contender(void *context, int part, FILE *rows, const Progress 
 }
 
 /* Runs again what the chart has measured, and writes folder/pages/SCENE-METHOD-N-launch-L.html, folder/chart_pages.csv
-   (studies/chart.h) and folder/chart.html, whose points and table link to the pages. A page begins a quarter of a second
+   (studies/chart_pages.h) and folder/chart.html, whose points and table link to the pages. A page begins a quarter of a second
    before the bomb touches and ends as long after the last scored step. Prints how many pages there are, and what was left
    out. */
 static bool chart_pages_write(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key,

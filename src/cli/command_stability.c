@@ -12,7 +12,7 @@
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/contenders.h"
 #include "studies/stability.h"
 
 #include <limits.h>

@@ -8,7 +8,7 @@
 #include "pictures/player.h"
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
-#include "studies/chart.h"
+#include "studies/piece_tables.h"
 
 #include <inttypes.h>
 #include <limits.h>

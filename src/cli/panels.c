@@ -13,7 +13,7 @@
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/chart_table.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -10,7 +10,7 @@
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
-#include "studies/chart.h"
+#include "studies/piece_tables.h"
 #include "studies/stability.h"
 
 #include <inttypes.h>

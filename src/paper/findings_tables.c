@@ -7,7 +7,7 @@
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
-#include "studies/chart.h"
+#include "studies/statistics.h"
 
 #include <math.h>
 #include <string.h>

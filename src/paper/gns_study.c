@@ -14,7 +14,8 @@
 #include "paper/report_internal.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/meter.h"
+#include "studies/piece_tables.h"
 
 #include <math.h>
 #include <stdlib.h>

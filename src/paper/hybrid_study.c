@@ -15,7 +15,9 @@
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/meter.h"
+#include "studies/piece_tables.h"
+#include "studies/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,7 +9,8 @@
 #include "methods/sweeps.h"
 #include "paper/paper_internal.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/frozen.h"
+#include "studies/rollout.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -206,11 +206,11 @@ bool system_claims_state(const struct PaperSystem *system, const char *folder, C
                                          .claims = NAME_claims,
                                          .plot = plot_NAME};
 
-      A part writes rows of the table with piece_tables_print(lines, &NAME_layout, -1, &row, error) (studies/chart.h). It is
+      A part writes rows of the table with piece_tables_print(lines, &NAME_layout, -1, &row, error) (studies/piece_tables.h). It is
       kept when it is done, and done once: a study that was cut off continues with the next part. So a part should take some
       seconds. The whole study of one system takes at most 90 s on two idle cores, the quick one 2 s; the quick one measures
       everything that claims need, with less. A part may use all threads (base/machine.h); times are measured on one
-      (studies/chart.h), by parts that say so (timed).
+      (studies/piece_tables.h), by parts that say so (timed).
    2. Add a line to SYSTEMS below; the room of its training to those that paper may include from (src/layers.txt), if the
       study trains; and to tests: tests/paper/figures/system_NAME.csv with all that the figure can show, its names to
       `tables` and `figures` in tests/paper/test_plots.c, tests/paper/test_NAME_study.c, the table's layout to the end of

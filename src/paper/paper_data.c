@@ -10,7 +10,8 @@
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/closed_loop.h"
+#include "studies/piece_tables.h"
 
 #include <math.h>
 #include <string.h>

@@ -12,7 +12,8 @@
 #include "paper/paper.h"
 #include "runs/pieces.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/frozen.h"
+#include "studies/rollout.h"
 
 /* gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
    how the shapes of boxes last; large piles; what the paper's own size costs. */
@@ -300,7 +301,7 @@ bool paper_accuracy(const Network *network, const Dataset *dataset, double *accu
 typedef struct PaperPlan PaperPlan;
 typedef struct PaperPart PaperPart;
 
-/* Writes lines of the part's tables (studies/chart.h). */
+/* Writes lines of the part's tables (studies/piece_tables.h). */
 typedef bool PaperWrite(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error);
 
 struct PaperPart {
@@ -391,7 +392,7 @@ typedef struct RateRow {
     double unconverged; /* sampled steps of the scene that are left out, as the reference does not converge */
 } RateRow;
 
-/* closed_loop.csv: a network in place of the solver (studies/chart.h). */
+/* closed_loop.csv: a network in place of the solver (studies/closed_loop.h). */
 typedef struct ClosedLoopRow {
     const char *network; /* or a solver, as on the command line */
     int scene;           /* of paper_scene_names */

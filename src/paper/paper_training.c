@@ -11,7 +11,7 @@
 #include "nets/nets.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
-#include "studies/chart.h"
+#include "studies/piece_tables.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -8,7 +8,7 @@
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 #include "pixels/png.h"
-#include "studies/chart.h"
+#include "studies/closed_loop.h"
 
 #include <math.h>
 #include <stdlib.h>

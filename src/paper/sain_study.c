@@ -12,7 +12,8 @@
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/piece_tables.h"
+#include "studies/statistics.h"
 
 #include <stdlib.h>
 

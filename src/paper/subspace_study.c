@@ -11,7 +11,10 @@
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/contenders.h"
+#include "studies/frozen.h"
+#include "studies/piece_tables.h"
+#include "studies/timing.h"
 
 #include <math.h>
 #include <string.h>

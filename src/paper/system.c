@@ -14,7 +14,13 @@
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/closed_loop.h"
+#include "studies/contenders.h"
+#include "studies/frozen.h"
+#include "studies/piece_tables.h"
+#include "studies/rollout.h"
+#include "studies/statistics.h"
+#include "studies/timing.h"
 
 #include <assert.h>
 #include <limits.h>

@@ -5,7 +5,8 @@
 #include "figures/sketch.h"
 #include "pixels/type.h"
 #include "runs/verdict.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/figure_words.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 

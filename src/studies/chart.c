@@ -1,97 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The speed-accuracy study: its scenes, their pieces, and chart.csv from what the pieces stored. */
-#include "studies/chart.h"
-
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/machine.h"
 #include "runs/pieces.h"
-#include "runs/runs.h"
 #include "scenes/scenes.h"
-#include "studies/chart_internal.h"
+#include "studies/chart.h"
+#include "studies/chart_table.h"
+#include "studies/contenders.h"
+#include "studies/launch_scores.h"
+#include "studies/piece_tables.h"
+#include "studies/scene_study.h"
+#include "studies/stepper_pool.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static bool scores_without_push_out(const SceneStudy *study) {
-    for (int i = 0; i < study->contender_count; i++)
-        if (study->contenders[i]->method.kind->description->no_push_out) return true;
-    return false;
-}
-
-/* A step takes time in proportion to its bodies, its converged solution even more. So larger scenes have fewer launches
-   and fewer scored steps after the impact. */
-static StudySize size_for(const StudySize *full, const Scene *scene) {
-    enum { SMALL = 110, LEAST_LAUNCHES = 4, LEAST_TIMED = 2 }; /* SMALL: bodies */
-    StudySize size = *full;
-    if (scene->body_count <= SMALL) return size;
-    const int launches = size.launches * SMALL / scene->body_count,
-              timed = size.timed_launches * SMALL / scene->body_count;
-    size.closed.after *= 2;
-    size.closed.rest *= 4;
-    size.launches = launches > LEAST_LAUNCHES ? launches : LEAST_LAUNCHES;
-    size.timed_launches = timed > LEAST_TIMED ? timed : LEAST_TIMED;
-    return size;
-}
-
-static bool choose_contenders(SceneStudy *study, const ContenderList *contenders, Error *error) {
-    study->contenders = malloc((size_t)(contenders->count + 1) * sizeof *study->contenders);
-    if (study->contenders == NULL) return error_memory(error, "study");
-    study->contender_count = contenders_for(contenders, study->scene, study->contenders);
-    study->no_push_out = scores_without_push_out(study);
-    return stepper_pool_begin(&study->steppers, study->contender_count, error);
-}
-
-static bool try_launch(void *context, int i, Error *error) {
-    SceneStudy *study = context;
-    const Scene launched = scene_study_launch(study, i);
-    return launch_find_touch(&launched, "engine", &study->striking[i], error);
-}
-
-/* Finds the launches that strike a box: only these have times of an impact. */
-static bool find_striking(SceneStudy *study, Error *error) {
-    const ParallelWork tries = {try_launch, study};
-    study->striking = calloc((size_t)study->launch_count, sizeof *study->striking);
-    if (study->striking == NULL) return error_memory(error, "study");
-    if (!parallel_for(&tries, study->launch_count, study->scene->name, NULL, error)) return false;
-    for (int i = 0; i < study->launch_count; i++)
-        if (study->striking[i] > 0) study->striking[study->striking_count++] = i;
-    return study->striking_count > 0 ||
-           launches_refuse_misses(study->scene, study->launches, study->launch_count, error);
-}
-
-bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
-                       const LaunchChoice *launches, const StudySize *size, Error *error) {
-    *study = (SceneStudy){.scene = scene_read(path, error)};
-    if (study->scene == NULL) return false;
-    study->size = size_for(size, study->scene);
-    bool ok = study->scene->bomb.present || error_input(error, path, "the scene has no bomb");
-    ok = ok && choose_contenders(study, contenders, error);
-    if (ok)
-        study->launches = launch_choice_make(launches, study->scene, study->size.launches, &study->launch_count, error);
-    if (study->launches != NULL && find_striking(study, error)) return true;
-    scene_study_end(study);
-    return false;
-}
-
-void scene_study_end(SceneStudy *study) {
-    stepper_pool_end(&study->steppers);
-    free(study->launches);
-    free(study->striking);
-    free(study->contenders);
-    scene_destroy(study->scene);
-    *study = (SceneStudy){0};
-}
-
-Scene scene_study_launch(const SceneStudy *study, int launch) {
-    return launch_scene(study->scene, &study->launches[launch]);
-}
-
-int scene_study_timed(const SceneStudy *study) {
-    const int most = study->size.timed_launches;
-    return most < study->striking_count ? most : study->striking_count;
-}
 
 /* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
    scene. */
@@ -358,20 +282,6 @@ typedef struct Run {
     int row_count;
     char (*cpus)[CPU_NAME_SIZE]; /* [scenes of the plan] */
 } Run;
-
-bool study_key_add_scene(StudyKey *key, const char *path, Error *error) {
-    Scene *scene = scene_read(path, error);
-    if (scene == NULL) return false;
-    for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
-    scene_destroy(scene);
-    return study_key_add_file(key, path, error);
-}
-
-bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const PiecesRun *run, const PiecePlan *plan,
-              const Progress *progress, Error *error) {
-    return pieces_open(pieces, folder, key, run, error) &&
-           (pieces->mode != PIECES_WHOLE || folder_reserve(folder, error)) && pieces_do(pieces, plan, progress, error);
-}
 
 /* Hashes everything that determines the result: the program, the options and the files. */
 static bool find_key(const SpeedAccuracyOptions *options, const ContenderList *contenders, StudyKey *key,

@@ -2,8 +2,9 @@
 /* The caption of a chart: what its axes, curves and lines are, what was left out, and what its words mean. */
 #include "base/base.h"
 #include "methods/methods.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/error_curve.h"
+#include "studies/figure_words.h"
 
 #include <stddef.h>
 #include <string.h>

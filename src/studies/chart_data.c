@@ -7,8 +7,10 @@
 #include "pictures/colours.h"
 #include "pixels/type.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
+#include "studies/error_curve.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,8 +6,12 @@
 #include "figures/sketch.h"
 #include "pictures/page.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/chart_drawing.h"
+#include "studies/chart_pages.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
+#include "studies/study_page.h"
 
 #include <math.h>
 #include <stdlib.h>

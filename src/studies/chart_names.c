@@ -3,8 +3,8 @@
    interrupt. */
 #include "figures/sketch.h"
 #include "pixels/type.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/chart_drawing.h"
 
 #include <math.h>
 #include <string.h>

@@ -7,8 +7,11 @@
 #include "methods/methods.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/chart_drawing.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
+#include "studies/error_curve.h"
 
 #include <limits.h>
 #include <math.h>

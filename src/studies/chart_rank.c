@@ -2,8 +2,10 @@
 /* Which lines of a chart are in colour: a reader takes in six, not twenty. */
 #include "base/base.h"
 #include "methods/methods.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
+#include "studies/error_curve.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,224 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs in closed loop: their logs and measures, the scores of their steps, a method beside the engine. */
+/* A method beside the engine and the reference in closed loop. */
 #include "base/base.h"
-#include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/reference.h"
-#include "runs/runs.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/closed_loop.h"
+#include "studies/contenders.h"
+#include "studies/frozen.h"
+#include "studies/rollout.h"
+#include "studies/statistics.h"
+#include "studies/timing.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static const double apart_distance = 0.1; /* m */
-static const double moved_distance = 0.5; /* m: half a box */
-static const double moved_after = 5;      /* s */
-
-void run_log_free(RunLog *log) {
-    free(log->position);
-    free(log->at);
-    *log = (RunLog){0};
-}
-
-bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
-    size_t rows = (size_t)scene->frames + 1;
-    log->bodies = scene->body_count;
-    log->touch = log->fallen_back = log->unconverged = log->first_unconverged = 0;
-    log->momentum_error = 0;
-    log->launch_frame = scene->bomb.frame < scene->frames ? scene->bomb.frame : scene->frames;
-    double end = log->launch_frame + moved_after / (double)scene->dt;
-    log->end_frame = end < scene->frames ? (int)lround(end) : scene->frames;
-    if (!array_reserve((void **)&log->position, &log->position_capacity, rows * (size_t)log->bodies, sizeof(Vec2)) ||
-        !array_reserve((void **)&log->at, &log->at_capacity, rows, sizeof *log->at))
-        return false;
-    run_log_step(log, scene, world, 0, PHASE_REST);
-    return true;
-}
-
-static bool fell_back(const NetworkFallbacks *step) {
-    return step->not_finite + step->beyond_training + step->by_sweeps > 0;
-}
-
-void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase) {
-    log->frames = frame;
-    if (phase == PHASE_IMPACT && log->touch == 0) log->touch = frame;
-    for (int i = 0; i < log->bodies; i++)
-        log->position[(size_t)frame * (size_t)log->bodies + (size_t)i] = world_bodies(world)[i].position;
-    log->at[frame] = (LoggedFrame){
-        .energy = world_energy(world, scene->gravity),
-        .penetration = world_penetration(world),
-        .phase = phase,
-        .bomb = world_body_count(world) > log->bodies ? world_bodies(world)[log->bodies].position : vec2(0, 0)};
-    log->momentum_error += (double)world_solution(world)->momentum_error;
-    log->fallen_back += fell_back(&world_solution(world)->fallbacks);
-    if (frame == 0 || world_solution(world)->fallbacks.not_converged == 0) return;
-    if (log->unconverged++ == 0) log->first_unconverged = frame;
-}
-
-static double distance_apart(const RunLog *log, const RunLog *other, int frame) {
-    const size_t row = (size_t)frame * (size_t)log->bodies;
-    double apart = vec2_distance(log->at[frame].bomb, other->at[frame].bomb);
-    for (int i = 0; i < log->bodies; i++)
-        apart = fmax(apart, vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]));
-    return apart;
-}
-
-int run_log_apart(const RunLog *log, const RunLog *other, double limit, int frames) {
-    for (int frame = 1; frame <= frames; frame++)
-        if (frame > log->frames || (frame <= other->frames && distance_apart(log, other, frame) > limit)) return frame;
-    return frames;
-}
-
-/* Boxes that moved more than 0.5 m in the 5 s after the launch; all if the log ended early. */
-static double run_log_moved(const RunLog *log, const Scene *scene) {
-    int moved = 0;
-    const Vec2 *before = log->position + (size_t)log->launch_frame * (size_t)log->bodies;
-    const Vec2 *after = log->position + (size_t)log->end_frame * (size_t)log->bodies;
-    for (int i = 0; i < log->bodies; i++) {
-        if (scene->bodies[i].fixed) continue;
-        moved += log->frames < log->end_frame || vec2_distance(before[i], after[i]) > moved_distance;
-    }
-    return moved;
-}
-
-static double mean_distance(const RunLog *log, const RunLog *other, const Scene *scene, int frame) {
-    double sum = 0;
-    int count = 0;
-    size_t row = (size_t)frame * (size_t)log->bodies;
-    for (int i = 0; i < log->bodies; i++) {
-        if (scene->bodies[i].fixed) continue;
-        sum += vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]);
-        count++;
-    }
-    return count > 0 ? sum / count : NAN;
-}
-
-/* Of whole frames 1 .. last. */
-static double mean_square(const RunLog *log, const RunLog *other, const Scene *scene, int last) {
-    double sum = 0;
-    int64_t count = 0;
-    for (int frame = 1; frame <= last; frame++)
-        for (int i = 0; i < log->bodies; i++) {
-            const size_t at = (size_t)frame * (size_t)log->bodies + (size_t)i;
-            const double apart = vec2_distance(log->position[at], other->position[at]);
-            if (scene->bodies[i].fixed) continue;
-            sum += apart * apart;
-            count++;
-        }
-    return count > 0 ? sum / (2 * (double)count) : NAN;
-}
-
-RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene) {
-    RunMeasures measures = {.drift = NAN, .moved = run_log_moved(log, scene)};
-    int frames[PHASES] = {0}, compared[PHASES] = {0};
-    const int last = log->frames < converged->frames ? log->frames : converged->frames;
-    const int known = converged->first_unconverged > 0 ? converged->first_unconverged - 1 : converged->frames;
-    double energy[PHASES] = {0};
-    for (int frame = 1; frame <= last; frame++) {
-        Phase phase = log->at[frame].phase;
-        if (frame <= known) energy[phase] += log->at[frame].energy - converged->at[frame].energy;
-        compared[phase] += frame <= known;
-        frames[phase]++;
-        if (log->at[frame].penetration > measures.penetration[phase])
-            measures.penetration[phase] = log->at[frame].penetration;
-    }
-    for (int phase = 0; phase < PHASES; phase++) {
-        measures.energy[phase] = compared[phase] > 0 ? energy[phase] / compared[phase] : NAN;
-        if (frames[phase] == 0) measures.penetration[phase] = NAN;
-    }
-    int rest = converged->touch > 0 ? converged->touch - 1 : last;
-    if (log->touch > 0 && log->touch - 1 < rest) rest = log->touch - 1;
-    if (rest > 0 && rest <= last && rest <= known) measures.drift = mean_distance(log, converged, scene, rest);
-    const int whole = known < converged->frames ? known : converged->frames;
-    measures.rollout_mse = last >= whole ? mean_square(log, converged, scene, whole) : NAN;
-    return measures;
-}
-
-void step_scores_free(StepScores *scores) {
-    free(scores->error);
-    free(scores->share);
-    free(scores->place);
-    *scores = (StepScores){0};
-}
-
-/* Without contacts or impulses there is no law to break. */
-static void add_criteria(CriteriaSum *sum, const ContactProblem *problem, const ContactCriteria *found) {
-    if (problem->contact_count == 0 || isnan(found->signorini)) return;
-    sum->signorini += found->signorini;
-    sum->cone += found->cone;
-    sum->dissipation += found->dissipation;
-    sum->steps++;
-}
-
-bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                     const ReferenceVelocity *reference, bool push_out) {
-    size_t wanted = (size_t)scores->count + 1;
-    if (!array_reserve((void **)&scores->error, &scores->error_capacity, wanted, sizeof *scores->error) ||
-        !array_reserve((void **)&scores->share, &scores->share_capacity, wanted, sizeof *scores->share) ||
-        !array_reserve((void **)&scores->place, &scores->place_capacity, wanted, sizeof *scores->place))
-        return false;
-    const SolutionError found = solution_error(problem, solution->velocities, reference);
-    const ContactCriteria criteria = contact_criteria(problem, solution, push_out);
-    add_criteria(&scores->criteria, problem, &criteria);
-    scores->error[scores->count] = found.rms;
-    scores->place[scores->count] = (StepPlace){frame, found.worst};
-    scores->share[scores->count++] = found.counted > 0 ? (double)found.right / found.counted : 1;
-    return true;
-}
-
-bool sampling_takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
-    if (phase == PHASE_IMPACT) return true;
-    if (phase == PHASE_AFTER) return (frame - tracker->touch - tracker->impact_frames) % sampling->after == 0;
-    return frame % sampling->rest == 0;
-}
-
-void rollout_free(Rollout *rollout) {
-    world_destroy(rollout->world);
-    converged_step_free(&rollout->converged);
-    run_log_free(&rollout->log);
-    *rollout = (Rollout){0};
-}
-
-static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
-    const ContactProblem *problem = world_problem(rollout->world);
-    if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
-    const bool found = converged_step_found(&rollout->converged);
-    rollout->unconverged += !found;
-    return !found ||
-           step_scores_add(scores, frame, problem, world_solution(rollout->world),
-                           rollout->converged.reference.velocities, push_out) ||
-           error_memory(error, "study");
-}
-
-static bool begin(Rollout *rollout, const Scene *launched, Error *error) {
-    world_destroy(rollout->world);
-    rollout->world = scene_world(launched, error);
-    if (rollout->world == NULL) return false;
-    return run_log_begin(&rollout->log, launched, rollout->world) || error_memory(error, "study");
-}
-
-bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
-                 StepScores scores[PHASES], Error *error) {
-    if (!begin(rollout, launched, error)) return false;
-    const bool push_out = !stepper_describe(stepper)->no_push_out;
-    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
-    for (int frame = 1; frame <= launched->frames; frame++) {
-        const Step step = {.scene = launched, .frame = frame};
-        Error failure = {0};
-        if (!simulate_step(stepper, rollout->world, &step, &failure)) {
-            if (failure.failure != FAILURE_NONE) return true; /* a valid result */
-            *error = failure;
-            return false;
-        }
-        Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
-        run_log_step(&rollout->log, launched, rollout->world, frame, phase);
-        if (scores != NULL && sampling_takes(sampling, phase, &tracker, frame) &&
-            !score(rollout, frame, push_out, &scores[phase], error))
-            return false;
-    }
-    return true;
-}
 
 bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
     Method parsed;
@@ -244,6 +37,8 @@ static void measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
         if (frame > launch) result->energy_most = fmax(result->energy_most, log->at[frame].energy);
     }
 }
+
+static const double apart_distance = 0.1; /* m */
 
 static double frames_apart(const RunLog *log, const RunLog *other, int frames) {
     if (other == NULL) return NAN;

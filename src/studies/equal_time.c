@@ -5,8 +5,9 @@
 #include "methods/methods.h"
 #include "methods/reference.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_table.h"
+#include "studies/equal_time.h"
+#include "studies/error_curve.h"
 
 #include <limits.h>
 #include <math.h>

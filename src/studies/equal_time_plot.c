@@ -8,8 +8,11 @@
 #include "pictures/picture.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/chart_table.h"
+#include "studies/equal_time.h"
+#include "studies/error_curve.h"
+#include "studies/figure_words.h"
 
 #include <limits.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 /* The words of a figure, explained in its caption: names of methods and keys of their settings. */
 #include "base/base.h"
 #include "methods/methods.h"
-#include "studies/chart_internal.h"
+#include "studies/figure_words.h"
 
 #include <string.h>
 

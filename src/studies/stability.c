@@ -7,7 +7,8 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "runs/pieces.h"
-#include "studies/chart.h"
+#include "studies/contenders.h"
+#include "studies/piece_tables.h"
 #include "studies/stability_internal.h"
 
 #include <assert.h>

@@ -8,7 +8,8 @@
 #include "runs/runs.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/contenders.h"
+#include "studies/piece_tables.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 

@@ -6,8 +6,7 @@
 #include "figures/sketch.h"
 #include "pictures/page.h"
 #include "runs/verdict.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/study_page.h"
 #include "studies/stability.h"
 
 #include <math.h>

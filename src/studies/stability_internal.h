@@ -7,7 +7,7 @@
 #include "methods/methods.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/contenders.h"
 #include "studies/stability.h"
 
 #include <stdio.h>
@@ -114,7 +114,7 @@ bool stability_grid_begin(GridContext *context, const StabilityGrid *grid, Error
 void stability_grid_end(GridContext *context);
 
 /* Judges the cells first .. end - 1, row by row from the least y, and writes their rows of the tables "maps" and "unconverged", with a section
-   for each of grid->methods (studies/chart.h). Omits methods that do not apply to the scene, methods that set their own
+   for each of grid->methods (studies/contenders.h). Omits methods that do not apply to the scene, methods that set their own
    number of sweeps if the map scans it, and the reference, by which runs are judged, unless the scene is struck. */
 bool stability_grid_write(const GridContext *context, int first, int end, FILE *results, const Progress *progress,
                           Error *error);
@@ -138,7 +138,7 @@ typedef struct ScanContext {
 bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error *error);
 void stability_scan_end(ScanContext *context);
 
-/* Does the methods first .. end - 1 and writes their rows (studies/chart.h) of the tables "stability", "refusals",
+/* Does the methods first .. end - 1 and writes their rows (studies/piece_tables.h) of the tables "stability", "refusals",
    "fallbacks" (every unshifted run of a method that may fall back), "rest" (every unshifted run, if study.rests) and
    "unconverged" (every unshifted run whose converged runs did not converge throughout), ordered by method. Omits methods that set their own number of sweeps if the study scans it. */
 bool stability_scan_write(ScanContext *context, int first, int end, FILE *results, const Progress *progress,

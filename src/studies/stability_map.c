@@ -8,7 +8,7 @@
 #include "pixels/png.h"
 #include "pixels/type.h"
 #include "runs/verdict.h"
-#include "studies/chart_internal.h"
+#include "studies/figure_words.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 

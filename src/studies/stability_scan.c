@@ -5,7 +5,8 @@
 #include "methods/methods.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/contenders.h"
+#include "studies/piece_tables.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 

@@ -7,7 +7,7 @@
 #include "methods/methods.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
 #include "studies/stability.h"
 
 #include <ctype.h>

@@ -1,138 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cost of methods: the meter of time and instructions, the steppers that threads share, and the timing of contenders. */
-#define _GNU_SOURCE
+/* The timing of contenders, in turns. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
+#include "studies/chart_table.h"
+#include "studies/contenders.h"
+#include "studies/frozen.h"
+#include "studies/meter.h"
+#include "studies/statistics.h"
+#include "studies/timing.h"
 
-#include <linux/perf_event.h>
 #include <math.h>
-#include <omp.h>
-#include <sched.h>
 #include <stdlib.h>
-#include <sys/ioctl.h>
-#include <sys/syscall.h>
-#include <time.h>
-#include <unistd.h>
-
-static cpu_set_t free_cores;
-static bool pinned;
-
-void meter_pin(void) {
-    cpu_set_t core;
-    int here = sched_getcpu();
-    if (here < 0 || sched_getaffinity(0, sizeof free_cores, &free_cores) != 0) return;
-    CPU_ZERO(&core);
-    CPU_SET((size_t)here, &core);
-    pinned = sched_setaffinity(0, sizeof core, &core) == 0;
-}
-
-void meter_unpin(void) {
-    if (pinned) sched_setaffinity(0, sizeof free_cores, &free_cores);
-    pinned = false;
-}
-
-int64_t meter_time(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
-
-int64_t meter_time_overhead(void) {
-    int64_t least = INT64_MAX;
-    for (int i = 0; i < 1000; i++) {
-        int64_t begun = meter_time(), passed = meter_time() - begun;
-        if (passed < least) least = passed;
-    }
-    return least;
-}
-
-int64_t meter_without(int64_t passed, int64_t overhead) { return passed > overhead ? passed - overhead : 0; }
-
-static int counter = -1;
-
-bool meter_open_instructions(void) {
-    struct perf_event_attr event = {.type = PERF_TYPE_HARDWARE,
-                                    .size = sizeof event,
-                                    .config = PERF_COUNT_HW_INSTRUCTIONS,
-                                    .exclude_kernel = 1,
-                                    .exclude_hv = 1};
-    counter = (int)syscall(SYS_perf_event_open, &event, 0, -1, -1, 0);
-    return counter >= 0;
-}
-
-int64_t meter_instructions(void) {
-    int64_t count = 0;
-    return read(counter, &count, sizeof count) == (ssize_t)sizeof count ? count : 0;
-}
-
-void meter_close_instructions(void) {
-    if (counter >= 0) close(counter);
-    counter = -1;
-}
-
-struct PooledStepper {
-    omp_lock_t taken;
-    Stepper *stepper; /* NULL: not made yet */
-};
-
-bool stepper_pool_begin(StepperPool *pool, int count, Error *error) {
-    *pool = (StepperPool){.items = calloc((size_t)count + 1, sizeof *pool->items)};
-    if (pool->items == NULL) return error_memory(error, "study");
-    for (; pool->count < count; pool->count++) omp_init_lock(&pool->items[pool->count].taken);
-    return true;
-}
-
-void stepper_pool_end(StepperPool *pool) {
-    stepper_pool_empty(pool);
-    for (int i = 0; i < pool->count; i++) omp_destroy_lock(&pool->items[i].taken);
-    free(pool->items);
-    *pool = (StepperPool){0};
-}
-
-void stepper_pool_empty(StepperPool *pool) {
-    for (int i = 0; i < pool->count; i++) {
-        stepper_destroy(pool->items[i].stepper);
-        pool->items[i].stepper = NULL;
-    }
-}
-
-/* *free: it is taken, as no other thread had it. */
-static int choose(StepperPool *pool, const bool *chosen, int from, bool *free) {
-    int found = -1;
-    for (int k = 0; k < pool->count; k++) {
-        const int i = (from + k) % pool->count;
-        if (chosen[i]) continue;
-        *free = omp_test_lock(&pool->items[i].taken) != 0;
-        if (*free) return i;
-        if (found < 0) found = i;
-    }
-    return found;
-}
-
-int stepper_pool_take(StepperPool *pool, bool *chosen, int from) {
-    int index;
-    bool free = false;
-#pragma omp critical(stepper_pool)
-    {
-        index = choose(pool, chosen, from, &free);
-        chosen[index] = true;
-    }
-    if (!free) omp_set_lock(&pool->items[index].taken);
-    return index;
-}
-
-void stepper_pool_give(StepperPool *pool, int index) { omp_unset_lock(&pool->items[index].taken); }
-
-Stepper *stepper_pool_stepper(StepperPool *pool, int index, const Method *method, const Scene *scene, Error *error) {
-    PooledStepper *item = &pool->items[index];
-    if (item->stepper == NULL) item->stepper = stepper_create(method, scene, error);
-    return item->stepper;
-}
 
 /* A counter, and what reading it costs. */
 typedef struct Meter {

@@ -4,7 +4,7 @@
 #include "files.h"
 
 #include "cli/cli.h"
-#include "studies/chart_internal.h"
+#include "studies/piece_tables.h"
 
 /* Two boxes that stand still for so many frames. */
 static Trajectory *make_run(int frames) {

@@ -8,7 +8,7 @@
 #include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 #include "methods/methods.h"
-#include "studies/chart.h"
+#include "studies/contenders.h"
 
 static void *create(const Settings *chosen, Error *error) { return solver_engine.create(chosen, error); }
 

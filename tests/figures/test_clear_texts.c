@@ -8,7 +8,8 @@
 #include "figures/run_figure.h"
 #include "paper/paper_report.h"
 #include "pictures/mesa.h"
-#include "studies/chart.h"
+#include "studies/chart_plot.h"
+#include "studies/equal_time.h"
 #include "studies/stability_drawn.h"
 
 #include <sys/stat.h>

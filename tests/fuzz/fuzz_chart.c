@@ -2,7 +2,9 @@
 /* What a merge reads from the pieces of a chart: their results are bytes. */
 #include "fuzz.h"
 
-#include "studies/chart_internal.h"
+#include "studies/chart_table.h"
+#include "studies/launch_scores.h"
+#include "studies/scene_study.h"
 
 #include <stdlib.h>
 

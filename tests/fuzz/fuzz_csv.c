@@ -6,8 +6,8 @@
 #include "paper/paper.h"
 #include "scenes/scenes.h"
 #include "studies/stability.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_table.h"
+#include "studies/equal_time.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

@@ -3,7 +3,6 @@
 #include "tables.h"
 
 #include "paper/paper_internal.h"
-#include "studies/chart.h"
 
 #include <math.h>
 

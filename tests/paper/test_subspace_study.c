@@ -3,7 +3,7 @@
 #include "tables.h"
 
 #include "paper/paper_internal.h"
-#include "studies/chart.h"
+#include "studies/piece_tables.h"
 
 #include <math.h>
 

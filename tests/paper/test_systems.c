@@ -4,7 +4,7 @@
 
 #include "paper/paper_internal.h"
 #include "sanitized.h"
-#include "studies/chart.h"
+#include "studies/piece_tables.h"
 
 #include <math.h>
 

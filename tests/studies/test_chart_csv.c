@@ -2,7 +2,7 @@
 #include "files.h"
 #include "charts.h"
 
-#include "studies/chart.h"
+#include "studies/chart_table.h"
 
 #include <math.h>
 

@@ -3,7 +3,9 @@
 #include "testing.h"
 #include "files.h"
 
-#include "studies/chart.h"
+#include "studies/chart_pages.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
 
 #include <math.h>
 

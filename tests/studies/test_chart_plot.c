@@ -4,10 +4,12 @@
 #include "files.h"
 #include "python.h"
 
-#include "studies/chart.h"
+#include "studies/chart_data.h"
+#include "studies/chart_drawing.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
 #include "studies/first_line.h"
 
-#include "studies/chart_internal.h"
 #include "methods/methods.h"
 
 #include <math.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "made.h"
 
-#include "studies/chart.h"
+#include "studies/closed_loop.h"
+#include "studies/frozen.h"
+#include "studies/rollout.h"
 
 #include <math.h>
 

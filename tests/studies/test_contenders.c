@@ -2,7 +2,7 @@
 /* Who takes part in a study. */
 #include "made.h"
 
-#include "studies/chart.h"
+#include "studies/contenders.h"
 
 static ContenderList parse(const char *text) {
     Error error = {0};

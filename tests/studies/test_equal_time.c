@@ -2,7 +2,9 @@
 /* Errors at equal time, of an invented chart. */
 #include "charts.h"
 
-#include "studies/chart_internal.h"
+#include "studies/chart_table.h"
+#include "studies/equal_time.h"
+#include "studies/error_curve.h"
 
 #include <math.h>
 

@@ -3,7 +3,8 @@
 #include "files.h"
 #include "python.h"
 
-#include "studies/chart.h"
+#include "studies/chart_table.h"
+#include "studies/equal_time.h"
 
 #define SAMPLE SOURCE_DIR "/tests/studies/equal_time.csv"
 

@@ -2,7 +2,7 @@
 /* Curves of error over time, in closed form. */
 #include "testing.h"
 
-#include "studies/chart_internal.h"
+#include "studies/error_curve.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "testing.h"
 
-#include "studies/chart.h"
+#include "studies/meter.h"
 
 #include <sched.h>
 

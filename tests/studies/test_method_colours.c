@@ -8,8 +8,10 @@
 #include "methods/methods.h"
 #include "pictures/player.h"
 #include "pictures/render.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_data.h"
+#include "studies/chart_drawing.h"
+#include "studies/chart_plot.h"
+#include "studies/chart_table.h"
 
 enum { WIDTH = 1920, HEIGHT = 320, FRAMES = 3 };
 

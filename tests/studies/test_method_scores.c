@@ -3,7 +3,9 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_table.h"
+#include "studies/launch_scores.h"
+#include "studies/rollout.h"
 
 #include <math.h>
 

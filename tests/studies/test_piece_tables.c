@@ -2,7 +2,7 @@
 #include "testing.h"
 #include "files.h"
 
-#include "studies/chart.h"
+#include "studies/piece_tables.h"
 
 static const CsvColumn columns[] = {{"x", CSV_INTEGER, .offset = 0, .maximum = 99}};
 static const CsvLayout a_layout = CSV_LAYOUT("a", columns, int, .max_rows = 9),

@@ -2,7 +2,9 @@
 /* Scores of methods with a known ranking: the reference has no error, more sweeps have less, noise has more. */
 #include "made.h"
 
-#include "studies/chart.h"
+#include "studies/frozen.h"
+#include "studies/rollout.h"
+#include "studies/statistics.h"
 
 static const Sampling every = {.after = 1, .rest = 1}, few = {.after = 10, .rest = 50};
 

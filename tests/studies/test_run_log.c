@@ -2,7 +2,9 @@
 /* Measures of synthetic logs. */
 #include "made.h"
 
-#include "studies/chart.h"
+#include "studies/closed_loop.h"
+#include "studies/rollout.h"
+#include "studies/statistics.h"
 
 #include <math.h>
 

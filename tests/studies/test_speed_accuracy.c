@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "studies/chart.h"
+#include "studies/chart_table.h"
 
 #include <math.h>
 

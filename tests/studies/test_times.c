@@ -5,7 +5,14 @@
 #include "made.h"
 
 #include "methods/sweeps.h"
-#include "studies/chart_internal.h"
+#include "studies/chart.h"
+#include "studies/chart_table.h"
+#include "studies/closed_loop.h"
+#include "studies/contenders.h"
+#include "studies/frozen.h"
+#include "studies/meter.h"
+#include "studies/rollout.h"
+#include "studies/timing.h"
 
 #include <math.h>
 #include <time.h>

@@ -1,108 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pieces of a chart: the launch that is worst for a method, launches scored by all methods, the tables that pieces make,
-   and the times of a scene. */
+/* The pieces of a scene: a launch with all methods, and the times of all methods. */
 #include "base/base.h"
-#include "base/csv.h"
-#include "base/file.h"
 #include "base/machine.h"
-#include "engine/engine.h"
 #include "methods/methods.h"
-#include "runs/pieces.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
-#include "studies/chart.h"
-#include "studies/chart_internal.h"
+#include "studies/chart_table.h"
+#include "studies/frozen.h"
+#include "studies/launch_scores.h"
+#include "studies/rollout.h"
+#include "studies/scene_study.h"
+#include "studies/stepper_pool.h"
+#include "studies/timing.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Phases with points: impact and after. */
-static const char *const phase_words[] = {"impact", "after", NULL};
-
-#define TEXT(member, size) CSV_MEMBER(LaunchPage, member, CSV_TEXT, .maximum = (size)-1)
-#define COUNT(member, least) CSV_MEMBER(LaunchPage, member, CSV_INTEGER, .minimum = least, .maximum = INT_MAX)
-#define NUMBER(member, kind) \
-    CSV_MEMBER(LaunchPage, member, kind, .minimum = -INFINITY, .maximum = INFINITY, .digits = 9)
-#define ERROR(member) CSV_MEMBER(LaunchPage, member, CSV_NUMBER, .maximum = INFINITY)
-
-static const CsvColumn columns[] = {
-    TEXT(scene, CHART_NAME_SIZE),
-    TEXT(method, CHART_NAME_SIZE),
-    TEXT(setting, CHART_SETTING_SIZE),
-    CSV_MEMBER(LaunchPage, phase, CSV_WORD, .words = phase_words),
-    COUNT(launch, 1),
-    NUMBER(x, CSV_FLOAT),
-    NUMBER(rotation, CSV_FLOAT),
-    NUMBER(spin, CSV_FLOAT),
-    NUMBER(mass, CSV_FLOAT),
-    COUNT(launch_frame, 0),
-    ERROR(error_worst),
-    ERROR(error),
-    NUMBER(time, CSV_NUMBER),
-    COUNT(frame, 0),
-    COUNT(body, -1),
-    TEXT(page, CSV_PATH_SIZE),
-    COUNT(bytes, 0),
-};
-
-const CsvLayout launch_page_layout =
-    CSV_LAYOUT("chart_pages", columns, LaunchPage, .max_rows = CHART_MAX_ROWS, .header = CSV_EXACT);
-
-typedef struct Search {
-    const SceneStudy *study;
-    const Method *method;
-    WorstLaunch (*of)[PHASES]; /* [launches] */
-} Search;
-
-static WorstLaunch worst_launch_measure(const StepScores *scores, const RunLog *log, int launch) {
-    WorstLaunch worst = {.launch = -1, .frame = -1, .body = -1, .touch = log->touch, .frames = log->frames};
-    for (int i = 0; i < scores->count; i++) {
-        if (worst.launch >= 0 && scores->error[i] <= worst.error) continue;
-        worst.launch = launch;
-        worst.error = scores->error[i];
-        worst.frame = scores->place[i].frame;
-        worst.body = scores->place[i].body;
-    }
-    if (scores->count > 0) worst.mean = statistics_mean(scores->error, scores->count);
-    return worst;
-}
-
-static bool search_launch(void *context, int i, Error *error) {
-    const Search *search = context;
-    const Sampling sampling = {.after = search->study->size.closed.after, .rest = INT_MAX};
-    const Scene scene = scene_study_launch(search->study, i), *launched = &scene;
-    Rollout rollout = {0};
-    StepScores scores[PHASES] = {0};
-    Stepper *stepper = stepper_create(search->method, launched, error);
-    const bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, &sampling, scores, error);
-    for (int phase = 0; phase < PHASES; phase++) {
-        if (ok) search->of[i][phase] = worst_launch_measure(&scores[phase], &rollout.log, i);
-        step_scores_free(&scores[phase]);
-    }
-    stepper_destroy(stepper);
-    rollout_free(&rollout);
-    return ok;
-}
-
-bool worst_launch_find(const SceneStudy *study, const Method *method, WorstLaunch worst[PHASES],
-                       const Progress *progress, Error *error) {
-    Search search = {study, method, calloc((size_t)study->launch_count, sizeof *search.of)};
-    if (search.of == NULL) return error_memory(error, "worst launch");
-    const ParallelWork work = {search_launch, &search};
-    const bool ok = parallel_for(&work, study->launch_count, study->scene->name, progress, error);
-    for (int phase = 0; ok && phase < PHASES; phase++) {
-        worst[phase] = (WorstLaunch){.launch = -1};
-        for (int i = 0; i < study->launch_count; i++) {
-            const WorstLaunch *found = &search.of[i][phase];
-            if (found->launch >= 0 && (worst[phase].launch < 0 || found->mean > worst[phase].mean))
-                worst[phase] = *found;
-        }
-    }
-    free(search.of);
-    return ok;
-}
 
 /* About the share of a piece that its converged run takes. */
 static const double converged_share = 0.2;
@@ -190,100 +103,6 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
                             piece.converged.unconverged);
     launch_piece_end(&piece);
     return ok;
-}
-
-bool piece_tables_print(FILE *results, const CsvLayout *layout, int section, const void *row, Error *error) {
-    if (section < 0)
-        fprintf(results, "%s:", layout->name);
-    else
-        fprintf(results, "%s/%d:", layout->name, section);
-    return csv_row_print(results, layout, row, error);
-}
-
-/* The results of all pieces, while tables are made of them. */
-typedef struct Tables {
-    const CsvLayout *const *layouts; /* [layout_count] */
-    const PieceGroup *groups;        /* [group_count] */
-    int layout_count, group_count;
-    char **texts; /* [pieces] */
-} Tables;
-
-/* Whether a line is a row of one of the tables, or a note. Other lines are a fault of the study's. */
-static bool check_line(const Tables *tables, const char *line, int sections, Error *error) {
-    const size_t length = strcspn(line, ":/\n");
-    if (*line == '#') return true;
-    for (int i = 0; i < tables->layout_count; i++) {
-        const char *name = tables->layouts[i]->name;
-        if (strncmp(line, name, length) != 0 || name[length] != '\0') continue;
-        char *end = (char *)line + length;
-        const long section = *end == '/' ? strtol(end + 1, &end, 10) : -1;
-        if (*end == ':' && section >= -1 && section < sections) return true;
-    }
-    return error_system(error, "tables", "a piece has the line '%.*s', which belongs to no table",
-                        (int)strcspn(line, "\n"), line);
-}
-
-static bool read_piece(const Tables *tables, const Pieces *pieces, int64_t piece, int sections, Error *error) {
-    size_t size;
-    char *text = tables->texts[piece] = pieces_read(pieces, piece, &size, NULL, error);
-    if (text == NULL) return false;
-    if (size != strlen(text) || (size > 0 && text[size - 1] != '\n'))
-        return error_system(error, "tables", "a piece is not made of lines");
-    for (const char *line = text; *line != '\0'; line += strcspn(line, "\n") + 1)
-        if (!check_line(tables, line, sections, error)) return false;
-    return true;
-}
-
-static bool read_pieces(const Tables *tables, const Pieces *pieces, Error *error) {
-    for (int g = 0; g < tables->group_count; g++) {
-        const PieceGroup *group = &tables->groups[g];
-        for (int64_t i = group->first; i < group->first + group->count; i++)
-            if (!read_piece(tables, pieces, i, group->sections, error)) return false;
-    }
-    return true;
-}
-
-/* The rows of a group in a section; -1: those without one. */
-static void print_section(FILE *out, const Tables *tables, const CsvLayout *layout, const PieceGroup *group,
-                          int section) {
-    char tag[CSV_NAME_SIZE + 16] = "";
-    text_add(tag, sizeof tag, "%s", layout->name);
-    if (section >= 0) text_add(tag, sizeof tag, "/%d", section);
-    text_add(tag, sizeof tag, ":");
-    const size_t length = strlen(tag);
-    for (int64_t i = group->first; i < group->first + group->count; i++)
-        for (const char *line = tables->texts[i]; *line != '\0'; line += strcspn(line, "\n") + 1)
-            if (strncmp(line, tag, length) == 0) fwrite(line + length, 1, strcspn(line, "\n") + 1 - length, out);
-}
-
-typedef struct Table {
-    const Tables *tables;
-    const CsvLayout *layout;
-} Table;
-
-static void print_table(FILE *out, const void *context) {
-    const Table *table = context;
-    csv_header_print(out, table->layout);
-    for (int g = 0; g < table->tables->group_count; g++)
-        for (int section = -1; section < table->tables->groups[g].sections; section++)
-            print_section(out, table->tables, table->layout, &table->tables->groups[g], section);
-}
-
-bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayout *const *layouts, int layout_count,
-                        const PieceGroup *groups, int group_count, Error *error) {
-    const int64_t count = pieces->plan->count;
-    const PieceGroup all = {0, count, 0};
-    const Tables tables = {layouts, groups != NULL ? groups : &all, layout_count, groups != NULL ? group_count : 1,
-                           calloc((size_t)count + 1, sizeof *tables.texts)};
-    bool done = (tables.texts != NULL || error_memory(error, folder)) && read_pieces(&tables, pieces, error);
-    for (int i = 0; done && i < layout_count; i++) {
-        char path[CSV_PATH_SIZE];
-        done = csv_table_path(path, folder, layouts[i], error) &&
-               file_write_text(path, print_table, &(Table){&tables, layouts[i]}, error);
-    }
-    for (int64_t i = 0; tables.texts != NULL && i < count; i++) free(tables.texts[i]);
-    free(tables.texts);
-    return done;
 }
 
 /* About the share of the time that preparations take. */

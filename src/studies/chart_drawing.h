@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A chart in progress: panels, names, the picture. */
+#pragma once
+#include "base/base.h"
+#include "figures/sketch.h"
+#include "pixels/png.h"
+#include "studies/chart_data.h"
+#include "studies/chart_plot.h"
+
+#include <stdbool.h>
+
+#define CHART_NAME_POINTS 8.0
+#define CHART_SMALL_POINTS 6.5
+#define CHART_RING_RADIUS 1.9  /* mm: around the engine as shipped */
+#define CHART_GREY_RADIUS 0.42 /* mm: of grey marks */
+#define CHART_GREY_INK 0x666E78u
+
+typedef struct ChartDrawing {
+    const Chart *chart;
+    const ChartPanel *panel;
+    const PlotPanel *plot;
+    Sketch *sketch;
+    LabelField field;                       /* its first two segments are the lines through the engine as shipped */
+    int marks;                              /* the field's boxes of marks; those of labels follow */
+    bool *named;                            /* [line] */
+    const ChartMark *told[CHART_MAX_LINES]; /* in this panel: the mark that a line's name tells of, or NULL */
+} ChartDrawing;
+
+static inline const ChartLine *chart_line_of(const ChartDrawing *drawing, const ChartMark *mark) {
+    return &drawing->chart->lines[mark->line];
+}
+
+static inline bool chart_is_coloured(const ChartDrawing *drawing, const ChartMark *mark) {
+    return chart_line_of(drawing, mark)->rank == CHART_COLOURED;
+}
+
+static inline Point chart_place(const ChartDrawing *drawing, const ChartMark *mark) {
+    return plot_place(drawing->plot, mark->us, mark->error);
+}
+
+PlotStyle chart_line_style(const ChartLine *line);
+
+/* The setting as shipped of the method that has one; NULL: not in the panel. */
+const ChartMark *chart_find_shipped(const ChartPanel *panel);
+
+/* Begins the field with the lines through the engine as shipped. */
+void chart_find_cross(ChartDrawing *drawing);
+
+/* Draws the names of all lines for which there is room beside marks and curves, settings of coloured ones, and the lines
+   through the engine as shipped. */
+void chart_draw_names(ChartDrawing *drawing, int panel);
+
+/* A drawn chart. */
+typedef struct ChartPicture {
+    const Chart *chart;
+    ChartSize size;
+    double width, height; /* mm */
+    PlotPanel panels[CHART_PANELS];
+    bool named[CHART_MAX_LINES]; /* in a panel */
+    Sketch sketch;
+    char caption[PLOT_CAPTION_SIZE];
+} ChartPicture;
+
+/* Free with chart_picture_free(). The chart must outlive it. False with error set if out of memory. */
+bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *scene, const ChartLook *look,
+                        Error *error);
+void chart_picture_free(ChartPicture *picture);
+
+/* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
+void chart_mark_place(const ChartPicture *picture, int panel, const ChartMark *mark, double *left, double *top);
+
+extern const char *const chart_panel_titles[CHART_PANELS];

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* chart.csv, and what charts read in its rows. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "methods/methods.h"
+#include "studies/chart_table.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const double lost_drift = 0.5; /* m, half a box */
+
+void chart_split_setting(const char *setting, char *numbers, char *words) {
+    while (*setting != '\0') {
+        size_t length = strcspn(setting, ",");
+        char item[CHART_SETTING_SIZE];
+        snprintf(item, sizeof item, "%.*s", (int)length, setting);
+        const char *value = strchr(item, '=');
+        double number;
+        bool is_number = value != NULL && parse_double(value + 1, &number);
+        char *part = is_number ? numbers : words;
+        if (part[0] != '\0') strcat(part, ",");
+        strcat(part, item);
+        setting += length + (setting[length] == ',');
+    }
+}
+
+void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]) {
+    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
+    chart_split_setting(row->setting, numbers, words);
+    snprintf(family, CHART_FAMILY_SIZE, "%s%s%s", row->method, words[0] != '\0' ? ":" : "", words);
+}
+
+bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {
+    for (int i = 0; i < count; i++) {
+        const ChartRow *rest = &rows[i];
+        if (rest->drift > lost_drift && strcmp(rest->scene, row->scene) == 0 &&
+            strcmp(rest->method, row->method) == 0 && strcmp(rest->setting, row->setting) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* A row has both a time and an error, or its phase did not occur. */
+static bool is_left_out(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    return isnan(row->us_solver) && !isnan(row->error_mean) && (method == NULL || !method->external);
+}
+
+void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count) {
+    const char *cpu = NULL;
+    bool left_out = false, others = false;
+    int times = 0, vary = 0;
+    for (int i = 0; i < count; i++) {
+        left_out |= is_left_out(&rows[i]);
+        times += !isnan(rows[i].us_solver);
+        vary += rows[i].us_varies > 0;
+        if (rows[i].cpu[0] == '\0') continue;
+        if (cpu == NULL) cpu = rows[i].cpu;
+        others |= strcmp(rows[i].cpu, cpu) != 0;
+    }
+    note[0] = '\0';
+    if (cpu == NULL) return;
+    snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.%s", cpu, others ? " and others" : "",
+             left_out ? " Those of other processors are left out." : "");
+    if (vary > 0)
+        text_add(note, CHART_TIMES_SIZE, " %d of %d vary more than the others, also when measured again.", vary, times);
+}
+
+bool chart_scene_untimed(const ChartRow *rows, int count, const char *scene) {
+    bool known = false;
+    for (int i = 0; i < count; i++) {
+        if (strcmp(rows[i].scene, scene) == 0 && !isnan(rows[i].us_solver)) return false;
+        known |= rows[i].cpu[0] != '\0';
+    }
+    return known;
+}
+
+static const char *const protocol_words[] = {"frozen", "closed", NULL};
+static const char *const phase_words[] = {"impact", "after", "rest", NULL};
+
+#define TEXT(member, size) CSV_MEMBER(ChartRow, member, CSV_TEXT, .maximum = (size)-1, .key = true)
+#define WORD(member, list) CSV_MEMBER(ChartRow, member, CSV_WORD, .words = list, .key = true)
+#define FIGURE(member, least, most) CSV_MEMBER(ChartRow, member, CSV_OPTIONAL, .minimum = least, .maximum = most)
+
+static const CsvColumn columns[] = {
+    TEXT(scene, CHART_NAME_SIZE),
+    TEXT(method, CHART_NAME_SIZE),
+    TEXT(setting, CHART_SETTING_SIZE),
+    WORD(protocol, protocol_words),
+    WORD(phase, phase_words),
+    CSV_MEMBER(ChartRow, launches, CSV_INTEGER, .maximum = INT_MAX),
+    FIGURE(us_solver, 0, INFINITY),
+    FIGURE(us_solver_q1, 0, INFINITY),
+    FIGURE(us_solver_q3, 0, INFINITY),
+    FIGURE(us_step, 0, INFINITY),
+    FIGURE(instructions, 0, INFINITY),
+    FIGURE(error_mean, 0, INFINITY),
+    FIGURE(error_median, 0, INFINITY),
+    FIGURE(error_p95, 0, INFINITY),
+    FIGURE(error_worst, 0, INFINITY),
+    FIGURE(share_right, 0, 1),
+    FIGURE(penetration_max, 0, INFINITY),
+    FIGURE(drift, -INFINITY, INFINITY),
+    FIGURE(energy, -INFINITY, INFINITY),
+    FIGURE(moved, 0, INFINITY),
+    CSV_MEMBER(ChartRow, cpu, CSV_TEXT, .maximum = CPU_NAME_SIZE - 1, .optional = true),
+    CSV_MEMBER(ChartRow, us_engine, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, us_varies, CSV_OPTIONAL, .maximum = 1, .optional = true),
+    CSV_MEMBER(ChartRow, signorini, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, cone, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, dissipation, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, rollout_mse, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+};
+
+enum { SOLVER_MEDIAN = 6 };
+
+/* Comparisons with NAN are false: a missing time is not checked. */
+static bool is_ordered(const ChartRow *row) {
+    return !(row->us_solver_q1 > row->us_solver || row->us_solver > row->us_solver_q3 ||
+             row->us_solver_q1 > row->us_solver_q3);
+}
+
+static bool check_times(const CsvTable *table, Error *error) {
+    for (int i = 0; i < table->count; i++)
+        if (!is_ordered(chart_row(table, i)))
+            return csv_table_error(table, i, SOLVER_MEDIAN, error, "us_solver: the median is outside the quartiles");
+    return true;
+}
+
+const CsvLayout chart_layout = CSV_LAYOUT("chart", columns, ChartRow, .min_rows = 1, .max_rows = CHART_MAX_ROWS,
+                                          .header = CSV_EXACT, .check = check_times);

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Curves of error over time. */
+#include "studies/error_curve.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int compare(const void *left, const void *right) {
+    const CurvePoint *a = left, *b = right;
+    if (a->us != b->us) return a->us < b->us ? -1 : 1;
+    return (a->error > b->error) - (a->error < b->error);
+}
+
+int error_curve_front(CurvePoint *points, int count) {
+    int kept = 0;
+    qsort(points, (size_t)count, sizeof *points, compare);
+    for (int i = 0; i < count; i++)
+        if (kept == 0 || points[i].error < points[kept - 1].error) points[kept++] = points[i];
+    return kept;
+}
+
+double error_curve_at(const CurvePoint *front, int count, double us, CurveReach *reach) {
+    int after = 0;
+    while (after < count && front[after].us < us) after++;
+    if (after < count && front[after].us == us) {
+        *reach = CURVE_WITHIN;
+        return front[after].error;
+    }
+    *reach = after == 0 ? CURVE_BEFORE : after == count ? CURVE_BEYOND : CURVE_WITHIN;
+    if (*reach == CURVE_BEFORE) return NAN;
+    if (*reach == CURVE_BEYOND) return front[count - 1].error;
+    const CurvePoint *a = &front[after - 1], *b = &front[after];
+    const double share = log(us / a->us) / log(b->us / a->us);
+    return a->error * pow(b->error / a->error, share);
+}

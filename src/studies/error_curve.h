@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Error over time: curves of methods. */
+#pragma once
+
+/* The error of a method over its time, from runs with several settings. */
+
+typedef struct CurvePoint {
+    double us, error; /* microseconds; m/s; both greater than 0 */
+} CurvePoint;
+
+/* Where a time lies on a curve: before its first point, between its points, or beyond the last. */
+typedef enum CurveReach { CURVE_BEFORE, CURVE_WITHIN, CURVE_BEYOND } CurveReach;
+
+/* Sorts the points and keeps those that no other beats in both: rising times, falling errors. Returns their number. */
+int error_curve_front(CurvePoint *points, int count);
+
+/* The error of such a front at a time: a straight line in log error over log time between neighbours. NaN before
+   the first point, as no setting is that quick. Beyond the last point it is the last point's error. count >= 1. */
+double error_curve_at(const CurvePoint *front, int count, double us, CurveReach *reach);
+
+/* m/s: smaller errors count as equal. */
+#define PARETO_RESOLUTION 1e-4

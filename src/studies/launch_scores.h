@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scores of a launch as they are stored, and the rows of chart.csv that are made of them. */
+#pragma once
+#include "base/base.h"
+#include "scenes/scenes.h"
+#include "studies/chart_table.h"
+#include "studies/contenders.h"
+#include "studies/rollout.h"
+#include "studies/timing.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of
+   methods, the frozen steps that were left out, where each method's part ends, then the parts; so one method's is found at once. */
+
+/* A method on one launch. Zero-initialise. */
+typedef struct LaunchScores {
+    StepScores steps[PROTOCOLS][PHASES];
+    RunMeasures measures;
+    int unconverged; /* steps in closed loop, as in Rollout */
+} LaunchScores;
+
+void launch_scores_free(LaunchScores *scores);
+
+/* Writes those of all methods, scores[count]. unconverged: frozen steps, as in SnapshotList. run_unconverged: as in RunLog, of the
+   converged run. */
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged, int run_unconverged);
+
+/* What is stored of a launch. */
+typedef struct StoredScores {
+    const char *path; /* for messages */
+    const char *bytes;
+    size_t size;
+    int count;               /* methods */
+    int64_t unconverged;     /* frozen steps */
+    int64_t run_unconverged; /* steps of the converged run */
+} StoredScores;
+
+/* Looks at stored results with so many methods. ERROR_INPUT if they are damaged. The bytes must outlive *stored. */
+bool stored_scores_open(StoredScores *stored, const char *path, const char *bytes, size_t size, int count,
+                        Error *error);
+
+typedef struct PhaseScores {
+    int count;
+    double *error, *share; /* [count], as in StepScores */
+    CriteriaSum criteria;
+    size_t error_capacity, share_capacity;
+} PhaseScores;
+
+/* A method on several launches. Zero-initialise. */
+typedef struct MethodScores {
+    PhaseScores steps[PROTOCOLS][PHASES];
+    double worst[PHASES];  /* m/s: largest mean error of a launch in closed loop; NaN without a scored step */
+    RunMeasures *measures; /* [launches] */
+    int launches;
+    int64_t unconverged; /* steps in closed loop, as in Rollout */
+    size_t measure_capacity;
+} MethodScores;
+
+/* Adds a launch. ERROR_INPUT if its part is damaged. */
+bool method_scores_add(MethodScores *scores, const StoredScores *stored, int method, Error *error);
+void method_scores_free(MethodScores *scores);
+
+/* Rows of chart.csv from the results of a scene's launches. */
+
+/* A row with names but without results. The names must outlive the row. */
+ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase);
+
+/* Sets mean, quantiles, share and criteria over all steps of the row's phase; sorts the scores. */
+void scene_row_errors(ChartRow *row, const PhaseScores *scores);
+
+/* Largest penetration and means of the other measures over measures[count], one per launch. */
+void scene_row_measures(ChartRow *row, const RunMeasures *measures, int count);
+
+/* cpu: that it was measured on; must outlive the row. */
+void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu);
