@@ -3,6 +3,8 @@
 #define _GNU_SOURCE
 #include "base/base.h"
 #include "cli/cli.h"
+#include "cli/interrupt.h"
+#include "cli/notes.h"
 
 #include <fcntl.h>
 #include <omp.h>

@@ -2,7 +2,8 @@
 /* The verdict on a stored run, for check and import, and what check says of it. */
 #include "base/base.h"
 #include "base/json.h"
-#include "cli/cli.h"
+#include "cli/json_output.h"
+#include "cli/notes.h"
 #include "cli/larger_commands.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"

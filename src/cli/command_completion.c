@@ -3,6 +3,7 @@
    answers from the option tables. */
 #include "base/base.h"
 #include "cli/cli.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "methods/methods.h"
 #include "scenes/scenes.h"

@@ -3,6 +3,8 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/output_checks.h"
+#include "cli/progress_bar.h"
 #include "cli/options.h"
 #include "learning/dataset.h"
 #include "methods/pair.h"

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/common_options.h"
 #include "cli/options.h"
 #include "runs/pieces.h"
 

@@ -5,6 +5,8 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "cli/cli.h"
+#include "cli/json_output.h"
+#include "cli/output_checks.h"
 #include "cli/options.h"
 #include "engine/engine.h"
 #include "methods/criteria.h"

@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
-#include "cli/cli.h"
+#include "cli/json_output.h"
 #include "cli/larger_commands.h"
 #include "pictures/page.h"
 #include "regression/report.h"

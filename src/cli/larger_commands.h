@@ -6,6 +6,8 @@
 #include "base/json.h"
 #include "base/machine.h"
 #include "cli/cli.h"
+#include "cli/json_output.h"
+#include "cli/panels.h"
 #include "cli/options.h"
 #include "methods/methods.h"
 #include "regression/compare.h"

@@ -4,7 +4,8 @@
 
 #include "base/base.h"
 #include "base/file.h"
-#include "cli/cli.h"
+#include "cli/installed.h"
+#include "cli/notes.h"
 #include "methods/methods.h"
 #include "scenes/scenes.h"
 

@@ -2,7 +2,9 @@
 /* The kinds of twinbox train that learn from launches of scenes: sain, hybrid, gns, subspace and scene-net. */
 #include "base/base.h"
 #include "base/file.h"
-#include "cli/cli.h"
+#include "cli/installed.h"
+#include "cli/interrupt.h"
+#include "cli/progress_bar.h"
 #include "cli/options.h"
 #include "cli/larger_commands.h"
 #include "learning/gns_training.h"

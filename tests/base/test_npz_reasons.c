@@ -3,7 +3,7 @@
 #include "library_allocations.h"
 
 #include "base/npz.h"
-#include "cli/cli.h"
+#include "cli/output_checks.h"
 
 #include <sys/resource.h>
 

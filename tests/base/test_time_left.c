@@ -2,7 +2,7 @@
 /* Estimates of the time left, from made-up times. */
 #include "testing.h"
 
-#include "cli/cli.h"
+#include "cli/progress_bar.h"
 
 #include <math.h>
 

@@ -3,7 +3,8 @@
 #include "testing.h"
 #include "files.h"
 
-#include "cli/cli.h"
+#include "cli/notes.h"
+#include "cli/progress_bar.h"
 #include "base/base.h"
 
 static double now; /* s */

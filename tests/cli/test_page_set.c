@@ -3,7 +3,7 @@
 #include "made.h"
 #include "files.h"
 
-#include "cli/cli.h"
+#include "cli/page_set.h"
 #include "studies/piece_tables.h"
 
 /* Two boxes that stand still for so many frames. */

@@ -5,6 +5,7 @@
 #include "files.h"
 
 #include "cli/cli.h"
+#include "cli/draw_panels.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 #include "methods/methods.h"

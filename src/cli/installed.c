@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Installed scenes and networks. */
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/installed.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = 4096 };
+
+/* What was found; a list, because callers keep the paths. */
+typedef struct Found {
+    struct Found *next;
+    char path[PATH_SIZE];
+} Found;
+
+static Found *all_found;
+
+/* The path below TWINBOX_DATA, which is relative to the program's folder: an installed prefix can be moved. */
+static bool find(char found[PATH_SIZE], const char *path) {
+    char program[PATH_SIZE];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length < 0) return false;
+    program[length] = '\0';
+    Error ignored = {0};
+    return file_path(found, PATH_SIZE, &ignored, "%.*s%s/%s", (int)file_folder_length(program), program, TWINBOX_DATA,
+                     path) &&
+           access(found, R_OK) == 0;
+}
+
+/* Where a scene is looked for by its name. */
+static const char *const scene_folders[] = {"scenes", "scenes/families", "scenes/stability"};
+enum { SCENE_FOLDERS = sizeof scene_folders / sizeof *scene_folders };
+
+static bool find_scene(char found[PATH_SIZE], const char *name) {
+    if (strpbrk(name, "./") != NULL) return false;
+    for (int i = 0; i < SCENE_FOLDERS; i++) {
+        char path[PATH_SIZE];
+        Error ignored = {0};
+        if (!file_path(path, sizeof path, &ignored, "%s/%s.yaml", scene_folders[i], name)) return false;
+        if (access(path, R_OK) == 0) return memcpy(found, path, sizeof path), true;
+        if (find(found, path)) return true;
+    }
+    return false;
+}
+
+const char *installed_path(const char *path) {
+    if (path[0] == '/' || access(path, F_OK) == 0) return path;
+    Found *found = malloc(sizeof *found);
+    if (found == NULL || !(find(found->path, path) || find_scene(found->path, path))) {
+        free(found);
+        return path;
+    }
+    found->next = all_found;
+    all_found = found;
+    return found->path;
+}
+
+const char *installed_network(const char *method) {
+    static const char key[] = "network=";
+    const char *value = strstr(method, key);
+    if (value == NULL || (value > method && value[-1] != ':' && value[-1] != ',')) return method;
+    char path[PATH_SIZE];
+    value += strlen(key);
+    const int length = (int)strcspn(value, ",");
+    Error ignored = {0};
+    if (!file_path(path, sizeof path, &ignored, "%.*s", length, value)) return method;
+    const char *found = installed_path(path);
+    Found *text = found != path ? malloc(sizeof *text) : NULL;
+    if (text == NULL || !file_path(text->path, sizeof text->path, &ignored, "%.*s%s%s", (int)(value - method), method,
+                                   found, value + length)) {
+        free(text);
+        return method;
+    }
+    text->next = all_found;
+    all_found = text;
+    return text->path;
+}
+
+static bool is_scene(const char *name) {
+    const char *ending = strrchr(name, '.');
+    return ending != NULL && strcmp(ending, ".yaml") == 0;
+}
+
+/* `shown`: the folder as in paths; NULL: names alone. */
+static void list_scenes(const char *folder, const char *shown, InstalledScene *found, void *context) {
+    FolderList list;
+    Error ignored = {0};
+    if (!folder_list(&list, folder, is_scene, false, &ignored)) return;
+    for (size_t i = 0; i < list.count; i++) {
+        char path[PATH_SIZE];
+        const int length = (int)(strlen(list.names[i]) - strlen(".yaml"));
+        const bool fits = shown != NULL ? file_path(path, sizeof path, &ignored, "%s/%s", shown, list.names[i])
+                                        : file_path(path, sizeof path, &ignored, "%.*s", length, list.names[i]);
+        if (fits && (shown == NULL || access(path, F_OK) != 0)) found(path, context);
+    }
+    folder_list_free(&list);
+}
+
+void installed_scenes(InstalledScene *found, void *context) {
+    for (int i = 0; i < SCENE_FOLDERS; i++) {
+        char folder[PATH_SIZE];
+        list_scenes(scene_folders[i], NULL, found, context);
+        if (!find(folder, scene_folders[i])) continue;
+        list_scenes(folder, NULL, found, context);
+        list_scenes(folder, scene_folders[i], found, context);
+    }
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Signals. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "cli/interrupt.h"
+
+#include <signal.h>
+#include <stdatomic.h>
+#include <unistd.h>
+
+/* The handler and threads of parallel work use both: only lock-free atomics are defined there. */
+static atomic_bool requested;
+static atomic_int held;
+static atomic_llong requested_at; /* ms */
+_Static_assert(ATOMIC_BOOL_LOCK_FREE == 2 && ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LLONG_LOCK_FREE == 2,
+               "a signal handler may wait for a lock");
+
+/* timeout(1) and schedulers send a signal to the process and then to its group: that is one request. */
+enum { SAME_REQUEST = 1000 /* ms */ };
+
+static void on_signal(int signal_number) {
+    static const char text[] = "twinbox: error: interrupted\n";
+    (void)signal_number;
+    const long long now = (long long)(1000 * clock_seconds()); /* by a call that handlers may make */
+    const bool first = !atomic_exchange(&requested, true);
+    if (first) atomic_store(&requested_at, now);
+    if (atomic_load(&held) > 0 && (first || now - atomic_load(&requested_at) < SAME_REQUEST)) return;
+    const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)ignored;
+    talks_kill();
+    _exit(ERROR_INTERRUPTED);
+}
+
+void interrupt_handle(void) {
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    struct sigaction hangup;
+    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN) /* nohup(1) */
+        sigaction(SIGHUP, &action, NULL);
+}
+
+void interrupt_hold(void) { atomic_fetch_add(&held, 1); }
+
+void interrupt_release(void) { atomic_fetch_sub(&held, 1); }
+
+bool interrupt_requested(void) { return atomic_load(&requested); }
+
+void interrupt_forget(void) { atomic_store(&requested, false); }

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* SIGINT (Ctrl-C), SIGTERM and SIGHUP. */
+#pragma once
+
+#include <stdbool.h>
+
+/* Each ends the program with exit status 130 (ERROR_INTERRUPTED), in every command: at
+   once where nothing would look at a request, between two pieces of work while signals are held. Files are written
+   beside their name and renamed, so that an end at once leaves no half of one. */
+
+/* Handles both signals from here on, also where the shell has a background process ignore them. */
+void interrupt_handle(void);
+
+/* While held, the first signal only requests a stop, and a second one, a second later or more, ends the program. The calls
+   nest. */
+void interrupt_hold(void);
+void interrupt_release(void);
+
+/* True after a signal. From any thread. */
+bool interrupt_requested(void);
+
+/* The signal was the expected end of the work, which was not interrupted by it. */
+void interrupt_forget(void);
