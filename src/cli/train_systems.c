@@ -13,7 +13,7 @@
 #include "learning/scene_training.h"
 #include "learning/subspace_training.h"
 #include "methods/relation_view.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 #include "methods/tabulation.h"
 #include "nets/kernels.h"
 #include "nets/kinds.h"

@@ -6,7 +6,7 @@
 #include "learning/hybrid_training.h"
 #include "learning/scene_training_internal.h"
 #include "methods/methods.h"
-#include "methods/solvers.h"
+#include "methods/hybrid.h"
 #include "methods/sweeps.h"
 #include "methods/tabulation.h"
 #include "nets/kernels.h"

@@ -11,7 +11,7 @@
 #include "learning/scene_training_internal.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
-#include "methods/solvers.h"
+#include "methods/hybrid.h"
 #include "methods/tabulation.h"
 #include "nets/kinds.h"
 #include "runs/runs.h"

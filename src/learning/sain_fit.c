@@ -4,7 +4,7 @@
 #include "learning/learning.h"
 #include "learning/sain_training.h"
 #include "methods/relation_view.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 #include "nets/nets.h"
 
 #include <omp.h>

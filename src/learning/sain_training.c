@@ -11,7 +11,7 @@
 #include "methods/pair.h"
 #include "methods/reference.h"
 #include "methods/relation_view.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 

@@ -7,7 +7,7 @@
 #include "learning/scene_training.h"
 #include "methods/methods.h"
 #include "methods/relation_view.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 #include "nets/nets.h"
 #include "scenes/scenes.h"
 

@@ -7,7 +7,7 @@
 #include "learning/scene_training_internal.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
-#include "methods/solvers.h"
+#include "methods/scene_net.h"
 #include "nets/kinds.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"

@@ -9,7 +9,8 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "methods/reference.h"
-#include "methods/solvers.h"
+#include "methods/momentum.h"
+#include "methods/scene_net.h"
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 

@@ -5,7 +5,7 @@
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "methods/reference.h"
-#include "methods/solvers.h"
+#include "methods/scene_net.h"
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 
@@ -15,7 +15,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Differentiable momentum sweeps (methods/solvers.h, in colour order) in double: reverse-mode derivatives of a loss of
+/* Differentiable momentum sweeps (methods/momentum.h, in colour order) in double: reverse-mode derivatives of a loss of
    the final velocities with respect to the start impulses and the momentum factors. A network that predicts the start
    of a solve can thus be trained on the result of the solve.
 

@@ -114,7 +114,7 @@ bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, c
                 LaunchSee *see, void *context, Error *error);
 
 /* Runs launches of a scene with a given solver and records the contact problems of their impacts: the steps after the
-   bomb's first touch in which the residual of the warm start reaches the gate (methods/solvers.h). */
+   bomb's first touch in which the residual of the warm start reaches the gate (methods/residual.h). */
 
 typedef struct SlotRollout {
     const Scene *scene;

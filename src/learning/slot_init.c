@@ -4,7 +4,7 @@
 #include "engine/engine.h"
 #include "learning/scene_training.h"
 #include "learning/scene_training_internal.h"
-#include "methods/solvers.h"
+#include "methods/scene_net.h"
 #include "nets/kinds.h"
 
 #include <gsl/gsl_errno.h>

@@ -25,7 +25,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior_point_internal.h"
-#include "methods/solvers.h"
+#include "methods/stopping.h"
 #include "methods/sweeps.h"
 
 /* Four contact slots, in scaled rows: impulses over and velocities times the root of the effective mass. */

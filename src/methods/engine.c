@@ -8,7 +8,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/solvers.h"
+#include "methods/stopping.h"
 #include "methods/sweeps.h"
 
 #include <stdlib.h>

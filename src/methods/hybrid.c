@@ -18,7 +18,9 @@
 #include "base/hash.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/solvers.h"
+#include "methods/hybrid.h"
+#include "methods/residual.h"
+#include "methods/scene_net.h"
 #include "methods/sweeps.h"
 #include "methods/tabulation.h"
 

@@ -21,7 +21,10 @@
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
-#include "methods/solvers.h"
+#include "methods/interior.h"
+#include "methods/momentum.h"
+#include "methods/residual.h"
+#include "methods/stopping.h"
 #include "methods/sweeps.h"
 
 #include <math.h>
@@ -40,7 +43,7 @@ enum {
     LEAST_ITERATIONS_AT_REST = 3 /* and one more for each hundred bodies */
 };
 
-/* A step takes at most the work of so many sweeps of each island (solvers.h). It is counted, not timed: as sweeps over the same
+/* A step takes at most the work of so many sweeps of each island (methods/interior.h). It is counted, not timed: as sweeps over the same
    contacts. */
 static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and walls, 1.4 in
@@ -252,7 +255,7 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Inte
     return true;
 }
 
-/* Begins, and sweeps with momentum until the residual (methods/solvers.h) is below `near`, or the work is done. False when
+/* Begins, and sweeps with momentum until the residual (methods/residual.h) is below `near`, or the work is done. False when
    memory is short. */
 static bool sweep(State *solver, const ContactProblem *problem, float near, const float *factors, int count) {
     if (!start(solver, problem, false)) return false;

@@ -12,7 +12,7 @@
    and the engine's slop. */
 #pragma once
 #include "methods/islands.h"
-#include "methods/solvers.h"
+#include "methods/residual.h"
 #include "methods/sweeps.h"
 
 /* More: an iteration takes as long as 10 sweeps or more. Fewer than FEW: stacks, gates. */

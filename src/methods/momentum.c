@@ -23,7 +23,9 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/solvers.h"
+#include "methods/momentum.h"
+#include "methods/residual.h"
+#include "methods/stopping.h"
 #include "methods/sweeps.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
-#include "methods/solvers.h"
+#include "methods/pair_net.h"
 #include "methods/sweeps.h"
 #include "nets/nets.h"
 

@@ -22,7 +22,7 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/relation_view.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 #include "nets/nets.h"
 
 #include <math.h>

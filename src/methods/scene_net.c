@@ -13,7 +13,10 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/solvers.h"
+#include "methods/momentum.h"
+#include "methods/residual.h"
+#include "methods/scene_net.h"
+#include "methods/stopping.h"
 #include "methods/sweeps.h"
 #include "nets/kinds.h"
 

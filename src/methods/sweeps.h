@@ -231,7 +231,7 @@ void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses);
 
 /* A contact slides if its tangent impulse times this exceeds the limit. */
 #define SWEEP_AT_LIMIT 1.0001f
-/* Friction below which no contact of boxes overshoots enough to matter (overshoot_of_pairs() in solvers.h): an impulse at a
+/* Friction below which no contact of boxes overshoots enough to matter (overshoot_of_pairs() in methods/residual.h): an impulse at a
    corner, r from the middle, in the plane's directions n and t, overshoots by friction times q c s / (1 + q c^2), where
    c = cos, s = sin of the angle between the arm and t, and q = m r^2 / I = 3: at most 0.75. Less than 0.264 is no matter
    (largest_factor() in momentum.c). */
@@ -310,7 +310,7 @@ bool sweeps_have_lanes(void);
    momentum extrapolation. */
 void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors);
 
-/* As residual_of_pairs() and overshoot_of_pairs() in solvers.h, a pair in each lane. */
+/* As residual_of_pairs() and overshoot_of_pairs() in methods/residual.h, a pair in each lane. */
 void sweeps_residuals_in_lanes(const Sweeps *sweeps, float *squared);
 void sweeps_overshoots_in_lanes(const Sweeps *sweeps, float *overshoot);
 

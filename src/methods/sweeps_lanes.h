@@ -184,7 +184,7 @@ TARGET static inline LanePair load_pair_lanes(const Sweeps *sweeps, const SweepL
     return pair;
 }
 
-/* As in stopping.c. */
+/* As in residual.c. */
 TARGET static inline LaneVec velocity_there(const LanePair *pair, const Lanes arms[4]) {
     const Side *a = &pair->a, *b = &pair->b;
     return (LaneVec){
@@ -194,7 +194,7 @@ TARGET static inline LaneVec velocity_there(const LanePair *pair, const Lanes ar
 
 TARGET static inline Lanes dot(LaneVec a, LaneVec b) { return lanes_add(lanes_mul(a.x, b.x), lanes_mul(a.y, b.y)); }
 
-/* The operations of squared_of_visit() in stopping.c. Anything for a point that is not there. */
+/* The operations of squared_of_visit() in residual.c. Anything for a point that is not there. */
 TARGET static inline Lanes squared_of_visit(const LanePair *pair, const LanePoint *point) {
     const LaneVec v = velocity_there(pair, point->arms);
     const Lanes slip = dot(v, pair->surface.tangent), gap = lanes_sub(dot(v, pair->surface.normal), point->masses[2]);
@@ -207,7 +207,7 @@ TARGET static inline Lanes squared_of_visit(const LanePair *pair, const LanePoin
     return lanes_add(squared, lanes_add(lanes_sub(v.x, v.x), lanes_sub(v.y, v.y)));
 }
 
-/* The operations of overshoot_of_point() in stopping.c. Anything for a point that is not there. */
+/* The operations of overshoot_of_point() in residual.c. Anything for a point that is not there. */
 TARGET static inline Lanes overshoot_of_point(const LanePair *pair, const LanePoint *point) {
     const LaneVec v = velocity_there(pair, point->arms), n = pair->surface.normal, t = pair->surface.tangent;
     const LaneVec arm_a = {point->arms[0], point->arms[1]}, arm_b = {point->arms[2], point->arms[3]};

@@ -9,7 +9,7 @@
 #include "learning/scene_training.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
-#include "methods/solvers.h"
+#include "methods/hybrid.h"
 #include "methods/tabulation.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"

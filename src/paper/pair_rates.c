@@ -5,7 +5,7 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "methods/reference.h"
-#include "methods/solvers.h"
+#include "methods/pair_net.h"
 #include "methods/sweeps.h"
 #include "paper/paper_internal.h"
 #include "scenes/scenes.h"

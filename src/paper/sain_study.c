@@ -7,7 +7,7 @@
 #include "learning/sain_training.h"
 #include "learning/scene_training.h"
 #include "methods/relation_view.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"

@@ -6,7 +6,7 @@
 #include "learning/learning.h"
 #include "nets/nets.h"
 #include "nets/kinds.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 #include "methods/tabulation.h"
 
 #include <math.h>

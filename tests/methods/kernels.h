@@ -3,7 +3,7 @@
 #pragma once
 #include "testing.h"
 
-#include "methods/solvers.h"
+#include "methods/momentum.h"
 #include "methods/sweeps.h"
 
 #include <math.h>

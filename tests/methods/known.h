@@ -4,7 +4,7 @@
 #include "kernels.h"
 #include "slot_problems.h"
 
-#include "methods/solvers.h"
+#include "methods/scene_net.h"
 
 enum { RUNS = 40, AFTER = 6, REST = 20 };
 

@@ -4,7 +4,7 @@
 #include "testing.h"
 
 #include "engine/uniform.h"
-#include "methods/solvers.h"
+#include "methods/sain.h"
 
 #include <float.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The residual of methods/solvers.h, computed independently. */
+/* The residual of methods/residual.h, computed independently. */
 #pragma once
 #include "methods/kernels.h"
 

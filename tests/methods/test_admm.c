@@ -6,7 +6,6 @@
 #include "random_problem.h"
 
 #include "methods/admm_internal.h"
-#include "methods/solvers.h"
 
 #ifdef TWINBOX_AVX
 /* Some iterations of these kernels; the caller frees all. */

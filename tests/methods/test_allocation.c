@@ -5,7 +5,8 @@
 #include "methods/relation_networks.h"
 #include "slot_problems.h"
 
-#include "methods/solvers.h"
+#include "methods/sain.h"
+#include "methods/scene_net.h"
 
 static World *make_pyramid(void) {
     World *world = make_world();

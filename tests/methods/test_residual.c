@@ -4,7 +4,7 @@
 #include "kernels.h"
 #include "random_problem.h"
 
-#include "methods/solvers.h"
+#include "methods/residual.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 #include "random_problem.h"
 #include "methods/relation_networks.h"
 
-#include "methods/solvers.h"
+#include "methods/sain.h"
 
 enum { RUNS = 12 };
 

@@ -3,7 +3,9 @@
 #include "residuals.h"
 #include "known.h"
 
-#include "methods/solvers.h"
+#include "methods/momentum.h"
+#include "methods/residual.h"
+#include "methods/stopping.h"
 
 #include <math.h>
 

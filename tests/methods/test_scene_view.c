@@ -3,7 +3,7 @@
 #include "slot_problems.h"
 
 #include "engine/engine.h"
-#include "methods/solvers.h"
+#include "methods/scene_net.h"
 
 /* Bodies, and the share of their pairs that touch: none, few, many. */
 static const struct {

@@ -3,7 +3,9 @@
 #include "kernels.h"
 #include "random_problem.h"
 
-#include "methods/solvers.h"
+#include "methods/momentum.h"
+#include "methods/residual.h"
+#include "methods/stopping.h"
 
 static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_nncg, &solver_momentum};
 enum { KINDS = sizeof kinds / sizeof *kinds, IN_PLACE = 2 /* those whose blocks continue as if in one run */ };

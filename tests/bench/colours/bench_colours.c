@@ -5,7 +5,7 @@
    all steps; the orders take turns. */
 #include "report.h"
 
-#include "methods/solvers.h"
+#include "methods/momentum.h"
 #include "methods/reference.h"
 #include "base/base.h"
 #include "learning/scene_training.h"

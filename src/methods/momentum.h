@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sweeps with momentum. */
+#pragma once
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/stopping.h"
+#include "methods/sweeps.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A scalar reference implementation, and the fast one of the solvers, which visits
+   contacts in the order of colours (methods/sweeps.h). The solvers choose the factors. */
+
+/* Scalar reference implementation: `count` sweeps over the contacts visits[contact_count]; before each sweep s > 0 the
+   extrapolation by factors[s] >= 0. `before`: work space, a solution of the same size. sweeps_run_momentum gives the
+   same bits. */
+void momentum_solve_scalar(const ContactProblem *problem, const int32_t *visits, const float *factors, int count,
+                           ContactSolution *before, ContactSolution *solution);
+
+/* The hand-tuned factor before sweep s of `count`, counted from 0: s / (s + 1.4), at most 1 - 7 / (15 + count). The
+   limit is lower for few sweeps, as they have no time to correct the overshoot of a large factor. Tuned on launches of
+   the stack and the pyramids together. */
+float momentum_factor_tuned(int sweep, int count);
+
+/* The hand-tuned factors of `count` sweeps; the caller frees them. NULL when memory is short. */
+float *momentum_factors_make(int count);
+
+typedef struct MomentumIsland MomentumIsland;
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct Momentum {
+    Sweeps sweeps;
+    StoppingRule rule;   /* its k does not count */
+    float *more_factors; /* [rule.more] */
+    const ContactProblem *problem;
+    bool watched;            /* its islands have courses */
+    bool refreshes;          /* the run computes velocities anew after each block: long ones */
+    MomentumIsland *courses; /* [sweeps.groups] */
+    bool *chosen;            /* [sweeps.groups] */
+    float *of_pairs;         /* [sweeps.pair_count] what was last measured */
+    float *factors;          /* [sweeps of a block, sweeps.groups] */
+    ArrayBlock arrays;
+} Momentum;
+
+void momentum_free(Momentum *momentum);
+
+/* momentum->sweeps have begun with this problem, which must stay until the end. False when memory is short. */
+bool momentum_begin(Momentum *momentum, const ContactProblem *problem);
+
+/* `count` sweeps with factors[count]. Of 32 or more, each island's residual is not above the least of those that 16, 32, ... of
+   them left; where contacts slide so that visits overshoot, of 16 or more, that 8, 16, ... of them left. False when memory is
+   short. */
+bool momentum_run(Momentum *momentum, const float *factors, int count);
+
+/* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
+   on a whole stack, which need momentum with large factors: so this is one run of sweeps with momentum, not many short
+   ones. Where it ends by rule->more, no island's residual is above the least, before or on the way. False when memory is
+   short. */
+bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float *factors);
+
+/* Stores the solution; that of the warm start if it is NaN or infinite. False when memory is short. */
+bool momentum_end(Momentum *momentum, ContactSolution *solution);
+
+/* All of these, from the warm start, with the momentum's rule. */
+bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
+                    ContactSolution *solution, Error *error);
