@@ -3,15 +3,15 @@
 
    1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
       sliding) are those of a solution, a linear solve finds it (polish): nearly always at rest.
-   2. Else the central path is followed to the solution (reference_path.h), also where it turns back.
+   2. Else the central path is followed to the solution (reference_path_code.h), also where it turns back.
    3. If the path is lost, again from another distance and with another stiffness; then from other starts: what more
       sweeps make of the best answer so far, and of no impulses. A path that is lost from one start mostly ends from another.
    4. Then all of these again, with impulses measured by the heaviest body (weigh).
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
    on the start. Included once by each reference_*.c. */
-#include "methods/reference_newton.h"
-#include "methods/reference_path.h"
+#include "methods/reference_newton_code.h"
+#include "methods/reference_path_code.h"
 
 /* Contact states by the next visit of sequential impulses: open, sticking or sliding. For given states the contact
    problem is linear. Where contacts are redundant it has no or many solutions; a large stiffness keeps it regular, and

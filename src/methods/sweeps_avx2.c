@@ -26,7 +26,7 @@ TARGET static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) { return _mm
 TARGET static inline bool lanes_any_positive(Lanes a) { return _mm256_movemask_ps(a) != 0xff; }
 TARGET static inline void lanes_store(float *to, Lanes a) { _mm256_storeu_ps(to, a); }
 
-#include "methods/sweeps_lanes.h"
+#include "methods/sweeps_lanes_code.h"
 
 TARGET static inline Lanes load_two(const float *low, const float *high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);

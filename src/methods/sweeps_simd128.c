@@ -28,7 +28,7 @@ static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) {
 static inline bool lanes_any_positive(Lanes a) { return wasm_i32x4_bitmask(a) != 0xf; }
 static inline void lanes_store(float *to, Lanes a) { wasm_v128_store(to, a); }
 
-#include "methods/sweeps_lanes.h"
+#include "methods/sweeps_lanes_code.h"
 
 static inline void transpose(Lanes out[4], const Lanes in[4]) {
     const Lanes low01 = wasm_i32x4_shuffle(in[0], in[1], 0, 4, 1, 5);

@@ -12,7 +12,7 @@
    Programs" (2012). */
 #pragma once
 #include "methods/reference.h"
-#include "methods/reference_newton.h"
+#include "methods/reference_newton_code.h"
 #include "nets/nets.h"
 
 /* m/s: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would throw z, p, q about. */
