@@ -12,9 +12,9 @@
 #include "learning/sain_training.h"
 #include "learning/scene_training.h"
 #include "learning/subspace_training.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "methods/sain.h"
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 #include "nets/kernels.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"
@@ -25,7 +25,7 @@
 enum { LIST_SIZE = 4096, STEPS_SAVED = 100 };
 
 typedef struct SainOptions {
-    RelationTraining training;
+    SainTraining training;
     const char *more;
 } SainOptions;
 
@@ -34,17 +34,17 @@ static const Option sain_options[] = {
     {"--launches", 0, "N", "Launches of each scene and round", OPTION_INT(SainOptions, training.launches, 1, 10000),
      .standard = "40"},
     {"--rounds", 0, "N", "Rounds; the engine runs the launches of the first, sain those of the others",
-     OPTION_INT(SainOptions, training.rounds, 1, RELATION_ROUNDS_MAX), .standard = "2"},
+     OPTION_INT(SainOptions, training.rounds, 1, SAIN_ROUNDS_MAX), .standard = "2"},
     {"--steps", 0, "N", "Steps of the optimiser in each round", OPTION_INT(SainOptions, training.steps, 1, 1000000),
      .standard = "2000"},
     {"--seed", 0, "N", "Seed of the initial weights and of the samples of each step",
      OPTION_SEED(SainOptions, training.seed), .standard = "1"},
     {0}};
 
-static void sain_print_score(void *context, const RelationScore *score) {
+static void sain_print_score(void *context, const SainScore *score) {
     (void)context;
     progress_bar_clear();
-    printf("%-8s  %5d  %8zu  %11zu  %7zu  %7.4f  %8.4f  %7.4f  %8.4f\n", relation_form_names[score->form], score->round,
+    printf("%-8s  %5d  %8zu  %11zu  %7zu  %7.4f  %8.4f  %7.4f  %8.4f\n", sain_form_names[score->form], score->round,
            score->problems, score->unconverged, score->bodies, score->loss, score->held_out.with,
            score->held_out.without, score->held_out.constant);
     fflush(stdout);
@@ -67,34 +67,34 @@ static bool read_scenes(const char *first, const char *more, const char *option,
     return *count > 0 || error_input(error, option, "no scene is given");
 }
 
-static bool sain_train(const TrainRequest *request, RelationTraining *training, Error *error) {
-    RelationNetworks networks;
+static bool sain_train(const TrainRequest *request, SainTraining *training, Error *error) {
+    SainNetworks networks;
     training->command = request->command;
     training->state_path = request->state;
     printf("held-out impacts, velocity error in m/s\n"
            "engine    round  problems  unconverged   bodies     loss      sain   engine  constant\n");
-    bool ok = relation_training_run(training, &networks, progress_bar_begin("training"), error);
+    bool ok = sain_training_run(training, &networks, progress_bar_begin("training"), error);
     progress_bar_end();
     snprintf(networks.command, sizeof networks.command, "%s", request->command);
-    ok = ok && relation_networks_write(&networks, request->output, error) && file_remove(request->state, error);
+    ok = ok && sain_networks_write(&networks, request->output, error) && file_remove(request->state, error);
     if (ok)
-        printf("%d networks of %d weights -> %s\n", (int)RELATION_FORMS, relation_weight_count(&networks.forms[0]),
+        printf("%d networks of %d weights -> %s\n", (int)SAIN_FORMS, sain_weight_count(&networks.forms[0]),
                request->output);
-    relation_networks_destroy(&networks);
+    sain_networks_destroy(&networks);
     return ok;
 }
 
 static bool sain_run(const TrainRequest *request, Error *error) {
     SainOptions given = {
-        .training = {.batch = RELATION_PARTS * BLOCK_ROWS, .saved = STEPS_SAVED, .on_score = sain_print_score}};
-    Scene *scenes[RELATION_SCENES_MAX] = {NULL};
+        .training = {.batch = SAIN_PARTS * BLOCK_ROWS, .saved = STEPS_SAVED, .on_score = sain_print_score}};
+    Scene *scenes[SAIN_SCENES_MAX] = {NULL};
     if (!train_read(request, &given, error)) return false;
-    RelationTraining *training = &given.training;
+    SainTraining *training = &given.training;
     training->scenes = scenes;
     const bool ok =
-        read_scenes(request->input, given.more, "--with", scenes, RELATION_SCENES_MAX, &training->scene_count, error) &&
+        read_scenes(request->input, given.more, "--with", scenes, SAIN_SCENES_MAX, &training->scene_count, error) &&
         sain_train(request, training, error);
-    for (int i = 0; i < RELATION_SCENES_MAX; i++) scene_destroy(scenes[i]);
+    for (int i = 0; i < SAIN_SCENES_MAX; i++) scene_destroy(scenes[i]);
     return ok;
 }
 
@@ -108,18 +108,18 @@ const TrainKind train_sain = {
     .options = sain_options,
     .train = sain_run,
     .result = "network",
-    .command_size = RELATION_COMMAND_SIZE};
+    .command_size = SAIN_COMMAND_SIZE};
 
 enum { MEBIBYTE = 1 << 20, REPORTS = 20 };
 
 typedef struct HybridOptions {
-    TabulationTraining training;
+    HybridTraining training;
     double limit; /* MiB */
 } HybridOptions;
 
 static const Option hybrid_options[] = {
     {"--launches", 0, "N", "Launches, one after the other",
-     OPTION_INT(HybridOptions, training.launches, 1, TABULATION_LAUNCHES_MAX), .standard = "1000"},
+     OPTION_INT(HybridOptions, training.launches, 1, HYBRID_LAUNCHES_MAX), .standard = "1000"},
     {"--steps", 0, "N", "Steps of each launch, from the bomb's first touch",
      OPTION_INT(HybridOptions, training.steps, 1, 100000), .standard = "66"},
     {"--tolerance", 0, "E", "RMS error of the velocities that answers may have, m/s",
@@ -132,25 +132,25 @@ static const Option hybrid_options[] = {
 /* Sums over the launches since the last report. */
 typedef struct Report {
     int launches;
-    TabulationLaunch sum;
+    HybridLaunch sum;
 } Report;
 
-static void print_report(Report *report, int number, const Tabulation *memory) {
-    const TabulationLaunch *sum = &report->sum;
+static void print_report(Report *report, int number, const HybridMemory *memory) {
+    const HybridLaunch *sum = &report->sum;
     progress_bar_clear();
     printf("%8d  %6d  %7.1f%%  %6d  %6d", number, sum->asked, sum->asked > 0 ? 100.0 * sum->answered / sum->asked : 0,
            sum->grown, sum->added);
-    if (memory != NULL) printf("  %7d  %8.3f", memory->entry_count, (double)tabulation_bytes(memory) / MEBIBYTE);
+    if (memory != NULL) printf("  %7d  %8.3f", memory->entry_count, (double)hybrid_memory_bytes(memory) / MEBIBYTE);
     if (sum->checked > 0) printf("  %.4f", sum->error / sum->checked);
     printf("%s\n", sum->full > 0 ? "  full" : "");
     fflush(stdout);
     *report = (Report){.launches = report->launches};
 }
 
-static bool add_launch(void *context, const TabulationLaunch *launch, Error *error) {
+static bool add_launch(void *context, const HybridLaunch *launch, Error *error) {
     (void)error;
     Report *report = context;
-    TabulationLaunch *sum = &report->sum;
+    HybridLaunch *sum = &report->sum;
     sum->asked += launch->asked;
     sum->answered += launch->answered;
     sum->grown += launch->grown;
@@ -164,24 +164,24 @@ static bool add_launch(void *context, const TabulationLaunch *launch, Error *err
     return true;
 }
 
-static bool learn(const Scene *scene, const TabulationTraining *training, const char *output, Error *error) {
+static bool learn(const Scene *scene, const HybridTraining *training, const char *output, Error *error) {
     printf("launches   asked  answered   grown   added  entries       MiB  error of answers, m/s\n");
-    Tabulation *memory = tabulation_training_run(scene, training, progress_bar_begin("learning"), error);
+    HybridMemory *memory = hybrid_training_run(scene, training, progress_bar_begin("learning"), error);
     progress_bar_end();
-    bool ok = memory != NULL && tabulation_write(memory, output, error);
+    bool ok = memory != NULL && hybrid_memory_write(memory, output, error);
     if (ok && memory->launches == training->launches) ok = file_remove(training->state_path, error);
     if (ok)
         printf("%s%d entries of %d sets of contacts, from %d launch%s -> %s\n",
                interrupt_requested() ? "stopped early; " : "", memory->entry_count, memory->set_count, memory->launches,
                plural_es(memory->launches), output);
-    tabulation_destroy(memory);
+    hybrid_memory_destroy(memory);
     return ok;
 }
 
 static bool hybrid_run(const TrainRequest *request, Error *error) {
     Report report = {0};
     HybridOptions given = {.training = {.turned_from = -1,
-                                        .components = TABULATION_STANDARD_COMPONENTS,
+                                        .components = HYBRID_STANDARD_COMPONENTS,
                                         .on_launch = add_launch,
                                         .context = &report,
                                         .command = request->command,
@@ -203,7 +203,7 @@ const TrainKind train_hybrid = {
     .train = hybrid_run,
     .reads_scene = true,
     .result = "memory",
-    .command_size = TABULATION_TEXT_SIZE};
+    .command_size = HYBRID_TEXT_SIZE};
 
 typedef struct GnsOptions {
     GnsTraining training;
@@ -360,9 +360,9 @@ static const Option scene_net_options[] = {
     {"--iterations", 0, "N", "Epochs of the first round; the others have half as many",
      OPTION_INT(SceneNetOptions, training.epochs, 1, 100000), .standard = "40"},
     {"--width", 0, "N", "Width of both hidden layers, a multiple of 16",
-     OPTION_INT(SceneNetOptions, training.widths.hidden, ROW_LANES, SLOT_WIDTH_MAX), .standard = "64"},
+     OPTION_INT(SceneNetOptions, training.widths.hidden, ROW_LANES, SCENE_NET_WIDTH_MAX), .standard = "64"},
     {"--sweeps", 0, "K", "Sweeps that follow the network",
-     OPTION_INT(SceneNetOptions, training.sweeps, 1, SLOT_SWEEPS_MAX), .standard = "14"},
+     OPTION_INT(SceneNetOptions, training.sweeps, 1, SCENE_NET_SWEEPS_MAX), .standard = "14"},
     {"--momentum", 0, "on|off", "Whether the sweeps after the network have learned momentum factors",
      OPTION_READ(read_momentum, SceneNetOptions, training.momentum), .standard = "on"},
     {"--seed", 0, "N", "Seed of the initial weights and of the launches", OPTION_SEED(SceneNetOptions, training.seed),
@@ -388,7 +388,7 @@ static void scene_net_print_score(void *context, const SceneNetScore *score) {
 }
 
 /* The stored command trains the width that was found. */
-static bool scene_net_store(SlotNetwork *network, const TrainRequest *request, int width, Error *error) {
+static bool scene_net_store(SceneNet *network, const TrainRequest *request, int width, Error *error) {
     TrainRequest found = *request;
     char text[16];
     snprintf(text, sizeof text, "%d", width);
@@ -396,7 +396,7 @@ static bool scene_net_store(SlotNetwork *network, const TrainRequest *request, i
     train_set(&found, "--smallest", NULL);
     train_set(&found, "--within", NULL);
     train_describe(&found, network->command, sizeof network->command);
-    if (!slot_network_write(network, request->output, error)) return false;
+    if (!scene_net_write(network, request->output, error)) return false;
     printf("%s%d slots, %zu parameters -> %s\n", interrupt_requested() ? "stopped early; " : "", network->slot_count,
            network->parameter_count, request->output);
     return true;
@@ -419,29 +419,29 @@ static void print_verdict(const SceneNetVerdict *verdict) {
            compare(verdict->network, verdict->at_equal_time), compare(verdict->network, verdict->at_20));
 }
 
-static SlotNetwork *scene_net_train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
+static SceneNet *scene_net_train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
     *score = (SceneNetScore){0};
     training->context = score;
     printf("%d wide; mean velocity error, m/s\nround  samples     train  held out  momentum 20\n",
            training->widths.hidden);
-    SlotNetwork *network = scene_training_run(scene, training, progress_bar_begin("training"), error);
+    SceneNet *network = scene_training_run(scene, training, progress_bar_begin("training"), error);
     progress_bar_end();
     if (network != NULL) printf("impacts left out, as the reference does not converge: %d\n", score->unconverged);
     return network;
 }
 
 /* Tries one width after the other. NULL without an error: the sweeps alone are good enough. */
-static SlotNetwork *train_smallest(const Scene *scene, SceneTraining *training, double within, Error *error) {
+static SceneNet *train_smallest(const Scene *scene, SceneTraining *training, double within, Error *error) {
     static const int widths[] = {16, 32, 48, 64, 96, 128, 192, 256};
     SceneNetScore score = {0};
     for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
         training->widths.hidden = widths[i];
-        SlotNetwork *network = scene_net_train(scene, training, &score, error);
+        SceneNet *network = scene_net_train(scene, training, &score, error);
         if (network == NULL) return NULL;
         const bool none = score.momentum <= within;
         if (none) printf("no network is needed: momentum with 20 sweeps is within %g m/s\n", within);
         if (!none && (score.held_out <= within || interrupt_requested())) return network;
-        slot_network_destroy(network);
+        scene_net_destroy(network);
         if (none) return NULL;
     }
     error_input(error, "--within", "no network up to 256 wide comes within %g m/s; the last has %.4f", within,
@@ -453,12 +453,12 @@ static bool scene_net_train_and_store(const Scene *scene, const TrainRequest *re
                                       Error *error) {
     SceneTraining *training = &given->training;
     SceneNetScore score;
-    SlotNetwork *network = given->smallest ? train_smallest(scene, training, given->within, error)
-                                           : scene_net_train(scene, training, &score, error);
+    SceneNet *network = given->smallest ? train_smallest(scene, training, given->within, error)
+                                        : scene_net_train(scene, training, &score, error);
     bool ok =
         network != NULL ? scene_net_store(network, request, training->widths.hidden, error) : error->kind == ERROR_NONE;
     if (ok && network != NULL) print_verdict(&given->verdict);
-    slot_network_destroy(network);
+    scene_net_destroy(network);
     return ok;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The engine: plane vectors, boxes, manifolds, broad phase, bodies, the contact problem and the step of a world. It
-   knows no file, no method and no bomb. */
+   knows no file and no method; of the bomb, only which body it is. */
 #pragma once
 #include "base/base.h"
 
@@ -215,7 +215,7 @@ typedef struct ContactPoint {
 
 typedef struct ContactProblem {
     int body_count, contact_count;
-    int marked; /* body that the caller of world_mark() chose: a scene marks its bomb; or -1 */
+    int bomb;   /* index of the body; -1: none, or not known */
     float dt;   /* s */
     float fall; /* m/s, what gravity has added to each velocity: |g| dt; 0: nothing, or unknown */
     const ProblemBody *bodies;
@@ -396,8 +396,8 @@ void world_remove_last_body(World *world);
 /* From the next step on; zeros at first. */
 void world_set_contacts(World *world, ContactRules rules);
 
-/* Marks a body (-1: none) for those who read the contact problem: a scene marks its bomb. The step makes no difference. */
-void world_mark(World *world, int body);
+/* Says which body is the bomb (-1: none), for those who read the contact problem. The step treats it as any other. */
+void world_set_bomb(World *world, int body);
 
 /* Copies the state of `from` to `to`. False with error set when memory is short. */
 bool world_copy(World *to, const World *from, Error *error);

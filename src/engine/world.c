@@ -12,7 +12,7 @@
 struct World {
     WorldDef def;
     ContactRules rules;
-    int body_count, marked;
+    int body_count, bomb;
     int posed; /* bodies whose boxes and bounds are valid: for the pose in `moved`, after a failed step in `bodies` */
     size_t body_capacity;
     Body *bodies, *moved; /* before and after the step in progress */
@@ -36,7 +36,7 @@ World *world_create(const WorldDef *def, Error *error) {
         return NULL;
     }
     world->def = *def;
-    world->marked = world->problem.marked = -1;
+    world->bomb = world->problem.bomb = -1;
     return world;
 }
 
@@ -101,14 +101,14 @@ void world_remove_last_body(World *world) {
     contact_set_forget(&world->last, body);
     /* A body added in its place must not reuse its box. */
     if (world->posed > body) world->posed = body;
-    if (world->marked == body) world->marked = -1;
+    if (world->bomb == body) world->bomb = -1;
 }
 
 bool world_copy(World *to, const World *from, Error *error) {
     to->def = from->def;
     to->rules = from->rules;
-    to->marked = from->marked;
-    to->problem = (ContactProblem){.marked = -1};
+    to->bomb = from->bomb;
+    to->problem = (ContactProblem){.bomb = -1};
     to->posed = 0;
     to->body_count = from->body_count;
     if (!reserve_bodies(to, (size_t)from->body_count) || !contact_set_copy(&to->last, &from->last)) {
@@ -127,7 +127,7 @@ void world_set_contacts(World *world, ContactRules rules) {
     if (rules.mend != world->rules.mend) world->posed = 0;
     world->rules = rules;
 }
-void world_mark(World *world, int body) { world->marked = body; }
+void world_set_bomb(World *world, int body) { world->bomb = body; }
 int world_body_count(const World *world) { return world->body_count; }
 const Body *world_bodies(const World *world) { return world->bodies; }
 const ContactProblem *world_problem(const World *world) { return &world->problem; }
@@ -216,7 +216,7 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
     contact_set_prepare(&world->next, world->problem_bodies, world->friction, dt, world->def.position_correction);
     *problem = (ContactProblem){.body_count = world->body_count,
                                 .contact_count = world->next.contact_count,
-                                .marked = world->marked,
+                                .bomb = world->bomb,
                                 .dt = dt,
                                 .fall = sqrtf(vec2_dot(world->def.gravity, world->def.gravity)) * dt,
                                 .bodies = world->problem_bodies,

@@ -8,7 +8,7 @@
 #include "methods/methods.h"
 #include "methods/hybrid.h"
 #include "methods/sweeps.h"
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 #include "nets/kernels.h"
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
@@ -40,23 +40,23 @@ float velocity_error(const ContactProblem *problem, const BodyVelocity *a, const
 /* An entry in the making. */
 typedef struct NewEntry {
     int count; /* neighbours */
-    int32_t near[TABULATION_NEAR];
-    float from[TABULATION_NEAR][TABULATION_KEY_MAX]; /* x_j - x0 */
-    float distance[TABULATION_NEAR];                 /* its squared length */
-    float weights[TABULATION_NEAR * TABULATION_KEY_MAX];
-    double images[TABULATION_NEAR][TABULATION_NEAR]; /* products of the velocity changes that P_j - P0 make */
-    float metric[TABULATION_KEY_MAX * (TABULATION_KEY_MAX + 1) / 2];
+    int32_t near[HYBRID_NEAR];
+    float from[HYBRID_NEAR][HYBRID_KEY_MAX]; /* x_j - x0 */
+    float distance[HYBRID_NEAR];             /* its squared length */
+    float weights[HYBRID_NEAR * HYBRID_KEY_MAX];
+    double images[HYBRID_NEAR][HYBRID_NEAR]; /* products of the velocity changes that P_j - P0 make */
+    float metric[HYBRID_KEY_MAX * (HYBRID_KEY_MAX + 1) / 2];
 } NewEntry;
 
-static void insert_neighbour(NewEntry *fit, const Tabulation *memory, int entry, const float *key) {
+static void insert_neighbour(NewEntry *fit, const HybridMemory *memory, int entry, const float *key) {
     const float *other = memory->keys + (size_t)entry * (size_t)memory->key_size;
-    float from[TABULATION_KEY_MAX], distance = 0;
+    float from[HYBRID_KEY_MAX], distance = 0;
     for (int i = 0; i < memory->key_size; i++) {
         from[i] = other[i] - key[i];
         distance += from[i] * from[i];
     }
-    int at = fit->count < TABULATION_NEAR ? fit->count++ : TABULATION_NEAR;
-    if (at == TABULATION_NEAR && !(distance < fit->distance[--at])) return;
+    int at = fit->count < HYBRID_NEAR ? fit->count++ : HYBRID_NEAR;
+    if (at == HYBRID_NEAR && !(distance < fit->distance[--at])) return;
     for (; at > 0 && distance < fit->distance[at - 1]; at--) {
         fit->near[at] = fit->near[at - 1];
         fit->distance[at] = fit->distance[at - 1];
@@ -68,16 +68,16 @@ static void insert_neighbour(NewEntry *fit, const Tabulation *memory, int entry,
 }
 
 /* Within 2 step_max: between them both ellipsoids can reach. */
-static void find_neighbours(NewEntry *fit, const Tabulation *memory, const TabulationQuery *query) {
+static void find_neighbours(NewEntry *fit, const HybridMemory *memory, const HybridQuery *query) {
     fit->count = 0;
     int count;
-    const int32_t *entries = tabulation_about(memory, query, 2 * step_max, &count);
+    const int32_t *entries = hybrid_memory_about(memory, query, 2 * step_max, &count);
     for (int i = 0; i < count; i++) insert_neighbour(fit, memory, entries[i], query->key);
     while (fit->count > 0 && fit->distance[fit->count - 1] > 4 * step_max * step_max) fit->count--;
 }
 
 /* Inverts a symmetric positive definite matrix in place, by Gauss and Jordan. */
-static void invert(double matrix[TABULATION_NEAR][TABULATION_NEAR], int count) {
+static void invert(double matrix[HYBRID_NEAR][HYBRID_NEAR], int count) {
     for (int p = 0; p < count; p++) {
         const double pivot = 1 / matrix[p][p];
         matrix[p][p] = 1;
@@ -93,7 +93,7 @@ static void invert(double matrix[TABULATION_NEAR][TABULATION_NEAR], int count) {
 
 /* Rows of (D^T D + ridge)^-1 D^T, with the neighbours' x_j - x0 as columns of D. */
 static void fit_weights(NewEntry *fit, int key_size) {
-    double normal[TABULATION_NEAR][TABULATION_NEAR], trace = 0;
+    double normal[HYBRID_NEAR][HYBRID_NEAR], trace = 0;
     for (int n = 0; n < fit->count; n++)
         for (int m = 0; m < fit->count; m++) {
             normal[n][m] = 0;
@@ -102,7 +102,7 @@ static void fit_weights(NewEntry *fit, int key_size) {
         }
     for (int n = 0; n < fit->count; n++) normal[n][n] += ridge * trace / fit->count + 1e-12;
     invert(normal, fit->count);
-    for (int n = 0; n < TABULATION_NEAR; n++)
+    for (int n = 0; n < HYBRID_NEAR; n++)
         for (int i = 0; i < key_size; i++) {
             double sum = 0;
             for (int m = 0; n < fit->count && m < fit->count; m++) sum += normal[n][m] * (double)fit->from[m][i];
@@ -111,7 +111,7 @@ static void fit_weights(NewEntry *fit, int key_size) {
 }
 
 /* The velocity changes of P_j - P0; velocities[body_count] are 0 before. */
-static void push_difference(const Tabulation *memory, int entry, const SolvedStep *step, BodyVelocity *velocities) {
+static void push_difference(const HybridMemory *memory, int entry, const SolvedStep *step, BodyVelocity *velocities) {
     const ContactImpulse *other = memory->impulses + memory->entry_begin[entry];
     for (int i = 0; i < step->problem->contact_count; i++) {
         const ContactImpulse own = step->solution->impulses[i];
@@ -120,9 +120,9 @@ static void push_difference(const Tabulation *memory, int entry, const SolvedSte
     }
 }
 
-static bool find_images(NewEntry *fit, const Tabulation *memory, const SolvedStep *step) {
+static bool find_images(NewEntry *fit, const HybridMemory *memory, const SolvedStep *step) {
     const size_t bodies = (size_t)step->problem->body_count;
-    BodyVelocity *changes = calloc(TABULATION_NEAR * bodies, sizeof *changes);
+    BodyVelocity *changes = calloc(HYBRID_NEAR * bodies, sizeof *changes);
     if (changes == NULL) return false;
     int moving = 0;
     for (size_t i = 0; i < bodies; i++) moving += step->problem->bodies[i].inv_mass > 0;
@@ -143,7 +143,7 @@ static bool find_images(NewEntry *fit, const Tabulation *memory, const SolvedSte
 /* M = A^T A / tolerance^2 + 1 / tolerance^2, A here of velocities: inside the ellipsoid the linear term is at most the
    tolerance, as in Pope (1997), and in directions that A does not know bodies are taken to follow the state one to
    one. */
-static void make_metric(NewEntry *fit, const Tabulation *memory) {
+static void make_metric(NewEntry *fit, const HybridMemory *memory) {
     const int size = memory->key_size;
     const double unit = 1 / ((double)memory->tolerance * (double)memory->tolerance);
     float *metric = fit->metric;
@@ -157,57 +157,57 @@ static void make_metric(NewEntry *fit, const Tabulation *memory) {
         }
 }
 
-static bool add(Tabulation *memory, const SolvedStep *step, Error *error) {
+static bool add(HybridMemory *memory, const SolvedStep *step, Error *error) {
     NewEntry fit;
     find_neighbours(&fit, memory, &step->query);
-    for (int n = fit.count; n < TABULATION_NEAR; n++) fit.near[n] = -1;
+    for (int n = fit.count; n < HYBRID_NEAR; n++) fit.near[n] = -1;
     fit_weights(&fit, memory->key_size);
     if (!find_images(&fit, memory, step)) return error_memory(error, "hybrid");
     make_metric(&fit, memory);
-    const TabulationEntry entry = {step->solution->impulses, fit.near, fit.weights, fit.metric,
-                                   memory->tolerance * memory->tolerance};
-    return tabulation_add(memory, &step->query, &entry, error);
+    const HybridEntry entry = {step->solution->impulses, fit.near, fit.weights, fit.metric,
+                               memory->tolerance * memory->tolerance};
+    return hybrid_memory_add(memory, &step->query, &entry, error);
 }
 
-static float error_of(const Tabulation *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
+static float error_of(const HybridMemory *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
     hybrid_answer(memory, entry, step->query.key, step->problem, answer);
     return velocity_error(step->problem, answer->velocities, step->solution->velocities);
 }
 
-static bool is_near(const Tabulation *memory, int entry, const float *key) {
+static bool is_near(const HybridMemory *memory, int entry, const float *key) {
     const float *centre = memory->keys + (size_t)entry * (size_t)memory->key_size;
     float sum = 0;
     for (int i = 0; i < memory->key_size; i++) sum += (key[i] - centre[i]) * (key[i] - centre[i]);
     return sum <= step_max * step_max;
 }
 
-bool entry_learn(Tabulation *memory, const SolvedStep *step, size_t limit, ContactSolution *answer, Lesson *lesson,
+bool entry_learn(HybridMemory *memory, const SolvedStep *step, size_t limit, ContactSolution *answer, Lesson *lesson,
                  Error *error) {
-    const int entry = tabulation_nearest(memory, &step->query, step_max);
+    const int entry = hybrid_memory_nearest(memory, &step->query, step_max);
     *lesson = LESSON_KNOWN;
-    if (entry >= 0 && tabulation_distance(memory, entry, step->query.key) <= 1) return true;
+    if (entry >= 0 && hybrid_memory_distance(memory, entry, step->query.key) <= 1) return true;
     if (entry >= 0 && is_near(memory, entry, step->query.key) &&
         error_of(memory, entry, step, answer) <= memory->tolerance) {
-        tabulation_stretch(memory, entry, step->query.key);
+        hybrid_memory_stretch(memory, entry, step->query.key);
         *lesson = LESSON_GROWN;
         return true;
     }
     *lesson = LESSON_FULL;
-    if (memory->entry_count == TABULATION_ENTRIES_MAX || step->query.contacts > TABULATION_CONTACTS_MAX ||
-        tabulation_bytes(memory) + tabulation_entry_bytes(memory, step->query.contacts) > limit)
+    if (memory->entry_count == HYBRID_ENTRIES_MAX || step->query.contacts > HYBRID_CONTACTS_MAX ||
+        hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, step->query.contacts) > limit)
         return true;
     *lesson = LESSON_ADDED;
     return add(memory, step, error);
 }
 
-float entry_check(Tabulation *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
+float entry_check(HybridMemory *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
     const float wrong = error_of(memory, entry, step, answer);
-    if (!(wrong <= memory->tolerance)) tabulation_stretch(memory, entry, step->query.key);
+    if (!(wrong <= memory->tolerance)) hybrid_memory_stretch(memory, entry, step->query.key);
     return wrong;
 }
 
 /* principal_fit() gives each component the variance 1; in a key all have the same unit, m/s. */
-static void take_directions(Tabulation *memory, const Projection *projection) {
+static void take_directions(HybridMemory *memory, const Projection *projection) {
     for (int c = 0; c < memory->components; c++) {
         double squares = 0;
         for (int i = 0; i < memory->numbers; i++) {
@@ -221,7 +221,7 @@ static void take_directions(Tabulation *memory, const Projection *projection) {
     }
 }
 
-static void take_mean(Tabulation *memory, const float *others, int count) {
+static void take_mean(HybridMemory *memory, const float *others, int count) {
     for (int i = 0; i < memory->numbers; i++) {
         double sum = 0;
         for (int s = 0; s < count; s++) sum += (double)others[(size_t)s * (size_t)memory->numbers + (size_t)i];
@@ -229,7 +229,7 @@ static void take_mean(Tabulation *memory, const float *others, int count) {
     }
 }
 
-bool key_fit(Tabulation *memory, const float *others, int count, uint64_t seed, Error *error) {
+bool key_fit(HybridMemory *memory, const float *others, int count, uint64_t seed, Error *error) {
     const size_t width = (size_t)memory->numbers, numbers = (size_t)count * width;
     const int to = (memory->components + ROW_LANES - 1) / ROW_LANES * ROW_LANES;
     Projection projection = {.from = memory->numbers,
@@ -280,7 +280,7 @@ static bool see(void *context, const HybridStep *step, Error *error) {
     AskedSteps *steps = context;
     const double begin = clock_thread_seconds();
     const size_t bodies = (size_t)step->problem->body_count, contacts = (size_t)step->problem->contact_count;
-    const size_t numbers = TABULATION_NUMBERS * (bodies - 1);
+    const size_t numbers = HYBRID_NUMBERS * (bodies - 1);
     if (!array_reserve((void **)&steps->items, &steps->capacity, (size_t)steps->count + 1, sizeof *steps->items))
         return error_memory(error, "hybrid");
     AskedStep *copy = &steps->items[steps->count];
@@ -314,7 +314,7 @@ static bool count_step(void *context, const ContactProblem *problem, Phase phase
     return true;
 }
 
-bool launch_steps_run(const Scene *scene, const World *prefix, const Launch *launch, const Tabulation *memory,
+bool launch_steps_run(const Scene *scene, const World *prefix, const Launch *launch, const HybridMemory *memory,
                       int steps, AskedSteps *asked, Error *error) {
     ContactSolver solver = {0};
     const bool ok = hybrid_make(&solver, memory, &(HybridWatch){see, asked}, error) &&

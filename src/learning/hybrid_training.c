@@ -12,7 +12,7 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "methods/hybrid.h"
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 #include "nets/kinds.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
@@ -27,13 +27,13 @@ static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
 
 typedef struct Trainer {
     const Scene *scene;
-    const TabulationTraining *training;
+    const HybridTraining *training;
     World *prefix;
     Launch *launches; /* [training->launches] */
     AskedSteps asked; /* of the launch; at first of all launches so far */
     ContactSolver interior;
     PairMoment answer, converged; /* work space */
-    Tabulation *memory;           /* NULL until the directions are fitted */
+    HybridMemory *memory;         /* NULL until the directions are fitted */
 } Trainer;
 
 static float draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
@@ -42,7 +42,7 @@ static float draw(uint64_t *state, const SceneSpan *span, const SceneSpan *other
 }
 
 /* Depends on the seed and i only. */
-Launch tabulation_launch(const Scene *scene, uint64_t seed, int i, bool turns) {
+Launch hybrid_launch(const Scene *scene, uint64_t seed, int i, bool turns) {
     const SceneBomb *bomb = &scene->bomb;
     uint64_t state = seed;
     state = split_mix(&state) + (uint64_t)i;
@@ -54,10 +54,10 @@ Launch tabulation_launch(const Scene *scene, uint64_t seed, int i, bool turns) {
 }
 
 static void draw_launches(Trainer *trainer) {
-    const TabulationTraining *training = trainer->training;
+    const HybridTraining *training = trainer->training;
     for (int i = 0; i < training->launches; i++)
-        trainer->launches[i] = tabulation_launch(trainer->scene, training->seed, i,
-                                                 training->turned_from >= 0 && i >= training->turned_from);
+        trainer->launches[i] =
+            hybrid_launch(trainer->scene, training->seed, i, training->turned_from >= 0 && i >= training->turned_from);
 }
 
 static bool fit_keys(Trainer *trainer, Error *error) {
@@ -65,8 +65,8 @@ static bool fit_keys(Trainer *trainer, Error *error) {
     if (asked->count == 0)
         return error_input(error, trainer->scene->name, "no launch has an impact whose residual reaches the gate");
     const ContactProblem *first = &asked->items[0].problem;
-    Tabulation *memory = trainer->memory =
-        tabulation_create(first->body_count, first->marked, trainer->training->components, error);
+    HybridMemory *memory = trainer->memory =
+        hybrid_memory_create(first->body_count, first->bomb, trainer->training->components, error);
     if (memory == NULL) return false;
     memory->gate = hybrid_gate;
     memory->tolerance = trainer->training->tolerance;
@@ -82,7 +82,7 @@ static bool fit_keys(Trainer *trainer, Error *error) {
     return ok;
 }
 
-static bool check(Trainer *trainer, SolvedStep *step, int entry, TabulationLaunch *launch, Error *error) {
+static bool check(Trainer *trainer, SolvedStep *step, int entry, HybridLaunch *launch, Error *error) {
     if (!pair_moment_reserve(&trainer->converged, step->problem)) return error_memory(error, "hybrid");
     ContactSolution converged = pair_moment_solution(&trainer->converged),
                     answer = pair_moment_solution(&trainer->answer);
@@ -94,9 +94,9 @@ static bool check(Trainer *trainer, SolvedStep *step, int entry, TabulationLaunc
     return true;
 }
 
-static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, TabulationLaunch *launch, Error *error) {
-    float key[TABULATION_KEY_MAX];
-    tabulation_key(trainer->memory, asked->bomb, asked->others, key);
+static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, HybridLaunch *launch, Error *error) {
+    float key[HYBRID_KEY_MAX];
+    hybrid_memory_key(trainer->memory, asked->bomb, asked->others, key);
     SolvedStep step = {&asked->problem, &asked->solution, {asked->hash, asked->problem.contact_count, key}};
     if (!pair_moment_reserve(&trainer->answer, &asked->problem)) return error_memory(error, "hybrid");
     if (asked->entry >= 0) return !checks || check(trainer, &step, asked->entry, launch, error);
@@ -111,7 +111,7 @@ static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, Ta
 
 /* Runs a launch and learns from it. The launches before the directions are fitted are learned together. */
 static bool do_launch(Trainer *trainer, int i, Error *error) {
-    TabulationLaunch launch = {.number = i + 1};
+    HybridLaunch launch = {.number = i + 1};
     const int before = trainer->asked.count, last = trainer->training->launches - 1;
     const int64_t steps_before = trainer->asked.steps;
     const double seconds_before = trainer->asked.seconds;
@@ -124,9 +124,9 @@ static bool do_launch(Trainer *trainer, int i, Error *error) {
     for (int k = before; k < trainer->asked.count; k++) launch.answered += trainer->asked.items[k].entry >= 0;
     const double begin = clock_thread_seconds();
     const bool first = trainer->memory == NULL;
-    if (first && (i + 1 == TABULATION_FIRST || i == last) && !fit_keys(trainer, error)) return false;
+    if (first && (i + 1 == HYBRID_FIRST || i == last) && !fit_keys(trainer, error)) return false;
     if (trainer->memory != NULL) {
-        const bool checks = i % TABULATION_CHECK_EVERY == 0;
+        const bool checks = i % HYBRID_CHECK_EVERY == 0;
         for (int k = 0; k < trainer->asked.count; k++)
             if (!learn_step(trainer, &trainer->asked.items[k], checks, &launch, error)) return false;
         asked_steps_clear(&trainer->asked);
@@ -134,30 +134,30 @@ static bool do_launch(Trainer *trainer, int i, Error *error) {
     }
     launch.learning += clock_thread_seconds() - begin + copying;
     launch.memory = trainer->memory;
-    const TabulationTraining *training = trainer->training;
+    const HybridTraining *training = trainer->training;
     return training->on_launch == NULL || training->on_launch(training->context, &launch, error);
 }
 
 /* A state of the same command, or nothing. */
 static bool resume(Trainer *trainer, Error *error) {
-    const TabulationTraining *training = trainer->training;
+    const HybridTraining *training = trainer->training;
     bool there;
     if (training->state_path == NULL) return true;
     if (!file_find(training->state_path, &there, error)) return false;
     if (!there) return true;
-    trainer->memory = tabulation_read(training->state_path, error);
+    trainer->memory = hybrid_memory_read(training->state_path, error);
     if (trainer->memory == NULL) return false;
     if (strcmp(trainer->memory->command, training->command) == 0 && trainer->memory->launches <= training->launches)
         return true;
-    tabulation_destroy(trainer->memory);
+    hybrid_memory_destroy(trainer->memory);
     trainer->memory = NULL;
     return true;
 }
 
 static bool store(const Trainer *trainer, Error *error) {
-    const Tabulation *memory = trainer->memory;
+    const HybridMemory *memory = trainer->memory;
     if (trainer->training->state_path == NULL || memory == NULL || memory->entry_count == 0) return true;
-    return tabulation_write(memory, trainer->training->state_path, error);
+    return hybrid_memory_write(memory, trainer->training->state_path, error);
 }
 
 static bool train(Trainer *trainer, const Progress *progress, Error *error) {
@@ -174,8 +174,8 @@ static bool train(Trainer *trainer, const Progress *progress, Error *error) {
     return trainer->memory != NULL || error_interrupted(error, "hybrid", "stopped before anything was learned");
 }
 
-Tabulation *tabulation_training_run(const Scene *scene, const TabulationTraining *training, const Progress *progress,
-                                    Error *error) {
+HybridMemory *hybrid_training_run(const Scene *scene, const HybridTraining *training, const Progress *progress,
+                                  Error *error) {
     if (!scene->bomb.present) return error_input(error, scene->name, "has no bomb to launch"), NULL;
     Trainer trainer = {.scene = scene,
                        .training = training,
@@ -192,6 +192,6 @@ Tabulation *tabulation_training_run(const Scene *scene, const TabulationTraining
     pair_moment_free(&trainer.answer);
     pair_moment_free(&trainer.converged);
     if (ok) return trainer.memory;
-    tabulation_destroy(trainer.memory);
+    hybrid_memory_destroy(trainer.memory);
     return NULL;
 }

@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "learning/learning.h"
 #include "learning/sain_training.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "methods/sain.h"
 #include "nets/nets.h"
 
@@ -16,33 +16,33 @@
    by their size: a few crashes would outweigh all else. */
 static const double slow = 0.2, smooth_below = 1;
 
-int relation_weight_count(const RelationNetwork *network) {
+int sain_weight_count(const SainNetwork *network) {
     return network_parameter_count(network->relation) + network_parameter_count(network->object);
 }
 
-bool relation_loss_begin(RelationLoss *loss, const RelationNetwork *network, Error *error) {
+bool sain_loss_begin(SainLoss *loss, const SainNetwork *network, Error *error) {
     loss->network = network;
     loss->object = network_block_create(network->object, error);
     if (loss->object == NULL) return false;
-    loss->slopes = calloc((size_t)RELATION_OBJECT_INPUTS * BLOCK_ROWS, sizeof *loss->slopes);
+    loss->slopes = calloc((size_t)SAIN_OBJECT_INPUTS * BLOCK_ROWS, sizeof *loss->slopes);
     return loss->slopes != NULL || error_memory(error, "sain");
 }
 
-void relation_loss_free(RelationLoss *loss) {
+void sain_loss_free(SainLoss *loss) {
     for (int i = 0; i < loss->block_count; i++) network_block_destroy(loss->relation[i]);
     network_block_destroy(loss->object);
     free(loss->relation);
     free(loss->slopes);
-    *loss = (RelationLoss){0};
+    *loss = (SainLoss){0};
 }
 
-static int row_count(const RelationPart *part) {
+static int row_count(const SainPart *part) {
     int rows = 0;
     for (int i = 0; i < part->count; i++) rows += part->samples->items[part->items[i]].rows;
     return rows;
 }
 
-static bool reserve_blocks(RelationLoss *loss, int blocks) {
+static bool reserve_blocks(SainLoss *loss, int blocks) {
     Error error = {0};
     if (!array_reserve((void **)&loss->relation, &loss->block_capacity, (size_t)blocks, sizeof *loss->relation))
         return false;
@@ -69,39 +69,39 @@ static void normalise(double *values, int row, const float *numbers, int count, 
 }
 
 /* As at run time, for the form without an engine. Samples that are trained on are within the ranges anyway. */
-static bool moves_into_ranges(const RelationPart *part) { return part->samples->form == RELATION_ALONE; }
+static bool moves_into_ranges(const SainPart *part) { return part->samples->form == SAIN_ALONE; }
 
 /* The effects of row r of the part. */
-static double *effects_of(const RelationLoss *loss, int r) {
+static double *effects_of(const SainLoss *loss, int r) {
     const NetworkBlock *block = loss->relation[r / BLOCK_ROWS];
     return block->values[block->shape->layers] + r % BLOCK_ROWS;
 }
 
-static void fill_rows(RelationLoss *loss, const RelationPart *part) {
-    const RelationNetwork *network = loss->network;
+static void fill_rows(SainLoss *loss, const SainPart *part) {
+    const SainNetwork *network = loss->network;
     const bool moves = moves_into_ranges(part);
     const Inputs inputs = {&network->relation->input, moves ? network->pair_low : NULL, network->pair_high};
     int r = 0;
     for (int i = 0; i < part->count; i++) {
-        const RelationSample *sample = &part->samples->items[part->items[i]];
+        const SainSample *sample = &part->samples->items[part->items[i]];
         for (int k = 0; k < sample->rows; k++, r++)
             normalise(loss->relation[r / BLOCK_ROWS]->values[0], r % BLOCK_ROWS,
-                      part->samples->rows[sample->first + k].numbers, RELATION_PAIR_INPUTS, &inputs);
+                      part->samples->rows[sample->first + k].numbers, SAIN_PAIR_INPUTS, &inputs);
     }
 }
 
 /* Body inputs, then sums of effects. */
-static void fill_objects(RelationLoss *loss, const RelationPart *part) {
+static void fill_objects(SainLoss *loss, const SainPart *part) {
     const Normalisation *by = &loss->network->object->input;
     const bool moves = moves_into_ranges(part);
     const Inputs inputs = {by, moves ? loss->network->body_low : NULL, loss->network->body_high};
     double *values = loss->object->values[0];
     int r = 0;
     for (int i = 0; i < part->count; i++) {
-        const RelationSample *sample = &part->samples->items[part->items[i]];
-        normalise(values, i, sample->body, RELATION_BODY_INPUTS, &inputs);
-        for (int e = 0; e < RELATION_EFFECTS; e++) {
-            const int at = RELATION_BODY_INPUTS + e;
+        const SainSample *sample = &part->samples->items[part->items[i]];
+        normalise(values, i, sample->body, SAIN_BODY_INPUTS, &inputs);
+        for (int e = 0; e < SAIN_EFFECTS; e++) {
+            const int at = SAIN_BODY_INPUTS + e;
             double sum = 0;
             for (int k = 0; k < sample->rows; k++) sum += effects_of(loss, r + k)[e * BLOCK_ROWS];
             values[at * BLOCK_ROWS + i] = (sum - (double)by->offset[at]) * (double)by->scale[at];
@@ -110,8 +110,8 @@ static void fill_objects(RelationLoss *loss, const RelationPart *part) {
     }
 }
 
-/* Answers to a part: object->values of its last layer, [RELATION_OUTPUTS, BLOCK_ROWS]. False when memory is short. */
-static bool relation_loss_forward(RelationLoss *loss, const RelationPart *part, const double *weights) {
+/* Answers to a part: object->values of its last layer, [SAIN_OUTPUTS, BLOCK_ROWS]. False when memory is short. */
+static bool sain_loss_forward(SainLoss *loss, const SainPart *part, const double *weights) {
     const int blocks = (row_count(part) + BLOCK_ROWS - 1) / BLOCK_ROWS;
     if (!reserve_blocks(loss, blocks)) return false;
     fill_rows(loss, part);
@@ -132,15 +132,15 @@ static double smooth(double error, double *slope) {
 }
 
 /* Fills the slopes of the outputs; 0 in unused rows. */
-static double judge(RelationLoss *loss, const RelationPart *part) {
+static double judge(SainLoss *loss, const SainPart *part) {
     const int last = loss->object->shape->layers;
     double *deltas = loss->object->deltas[last - 1], sum = 0;
     const double *outputs = loss->object->values[last];
-    memset(deltas, 0, (size_t)RELATION_OUTPUTS * BLOCK_ROWS * sizeof *deltas);
+    memset(deltas, 0, (size_t)SAIN_OUTPUTS * BLOCK_ROWS * sizeof *deltas);
     for (int i = 0; i < part->count; i++) {
-        const RelationSample *sample = &part->samples->items[part->items[i]];
+        const SainSample *sample = &part->samples->items[part->items[i]];
         const double scale = (double)sample->scale;
-        for (int o = 0; o < RELATION_OUTPUTS; o++) {
+        for (int o = 0; o < SAIN_OUTPUTS; o++) {
             double slope;
             const double by = 1 / (scale + slow);
             sum += smooth(by * (scale * outputs[o * BLOCK_ROWS + i] - (double)sample->target[o]), &slope);
@@ -151,25 +151,23 @@ static double judge(RelationLoss *loss, const RelationPart *part) {
 }
 
 /* From the slopes of the sums to those of each row's effects. */
-static void spread(RelationLoss *loss, const RelationPart *part, int blocks) {
+static void spread(SainLoss *loss, const SainPart *part, int blocks) {
     const Normalisation *by = &loss->network->object->input;
     const int last = loss->network->relation->layers - 1;
     for (int b = 0; b < blocks; b++)
-        memset(loss->relation[b]->deltas[last], 0, (size_t)RELATION_EFFECTS * BLOCK_ROWS * sizeof(double));
+        memset(loss->relation[b]->deltas[last], 0, (size_t)SAIN_EFFECTS * BLOCK_ROWS * sizeof(double));
     int r = 0;
     for (int i = 0; i < part->count; i++)
         for (int k = 0; k < part->samples->items[part->items[i]].rows; k++, r++)
-            for (int e = 0; e < RELATION_EFFECTS; e++)
+            for (int e = 0; e < SAIN_EFFECTS; e++)
                 loss->relation[r / BLOCK_ROWS]->deltas[last][e * BLOCK_ROWS + r % BLOCK_ROWS] =
-                    loss->slopes[(RELATION_BODY_INPUTS + e) * BLOCK_ROWS + i] *
-                    (double)by->scale[RELATION_BODY_INPUTS + e];
+                    loss->slopes[(SAIN_BODY_INPUTS + e) * BLOCK_ROWS + i] * (double)by->scale[SAIN_BODY_INPUTS + e];
 }
 
-bool relation_loss_add(RelationLoss *loss, const RelationPart *part, const double *weights, double *sum,
-                       double *gradient) {
+bool sain_loss_add(SainLoss *loss, const SainPart *part, const double *weights, double *sum, double *gradient) {
     const int object = network_parameter_count(loss->network->relation),
               blocks = (row_count(part) + BLOCK_ROWS - 1) / BLOCK_ROWS;
-    if (!relation_loss_forward(loss, part, weights)) return false;
+    if (!sain_loss_forward(loss, part, weights)) return false;
     *sum += judge(loss, part);
     network_backward(loss->object, weights + object);
     network_add_gradient(loss->object, gradient + object);
@@ -218,12 +216,12 @@ static void standardise(const Moments *moments, float *offset, float *scale) {
     *scale = moments->high > moments->low && variance > 1e-12 ? (float)(1 / sqrt(variance)) : 1.0f;
 }
 
-void relation_normalise(RelationNetwork *network, const RelationSamples *samples) {
-    for (int i = 0; i < RELATION_PAIR_INPUTS; i++) {
+void sain_normalise(SainNetwork *network, const SainSamples *samples) {
+    for (int i = 0; i < SAIN_PAIR_INPUTS; i++) {
         const Moments moments = moments_of(&samples->rows[0].numbers[i], sizeof *samples->rows, samples->row_count);
         standardise(&moments, &network->relation->input.offset[i], &network->relation->input.scale[i]);
     }
-    for (int i = 0; i < RELATION_BODY_INPUTS; i++) {
+    for (int i = 0; i < SAIN_BODY_INPUTS; i++) {
         const Moments moments = moments_of(&samples->items[0].body[i], sizeof *samples->items, samples->count);
         standardise(&moments, &network->object->input.offset[i], &network->object->input.scale[i]);
     }
@@ -235,21 +233,21 @@ static void set_range(const Moments *moments, float *low, float *high) {
     *high = moments->high + margin;
 }
 
-void relation_set_ranges(RelationNetwork *network, const RelationSamples *samples) {
-    for (int i = 0; i < RELATION_PAIR_INPUTS; i++) {
+void sain_set_ranges(SainNetwork *network, const SainSamples *samples) {
+    for (int i = 0; i < SAIN_PAIR_INPUTS; i++) {
         const Moments moments = moments_of(&samples->rows[0].numbers[i], sizeof *samples->rows, samples->row_count);
         set_range(&moments, &network->pair_low[i], &network->pair_high[i]);
     }
-    for (int i = 0; i < RELATION_BODY_INPUTS; i++) {
+    for (int i = 0; i < SAIN_BODY_INPUTS; i++) {
         const Moments moments = moments_of(&samples->items[0].body[i], sizeof *samples->items, samples->count);
         set_range(&moments, &network->body_low[i], &network->body_high[i]);
     }
-    for (int o = 0; o < RELATION_OUTPUTS; o++) {
+    for (int o = 0; o < SAIN_OUTPUTS; o++) {
         float most = 0;
         for (size_t i = 0; i < samples->count; i++) {
-            const RelationSample *sample = &samples->items[i];
+            const SainSample *sample = &samples->items[i];
             const float size = fabsf(sample->target[o]);
-            if (size <= sample->scale * RELATION_ANSWER_MAX && size > most * sample->scale) most = size / sample->scale;
+            if (size <= sample->scale * SAIN_ANSWER_MAX && size > most * sample->scale) most = size / sample->scale;
         }
         network->limit[o] = limit_widen * most;
     }
@@ -263,63 +261,61 @@ static double *fill_layer(double *weight, const Network *network, int l, double 
     return weight;
 }
 
-void relation_first_weights(const RelationNetwork *network, uint64_t seed, double *weights) {
+void sain_first_weights(const SainNetwork *network, uint64_t seed, double *weights) {
     uint64_t state = seed;
     for (int l = 0; l < network->relation->layers; l++) weights = fill_layer(weights, network->relation, l, 1, &state);
     for (int l = 0; l < network->object->layers; l++)
         weights = fill_layer(weights, network->object, l, l + 1 < network->object->layers ? 1 : output_weight, &state);
 }
 
-void relation_set_weights(RelationNetwork *network, const double *weights) {
+void sain_set_weights(SainNetwork *network, const double *weights) {
     const int relation = network_parameter_count(network->relation), object = network_parameter_count(network->object);
     for (int i = 0; i < relation; i++) network->relation->weights[0][i] = (float)weights[i];
     for (int i = 0; i < object; i++) network->object->weights[0][i] = (float)weights[relation + i];
 }
 
-bool relation_fit_begin(RelationFit *fit, RelationNetwork *network, const RelationSamples *samples, int batch,
-                        Error *error) {
-    *fit = (RelationFit){.samples = samples, .network = network, .batch = batch};
-    fit->gradients = calloc((size_t)RELATION_PARTS * (size_t)relation_weight_count(network), sizeof *fit->gradients);
+bool sain_fit_begin(SainFit *fit, SainNetwork *network, const SainSamples *samples, int batch, Error *error) {
+    *fit = (SainFit){.samples = samples, .network = network, .batch = batch};
+    fit->gradients = calloc((size_t)SAIN_PARTS * (size_t)sain_weight_count(network), sizeof *fit->gradients);
     if (fit->gradients == NULL) return error_memory(error, "sain");
-    for (int p = 0; p < RELATION_PARTS; p++)
-        if (!relation_loss_begin(&fit->losses[p], network, error)) return false;
+    for (int p = 0; p < SAIN_PARTS; p++)
+        if (!sain_loss_begin(&fit->losses[p], network, error)) return false;
     return true;
 }
 
-void relation_fit_free(RelationFit *fit) {
-    for (int p = 0; p < RELATION_PARTS; p++) relation_loss_free(&fit->losses[p]);
+void sain_fit_free(SainFit *fit) {
+    for (int p = 0; p < SAIN_PARTS; p++) sain_loss_free(&fit->losses[p]);
     free(fit->gradients);
-    *fit = (RelationFit){0};
+    *fit = (SainFit){0};
 }
 
 /* Drawn with replacement: what a step draws depends on no other step. */
-static void draw(RelationFit *fit, uint64_t seed, int64_t number) {
+static void draw(SainFit *fit, uint64_t seed, int64_t number) {
     uint64_t state = seed + (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
     split_mix(&state);
     for (int i = 0; i < fit->batch; i++)
-        fit->items[i % RELATION_PARTS][i / RELATION_PARTS] = random_below(&state, (int)fit->samples->count);
+        fit->items[i % SAIN_PARTS][i / SAIN_PARTS] = random_below(&state, (int)fit->samples->count);
 }
 
-bool relation_fit_step(RelationFit *fit, Adam *adam, uint64_t seed, int64_t number, double rate, double *loss,
-                       Error *error) {
+bool sain_fit_step(SainFit *fit, Adam *adam, uint64_t seed, int64_t number, double rate, double *loss, Error *error) {
     const size_t weights = (size_t)adam->count;
-    double sums[RELATION_PARTS] = {0};
+    double sums[SAIN_PARTS] = {0};
     bool ok = true;
     draw(fit, seed, number);
-    memset(fit->gradients, 0, RELATION_PARTS * weights * sizeof *fit->gradients);
+    memset(fit->gradients, 0, SAIN_PARTS * weights * sizeof *fit->gradients);
 #pragma omp parallel for schedule(dynamic, 1) reduction(&& : ok)
-    for (int p = 0; p < RELATION_PARTS; p++) {
-        const RelationPart part = {fit->samples, fit->items[p], (fit->batch + RELATION_PARTS - 1 - p) / RELATION_PARTS};
+    for (int p = 0; p < SAIN_PARTS; p++) {
+        const SainPart part = {fit->samples, fit->items[p], (fit->batch + SAIN_PARTS - 1 - p) / SAIN_PARTS};
         const bool done =
-            relation_loss_add(&fit->losses[p], &part, adam->weights, &sums[p], fit->gradients + (size_t)p * weights);
+            sain_loss_add(&fit->losses[p], &part, adam->weights, &sums[p], fit->gradients + (size_t)p * weights);
         ok = ok && done;
     }
     if (!ok) return error_memory(error, "sain");
     *loss = 0;
-    for (int p = 0; p < RELATION_PARTS; p++) *loss += sums[p] / fit->batch;
+    for (int p = 0; p < SAIN_PARTS; p++) *loss += sums[p] / fit->batch;
     for (size_t i = 0; i < weights; i++) {
         double slope = 0;
-        for (size_t p = 0; p < RELATION_PARTS; p++) slope += fit->gradients[p * weights + i];
+        for (size_t p = 0; p < SAIN_PARTS; p++) slope += fit->gradients[p * weights + i];
         fit->gradients[i] = slope / fit->batch;
     }
     adam_step(adam, fit->gradients, rate);
@@ -327,8 +323,8 @@ bool relation_fit_step(RelationFit *fit, Adam *adam, uint64_t seed, int64_t numb
     return true;
 }
 
-static void mean_target(const RelationSamples *samples, double mean[RELATION_OUTPUTS]) {
-    for (int o = 0; o < RELATION_OUTPUTS; o++) {
+static void mean_target(const SainSamples *samples, double mean[SAIN_OUTPUTS]) {
+    for (int o = 0; o < SAIN_OUTPUTS; o++) {
         double sum = 0;
         for (size_t i = 0; i < samples->count; i++) sum += (double)samples->items[i].target[o];
         mean[o] = sum / (double)samples->count;
@@ -341,25 +337,23 @@ typedef struct Squares {
 } Squares;
 
 /* Whether the method would use the answer (methods/sain.c). */
-static bool is_used(const RelationNetwork *network, const RelationSamples *samples, const RelationSample *sample,
+static bool is_used(const SainNetwork *network, const SainSamples *samples, const SainSample *sample,
                     const double *outputs) {
     bool used = true;
-    for (int o = 0; o < RELATION_OUTPUTS; o++)
-        used = used && fabs(outputs[o * BLOCK_ROWS]) <= (double)network->limit[o];
-    if (samples->form == RELATION_ALONE) return used;
-    for (int i = 0; i < RELATION_BODY_INPUTS; i++)
+    for (int o = 0; o < SAIN_OUTPUTS; o++) used = used && fabs(outputs[o * BLOCK_ROWS]) <= (double)network->limit[o];
+    if (samples->form == SAIN_ALONE) return used;
+    for (int i = 0; i < SAIN_BODY_INPUTS; i++)
         used = used && sample->body[i] >= network->body_low[i] && sample->body[i] <= network->body_high[i];
     for (int r = sample->first; r < sample->first + sample->rows; r++)
-        for (int i = 0; i < RELATION_PAIR_INPUTS; i++) {
+        for (int i = 0; i < SAIN_PAIR_INPUTS; i++) {
             const float x = samples->rows[r].numbers[i];
             used = used && x >= network->pair_low[i] && x <= network->pair_high[i];
         }
     return used;
 }
 
-static void add_squares(const RelationSample *sample, const double *outputs, bool used, const double *mean,
-                        Squares *sum) {
-    for (int o = 0; o < RELATION_OUTPUTS; o++) {
+static void add_squares(const SainSample *sample, const double *outputs, bool used, const double *mean, Squares *sum) {
+    for (int o = 0; o < SAIN_OUTPUTS; o++) {
         const double target = (double)sample->target[o], constant = mean[o] - target,
                      with = (used ? (double)sample->scale * outputs[o * BLOCK_ROWS] : 0) - target;
         sum->with += with * with;
@@ -368,23 +362,23 @@ static void add_squares(const RelationSample *sample, const double *outputs, boo
     }
 }
 
-bool relation_fit_errors(RelationFit *fit, const double *weights, const RelationSamples *samples,
-                         RelationErrors *errors, Error *error) {
-    RelationLoss *loss = &fit->losses[0];
-    double mean[RELATION_OUTPUTS];
+bool sain_fit_errors(SainFit *fit, const double *weights, const SainSamples *samples, SainErrors *errors,
+                     Error *error) {
+    SainLoss *loss = &fit->losses[0];
+    double mean[SAIN_OUTPUTS];
     const double count = (double)samples->count;
     Squares sum = {0};
     mean_target(fit->samples, mean);
     for (size_t first = 0; first < samples->count;) {
-        RelationPart part = {samples, fit->items[0], 0};
+        SainPart part = {samples, fit->items[0], 0};
         for (; part.count < BLOCK_ROWS && first < samples->count; first++) fit->items[0][part.count++] = (int)first;
-        if (!relation_loss_forward(loss, &part, weights)) return error_memory(error, "sain");
+        if (!sain_loss_forward(loss, &part, weights)) return error_memory(error, "sain");
         for (int i = 0; i < part.count; i++) {
-            const RelationSample *sample = &samples->items[part.items[i]];
+            const SainSample *sample = &samples->items[part.items[i]];
             const double *outputs = loss->object->values[loss->object->shape->layers] + i;
             add_squares(sample, outputs, is_used(fit->network, samples, sample, outputs), mean, &sum);
         }
     }
-    *errors = (RelationErrors){sqrt(sum.with / count), sqrt(sum.without / count), sqrt(sum.constant / count)};
+    *errors = (SainErrors){sqrt(sum.with / count), sqrt(sum.without / count), sqrt(sum.constant / count)};
     return true;
 }

@@ -10,7 +10,7 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "methods/reference.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "methods/sain.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
@@ -18,56 +18,56 @@
 #include <stdlib.h>
 #include <string.h>
 
-void relation_samples_free(RelationSamples *samples) {
+void sain_samples_free(SainSamples *samples) {
     free(samples->items);
     free(samples->rows);
-    *samples = (RelationSamples){.form = samples->form};
+    *samples = (SainSamples){.form = samples->form};
 }
 
 /* The engine of sain, and what it fills. */
 typedef struct Engine {
     ContactSolver solver;
     PairMoment moment;
-    RelationView view;
+    SainView view;
 } Engine;
 
 static void end(Engine *engine) {
     solver_destroy(&engine->solver);
     pair_moment_free(&engine->moment);
-    relation_view_free(&engine->view);
+    sain_view_free(&engine->view);
 }
 
-static bool look(Engine *engine, const ContactProblem *problem, RelationForm form, Error *error) {
+static bool look(Engine *engine, const ContactProblem *problem, SainForm form, Error *error) {
     if (!pair_moment_reserve(&engine->moment, problem)) return error_memory(error, "sain");
     ContactSolution solution = pair_moment_solution(&engine->moment);
     return solver_engine.solve(engine->solver.state, problem, &solution, error) &&
-           (relation_view_make(&engine->view, problem, solution.velocities, form) || error_memory(error, "sain"));
+           (sain_view_make(&engine->view, problem, solution.velocities, form) || error_memory(error, "sain"));
 }
 
-static bool reserve(RelationSamples *samples, const RelationView *view) {
+static bool reserve(SainSamples *samples, const SainView *view) {
     return array_reserve((void **)&samples->items, &samples->item_capacity,
                          samples->count + (size_t)view->body_count + 1, sizeof *samples->items) &&
            array_reserve((void **)&samples->rows, &samples->row_capacity,
                          samples->row_count + (size_t)view->row_count + 1, sizeof *samples->rows);
 }
 
-static void add_body(RelationSamples *samples, const RelationView *view, int b, const ReferenceVelocity *converged) {
-    const RelationBody *body = &view->bodies[b];
-    RelationSample *sample = &samples->items[samples->count++];
-    double target[RELATION_OUTPUTS];
-    *sample = (RelationSample){.first = (int)samples->row_count, .rows = body->rows, .scale = body->scale};
-    relation_target(body, converged->x, converged->y, converged->spin, target);
-    for (int o = 0; o < RELATION_OUTPUTS; o++) sample->target[o] = (float)target[o];
-    for (int i = 0; i < RELATION_BODY_INPUTS; i++) sample->body[i] = view->body_inputs[i * view->body_count + b];
+static void add_body(SainSamples *samples, const SainView *view, int b, const ReferenceVelocity *converged) {
+    const SainBody *body = &view->bodies[b];
+    SainSample *sample = &samples->items[samples->count++];
+    double target[SAIN_OUTPUTS];
+    *sample = (SainSample){.first = (int)samples->row_count, .rows = body->rows, .scale = body->scale};
+    sain_target(body, converged->x, converged->y, converged->spin, target);
+    for (int o = 0; o < SAIN_OUTPUTS; o++) sample->target[o] = (float)target[o];
+    for (int i = 0; i < SAIN_BODY_INPUTS; i++) sample->body[i] = view->body_inputs[i * view->body_count + b];
     for (int r = body->first; r < body->first + body->rows; r++, samples->row_count++)
-        for (int i = 0; i < RELATION_PAIR_INPUTS; i++)
+        for (int i = 0; i < SAIN_PAIR_INPUTS; i++)
             samples->rows[samples->row_count].numbers[i] = view->pair_inputs[i * view->row_count + r];
 }
 
-bool relation_samples_add(RelationSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error) {
+bool sain_samples_add(SainSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error) {
     Engine engine = {0};
     samples->unconverged += problems->unconverged;
-    bool ok = solver_with(&engine.solver, &solver_engine, RELATION_ENGINE_SETTINGS, error);
+    bool ok = solver_with(&engine.solver, &solver_engine, SAIN_ENGINE_SETTINGS, error);
     for (size_t p = 0; ok && p < problems->count; p++) {
         const ImpactProblem *item = &problems->items[p];
         if (impacts_only && !item->impact) continue;
@@ -88,7 +88,7 @@ static const double converged = 1e-6; /* m/s */
 
 /* Launches of a scene. */
 typedef struct Runs {
-    const RelationLaunches *from;
+    const SainLaunches *from;
     const Scene *scene;
     Launch *launches;
     ImpactProblems *of; /* [launches] */
@@ -131,9 +131,9 @@ static bool run_world(Run *run, const Scene *scene, World *world, const ContactS
     return true;
 }
 
-static bool make_solver(const RelationDriver *driver, int i, ContactSolver *solver, Error *error) {
+static bool make_solver(const SainDriver *driver, int i, ContactSolver *solver, Error *error) {
     if (driver != NULL) return sain_make(solver, driver->network, driver->form, error);
-    return i % 2 == 0 ? solver_with(solver, &solver_engine, RELATION_ENGINE_SETTINGS, error)
+    return i % 2 == 0 ? solver_with(solver, &solver_engine, SAIN_ENGINE_SETTINGS, error)
                       : solver_with(solver, &solver_momentum, "k=50", error);
 }
 
@@ -155,7 +155,7 @@ static bool piece(void *context, int i, Error *error) {
 
 /* Launches rise along the family: a round takes one in `rounds`, so that each covers the family. */
 static bool choose_launches(const Runs *runs, Error *error) {
-    const RelationLaunches *from = runs->from;
+    const SainLaunches *from = runs->from;
     const int all = from->rounds * from->launches;
     if (!(from->held_out ? launches_for_scoring : launches_for_training)(runs->scene, all, runs->launches, error))
         return false;
@@ -164,7 +164,7 @@ static bool choose_launches(const Runs *runs, Error *error) {
 }
 
 /* Appends to the problems in the order of launches and frames, for any number of threads. */
-static bool record_scene(const RelationLaunches *from, const Scene *scene, ImpactProblems *problems,
+static bool record_scene(const SainLaunches *from, const Scene *scene, ImpactProblems *problems,
                          const Progress *progress, Error *error) {
     const size_t count = (size_t)from->launches;
     Runs runs = {from, scene, malloc((size_t)from->rounds * count * sizeof *runs.launches),
@@ -181,8 +181,8 @@ static bool record_scene(const RelationLaunches *from, const Scene *scene, Impac
     return ok;
 }
 
-bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *problems, const Progress *progress,
-                              Error *error) {
+bool sain_launches_record(const SainLaunches *launches, ImpactProblems *problems, const Progress *progress,
+                          Error *error) {
     for (int s = 0; s < launches->scene_count; s++)
         if (!record_scene(launches, launches->scenes[s], problems, progress, error)) return false;
     return true;
@@ -191,16 +191,16 @@ bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *
 static const double first_rate = 0.003;
 
 /* The weights of the state: of each form, those in training, then those that drove each round but the first. */
-enum { SETS = 1 + RELATION_ROUNDS_MAX };
+enum { SETS = 1 + SAIN_ROUNDS_MAX };
 
 typedef struct Trainer {
-    const RelationTraining *training;
-    RelationNetworks *networks;
+    const SainTraining *training;
+    SainNetworks *networks;
     int weights; /* of a form */
     Fit fit;
     ImpactProblems first, held_out; /* of the first round */
-    RelationSamples samples, held_out_samples;
-    RelationFit batches;
+    SainSamples samples, held_out_samples;
+    SainFit batches;
 } Trainer;
 
 static size_t set_at(const Trainer *trainer, int form, int set) {
@@ -213,42 +213,42 @@ static int stage_round(const Trainer *trainer) { return trainer->fit.stage % tra
 
 /* Ranges and normalisation follow from the samples; the driver's weights from the state. */
 static bool record_round(Trainer *trainer, int form, int round, Error *error) {
-    const RelationTraining *training = trainer->training;
-    RelationNetwork *network = &trainer->networks->forms[form];
+    const SainTraining *training = trainer->training;
+    SainNetwork *network = &trainer->networks->forms[form];
     ImpactProblems problems = {0};
     if (round == 0) {
-        trainer->samples.form = (RelationForm)form;
-        trainer->held_out_samples.form = (RelationForm)form;
-        if (!relation_samples_add(&trainer->held_out_samples, &trainer->held_out, true, error) ||
-            !relation_samples_add(&trainer->samples, &trainer->first, false, error))
+        trainer->samples.form = (SainForm)form;
+        trainer->held_out_samples.form = (SainForm)form;
+        if (!sain_samples_add(&trainer->held_out_samples, &trainer->held_out, true, error) ||
+            !sain_samples_add(&trainer->samples, &trainer->first, false, error))
             return false;
-        relation_normalise(network, &trainer->samples);
+        sain_normalise(network, &trainer->samples);
     } else {
-        relation_set_weights(network, trainer->fit.adam.weights + set_at(trainer, form, round));
-        const RelationDriver driver = {network, (RelationForm)form};
-        const RelationLaunches launches = {
+        sain_set_weights(network, trainer->fit.adam.weights + set_at(trainer, form, round));
+        const SainDriver driver = {network, (SainForm)form};
+        const SainLaunches launches = {
             training->scenes, training->scene_count, training->launches, training->rounds, round, false, &driver};
-        const bool ok = relation_launches_record(&launches, &problems, &trainer->fit.progress, error) &&
-                        relation_samples_add(&trainer->samples, &problems, false, error);
+        const bool ok = sain_launches_record(&launches, &problems, &trainer->fit.progress, error) &&
+                        sain_samples_add(&trainer->samples, &problems, false, error);
         impact_problems_free(&problems);
         if (!ok) return false;
     }
-    relation_set_ranges(network, &trainer->samples);
+    sain_set_ranges(network, &trainer->samples);
     return true;
 }
 
 static bool report(Trainer *trainer, double loss, Error *error) {
-    const RelationTraining *training = trainer->training;
+    const SainTraining *training = trainer->training;
     const int form = stage_form(trainer);
-    RelationScore score = {.form = (RelationForm)form,
-                           .round = stage_round(trainer),
-                           .problems = trainer->samples.problems,
-                           .bodies = trainer->samples.count,
-                           .unconverged = trainer->samples.unconverged + trainer->held_out_samples.unconverged,
-                           .loss = loss};
+    SainScore score = {.form = (SainForm)form,
+                       .round = stage_round(trainer),
+                       .problems = trainer->samples.problems,
+                       .bodies = trainer->samples.count,
+                       .unconverged = trainer->samples.unconverged + trainer->held_out_samples.unconverged,
+                       .loss = loss};
     if (training->on_score == NULL) return true;
-    if (!relation_fit_errors(&trainer->batches, trainer->fit.adam.weights + set_at(trainer, form, 0),
-                             &trainer->held_out_samples, &score.held_out, error))
+    if (!sain_fit_errors(&trainer->batches, trainer->fit.adam.weights + set_at(trainer, form, 0),
+                         &trainer->held_out_samples, &score.held_out, error))
         return false;
     training->on_score(training->context, &score);
     return true;
@@ -257,17 +257,17 @@ static bool report(Trainer *trainer, double loss, Error *error) {
 /* The rate falls from the first to 0 in equal steps; each round begins with half that of the round before. */
 static bool step(void *context, Adam *adam, double *loss, Error *error) {
     Trainer *trainer = context;
-    const RelationTraining *training = trainer->training;
+    const SainTraining *training = trainer->training;
     const uint64_t seed = training->seed + (uint64_t)(trainer->fit.stage + 1) * 1000003;
     const double rate = first_rate / (1 << stage_round(trainer)) * (1 - (double)adam->steps / training->steps);
     double batch_loss;
-    if (!relation_fit_step(&trainer->batches, adam, seed, adam->steps, rate, &batch_loss, error)) return false;
+    if (!sain_fit_step(&trainer->batches, adam, seed, adam->steps, rate, &batch_loss, error)) return false;
     *loss += batch_loss;
     return true;
 }
 
 static bool fit_round(Trainer *trainer, Error *error) {
-    const RelationTraining *training = trainer->training;
+    const SainTraining *training = trainer->training;
     const FitSteps steps = {training->steps, training->saved, step, NULL, trainer};
     const int64_t at = (int64_t)set_at(trainer, stage_form(trainer), 0);
     double loss;
@@ -277,13 +277,12 @@ static bool fit_round(Trainer *trainer, Error *error) {
 
 static bool run_stage(Trainer *trainer, Error *error) {
     const int form = stage_form(trainer);
-    RelationNetwork *network = &trainer->networks->forms[form];
+    SainNetwork *network = &trainer->networks->forms[form];
     if (trainer->samples.count == 0) return error_input(error, "sain", "no box is touched: more launches needed");
-    if (!relation_fit_begin(&trainer->batches, network, &trainer->samples, trainer->training->batch, error))
-        return false;
+    if (!sain_fit_begin(&trainer->batches, network, &trainer->samples, trainer->training->batch, error)) return false;
     const bool ok = fit_round(trainer, error);
-    relation_fit_free(&trainer->batches);
-    relation_set_weights(network, trainer->fit.adam.weights + set_at(trainer, form, 0));
+    sain_fit_free(&trainer->batches);
+    sain_set_weights(network, trainer->fit.adam.weights + set_at(trainer, form, 0));
     return ok;
 }
 
@@ -295,36 +294,36 @@ static bool begin_stage(Trainer *trainer, int stage, Error *error) {
     if (round > 0)
         memcpy(sets + set_at(trainer, form, round), weights, (size_t)trainer->weights * sizeof *weights);
     else
-        relation_first_weights(&trainer->networks->forms[form], trainer->training->seed, weights);
+        sain_first_weights(&trainer->networks->forms[form], trainer->training->seed, weights);
     return fit_write(&trainer->fit, error);
 }
 
 /* The samples of the rounds of a form up to this one, and the form's network as it was. */
 static bool gather(Trainer *trainer, int form, int last, Error *error) {
-    relation_samples_free(&trainer->samples);
-    relation_samples_free(&trainer->held_out_samples);
+    sain_samples_free(&trainer->samples);
+    sain_samples_free(&trainer->held_out_samples);
     for (int round = 0; round <= last; round++)
         if (!record_round(trainer, form, round, error)) return false;
     return true;
 }
 
 static bool record_first(Trainer *trainer, Error *error) {
-    const RelationTraining *training = trainer->training;
-    const RelationLaunches
+    const SainTraining *training = trainer->training;
+    const SainLaunches
         first = {training->scenes, training->scene_count, training->launches, training->rounds, 0, false, NULL},
         others = {training->scenes, training->scene_count, training->launches / 4 + 1, 1, 0, true, NULL};
-    return relation_launches_record(&first, &trainer->first, &trainer->fit.progress, error) &&
-           relation_launches_record(&others, &trainer->held_out, &trainer->fit.progress, error);
+    return sain_launches_record(&first, &trainer->first, &trainer->fit.progress, error) &&
+           sain_launches_record(&others, &trainer->held_out, &trainer->fit.progress, error);
 }
 
 static bool begin(Trainer *trainer, Error *error) {
     Fit *fit = &trainer->fit;
     bool found;
-    for (int f = 0; f < RELATION_FORMS; f++)
-        if (!relation_network_create(&trainer->networks->forms[f], error)) return false;
-    trainer->weights = relation_weight_count(&trainer->networks->forms[0]);
-    if (!fit_begin(fit, (int64_t)set_at(trainer, RELATION_FORMS, 0), &found, error)) return false;
-    const int stages = RELATION_FORMS * trainer->training->rounds;
+    for (int f = 0; f < SAIN_FORMS; f++)
+        if (!sain_network_create(&trainer->networks->forms[f], error)) return false;
+    trainer->weights = sain_weight_count(&trainer->networks->forms[0]);
+    if (!fit_begin(fit, (int64_t)set_at(trainer, SAIN_FORMS, 0), &found, error)) return false;
+    const int stages = SAIN_FORMS * trainer->training->rounds;
     if (fit->stage >= stages || fit->adam.steps > trainer->training->steps)
         return error_input(error, fit->path, "stage %d, step %lld is not one of this training", (int)fit->stage,
                            (long long)fit->adam.steps);
@@ -336,12 +335,12 @@ static bool begin(Trainer *trainer, Error *error) {
 /* A form whose training is over before this run: its network follows from samples and weights. */
 static bool restore_form(Trainer *trainer, int form, Error *error) {
     if (!gather(trainer, form, trainer->training->rounds - 1, error)) return false;
-    relation_set_weights(&trainer->networks->forms[form], trainer->fit.adam.weights + set_at(trainer, form, 0));
+    sain_set_weights(&trainer->networks->forms[form], trainer->fit.adam.weights + set_at(trainer, form, 0));
     return true;
 }
 
 static bool run(Trainer *trainer, Error *error) {
-    const int rounds = trainer->training->rounds, stages = RELATION_FORMS * rounds;
+    const int rounds = trainer->training->rounds, stages = SAIN_FORMS * rounds;
     if (!begin(trainer, error)) return false;
     for (int form = 0; form < stage_form(trainer); form++)
         if (!restore_form(trainer, form, error)) return false;
@@ -362,15 +361,14 @@ static bool run(Trainer *trainer, Error *error) {
     }
 }
 
-bool relation_training_run(const RelationTraining *training, RelationNetworks *networks, const Progress *progress,
-                           Error *error) {
+bool sain_training_run(const SainTraining *training, SainNetworks *networks, const Progress *progress, Error *error) {
     Trainer trainer = {.training = training, .networks = networks};
     fit_init(&trainer.fit, training->command, training->state_path, progress);
-    *networks = (RelationNetworks){0};
+    *networks = (SainNetworks){0};
     const bool ok = run(&trainer, error);
     fit_free(&trainer.fit);
-    relation_samples_free(&trainer.samples);
-    relation_samples_free(&trainer.held_out_samples);
+    sain_samples_free(&trainer.samples);
+    sain_samples_free(&trainer.held_out_samples);
     impact_problems_free(&trainer.first);
     impact_problems_free(&trainer.held_out);
     return ok;

@@ -6,7 +6,7 @@
 #include "learning/learning.h"
 #include "learning/scene_training.h"
 #include "methods/methods.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "methods/sain.h"
 #include "nets/nets.h"
 #include "scenes/scenes.h"
@@ -14,135 +14,131 @@
 /* Training data of a form of sain: what its network sees of each receiver in recorded problems, and the correction that
    would make its velocity converged. */
 
-typedef struct RelationSample {
+typedef struct SainSample {
     int first, rows; /* in rows */
-    float body[RELATION_BODY_INPUTS];
-    float target[RELATION_OUTPUTS]; /* m/s, in the receiver's frame; spin times the radius of gyration */
-    float scale;                    /* m/s: of the outputs */
-} RelationSample;
+    float body[SAIN_BODY_INPUTS];
+    float target[SAIN_OUTPUTS]; /* m/s, in the receiver's frame; spin times the radius of gyration */
+    float scale;                /* m/s: of the outputs */
+} SainSample;
 
-typedef struct RelationRowInputs {
-    float numbers[RELATION_PAIR_INPUTS];
-} RelationRowInputs;
+typedef struct SainRowInputs {
+    float numbers[SAIN_PAIR_INPUTS];
+} SainRowInputs;
 
 /* Zero-initialise. */
-typedef struct RelationSamples {
-    RelationForm form;
-    RelationSample *items;
-    RelationRowInputs *rows;
+typedef struct SainSamples {
+    SainForm form;
+    SainSample *items;
+    SainRowInputs *rows;
     size_t count, row_count, problems;
     size_t unconverged; /* problems left out, as the reference did not converge */
     size_t item_capacity, row_capacity;
-} RelationSamples;
+} SainSamples;
 
-void relation_samples_free(RelationSamples *samples);
+void sain_samples_free(SainSamples *samples);
 
 /* Appends the receivers of all problems, or of those in impact frames. False with error set when memory is short. */
-bool relation_samples_add(RelationSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error);
+bool sain_samples_add(SainSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error);
 
 /* Loss of a form of sain and its slopes, in double: forward and backward through the object network, the sums of
    effects and the relation network. */
 
 /* Weights of a form as one vector: those of the relation network, then of the object network. */
-int relation_weight_count(const RelationNetwork *network);
+int sain_weight_count(const SainNetwork *network);
 
 /* Work space of one thread; zero-initialise. */
-typedef struct RelationLoss {
-    const RelationNetwork *network; /* shapes and normalisation of inputs; its weights are not used */
-    NetworkBlock **relation;        /* [block_count] */
+typedef struct SainLoss {
+    const SainNetwork *network; /* shapes and normalisation of inputs; its weights are not used */
+    NetworkBlock **relation;    /* [block_count] */
     NetworkBlock *object;
-    double *slopes; /* [RELATION_OBJECT_INPUTS, BLOCK_ROWS] */
+    double *slopes; /* [SAIN_OBJECT_INPUTS, BLOCK_ROWS] */
     int block_count;
     size_t block_capacity;
-} RelationLoss;
+} SainLoss;
 
 /* The network must outlive it. */
-bool relation_loss_begin(RelationLoss *loss, const RelationNetwork *network, Error *error);
-void relation_loss_free(RelationLoss *loss);
+bool sain_loss_begin(SainLoss *loss, const SainNetwork *network, Error *error);
+void sain_loss_free(SainLoss *loss);
 
 /* A part of a batch: at most BLOCK_ROWS samples. */
-typedef struct RelationPart {
-    const RelationSamples *samples;
+typedef struct SainPart {
+    const SainSamples *samples;
     const int *items; /* [count] */
     int count;
-} RelationPart;
+} SainPart;
 
 /* The sum over the part of a smooth L1 loss of velocity errors, m/s. Adds its slopes to gradient[weights]. False when
    memory is short. */
-bool relation_loss_add(RelationLoss *loss, const RelationPart *part, const double *weights, double *sum,
-                       double *gradient);
+bool sain_loss_add(SainLoss *loss, const SainPart *part, const double *weights, double *sum, double *gradient);
 
 /* Fits the network of a form of sain to samples by Adam (learning/learning.h). */
 
-enum { RELATION_PARTS = 4 }; /* of a batch; each is summed by itself, so that threads do not change the sum */
+enum { SAIN_PARTS = 4 }; /* of a batch; each is summed by itself, so that threads do not change the sum */
 
 /* Root mean square errors of velocities over all receivers, m/s; spins times the radius of gyration. Answers that the
    method would not use (methods/sain.c) count as no correction. */
-typedef struct RelationErrors {
+typedef struct SainErrors {
     double with, without, constant; /* the network; no correction; the mean correction of the training data */
-} RelationErrors;
+} SainErrors;
 
 /* Work space; zero-initialise. */
-typedef struct RelationFit {
-    const RelationSamples *samples;
-    RelationNetwork *network;
-    RelationLoss losses[RELATION_PARTS];
-    double *gradients; /* [RELATION_PARTS, weights] */
-    int items[RELATION_PARTS][BLOCK_ROWS];
+typedef struct SainFit {
+    const SainSamples *samples;
+    SainNetwork *network;
+    SainLoss losses[SAIN_PARTS];
+    double *gradients; /* [SAIN_PARTS, weights] */
+    int items[SAIN_PARTS][BLOCK_ROWS];
     int batch; /* samples in a step */
-} RelationFit;
+} SainFit;
 
 /* Normalises the inputs to the samples' mean and standard deviation. */
-void relation_normalise(RelationNetwork *network, const RelationSamples *samples);
+void sain_normalise(SainNetwork *network, const SainSamples *samples);
 
 /* Sets ranges and limits to those of the samples, a little widened. */
-void relation_set_ranges(RelationNetwork *network, const RelationSamples *samples);
+void sain_set_ranges(SainNetwork *network, const SainSamples *samples);
 
 /* First weights: small random ones; an object network that answers almost 0. */
-void relation_first_weights(const RelationNetwork *network, uint64_t seed, double *weights);
+void sain_first_weights(const SainNetwork *network, uint64_t seed, double *weights);
 
 /* Rounds the weights into the network, as a file would. */
-void relation_set_weights(RelationNetwork *network, const double *weights);
+void sain_set_weights(SainNetwork *network, const double *weights);
 
-/* The samples and the network must outlive it, and there must be samples. batch: at most RELATION_PARTS *
+/* The samples and the network must outlive it, and there must be samples. batch: at most SAIN_PARTS *
    BLOCK_ROWS. */
-bool relation_fit_begin(RelationFit *fit, RelationNetwork *network, const RelationSamples *samples, int batch,
-                        Error *error);
-void relation_fit_free(RelationFit *fit);
+bool sain_fit_begin(SainFit *fit, SainNetwork *network, const SainSamples *samples, int batch, Error *error);
+void sain_fit_free(SainFit *fit);
 
 /* Step `number` of Adam, on samples drawn by seed and number. *loss: mean over the batch. The same bits for any number
    of threads. False when memory is short. */
-bool relation_fit_step(RelationFit *fit, Adam *adam, uint64_t seed, int64_t number, double rate, double *loss,
-                       Error *error);
+bool sain_fit_step(SainFit *fit, Adam *adam, uint64_t seed, int64_t number, double rate, double *loss, Error *error);
 
 /* The errors on other samples, of which there must be some; the constant predictor takes the mean of those trained
    on. */
-bool relation_fit_errors(RelationFit *fit, const double *weights, const RelationSamples *samples,
-                         RelationErrors *errors, Error *error);
+bool sain_fit_errors(SainFit *fit, const double *weights, const SainSamples *samples, SainErrors *errors, Error *error);
 
 /* The launches that a round of training records, of several scenes: contact problems with their converged velocities, all
    impact frames, and some of those after and of those at rest. */
 
 /* sain with a network in memory. */
-typedef struct RelationDriver {
-    const RelationNetwork *network;
-    RelationForm form;
-} RelationDriver;
+typedef struct SainDriver {
+    const SainNetwork *network;
+    SainForm form;
+} SainDriver;
 
-typedef struct RelationLaunches {
+typedef struct SainLaunches {
     Scene *const *scenes;
     int scene_count;
-    int launches;                 /* of each scene */
-    int rounds, round;            /* rounds have different launches, each over the whole family */
-    bool held_out;                /* other launches than those of any round */
-    const RelationDriver *driver; /* NULL: the engine and, every second launch, sweeps with momentum */
-} RelationLaunches;
+    int launches;             /* of each scene */
+    int rounds, round;        /* rounds have different launches, each over the whole family */
+    bool held_out;            /* other launches than those of any round */
+    const SainDriver *driver; /* NULL: the engine and, every second launch, sweeps with momentum */
+} SainLaunches;
 
 /* Appends to the problems. Omits those whose reference does not converge (to 1e-6 m/s), and counts them. A launch ends
    60 frames after its impact, or where the driver's network makes its state NaN or infinite. ERROR_INPUT: a scene's bomb
    has no family of launches, a launch starts inside a body, or a step without a driver fails. */
-bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *problems, const Progress *progress,
-                              Error *error);
+bool sain_launches_record(const SainLaunches *launches, ImpactProblems *problems, const Progress *progress,
+                          Error *error);
 
 /* Trains the networks of sain on launches of scenes. The target is the converged solution of a step minus the engine's,
    or minus the velocities before the step for the form without engine. The first round records launches run by the
@@ -151,36 +147,35 @@ bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *
    Simulators and Object-Based Networks for Control" (2019); Ross, Gordon, Bagnell, "A Reduction of Imitation Learning
    and Structured Prediction to No-Regret Online Learning" (2011). */
 
-enum { RELATION_ROUNDS_MAX = 4, RELATION_SCENES_MAX = 8 };
+enum { SAIN_ROUNDS_MAX = 4, SAIN_SCENES_MAX = 8 };
 
-typedef struct RelationScore {
-    RelationForm form;
+typedef struct SainScore {
+    SainForm form;
     int round;
     size_t problems, bodies; /* trained on */
     size_t unconverged;      /* problems left out of the training and of the score, as the reference did not converge */
     double loss;             /* mean over the last steps */
-    RelationErrors held_out; /* impacts of other launches, all scenes */
-} RelationScore;
+    SainErrors held_out;     /* impacts of other launches, all scenes */
+} SainScore;
 
-typedef struct RelationTraining {
+typedef struct SainTraining {
     Scene *const *scenes; /* [scene_count] each with a family of launches */
     int scene_count;
     int launches; /* of each scene and round */
-    int rounds;   /* at most RELATION_ROUNDS_MAX */
+    int rounds;   /* at most SAIN_ROUNDS_MAX */
     int steps;    /* of Adam, in each round */
-    int batch;    /* samples of a step, at most RELATION_PARTS * BLOCK_ROWS */
+    int batch;    /* samples of a step, at most SAIN_PARTS * BLOCK_ROWS */
     int saved;    /* the state is stored after every so many steps, and after each round */
     uint64_t seed;
     const char *command;    /* names the training: only the same command resumes it */
     const char *state_path; /* where the state is stored, and read from if it exists. The caller removes it once it has
                                stored the networks */
     /* Called after each round; may be NULL. */
-    void (*on_score)(void *context, const RelationScore *score);
+    void (*on_score)(void *context, const SainScore *score);
     void *context;
-} RelationTraining;
+} SainTraining;
 
 /* Fills networks, which are destroyed by the caller in any case. False with error set if a scene has no family, the
    state cannot be written or read, memory is short, or nothing was recorded. ERROR_INTERRUPTED if progress requests a
    stop: the state stays. Same bits for any number of threads, and however often it was interrupted. */
-bool relation_training_run(const RelationTraining *training, RelationNetworks *networks, const Progress *progress,
-                           Error *error);
+bool sain_training_run(const SainTraining *training, SainNetworks *networks, const Progress *progress, Error *error);

@@ -96,7 +96,7 @@ void solver_destroy(ContactSolver *solver) {
 
 typedef struct Driver {
     SceneSet set;
-    const SlotNetwork *network; /* or NULL: that of the set */
+    const SceneNet *network; /* or NULL: that of the set */
 } Driver;
 
 static bool make_driver(void *context, ContactSolver *solver, Error *error) {
@@ -107,27 +107,27 @@ static bool make_driver(void *context, ContactSolver *solver, Error *error) {
 }
 
 /* Runs launches first to end - 1 and labels their samples. */
-static bool run(const SceneRecording *recording, Driver driver, int first, int end, SlotSamples *samples,
+static bool run(const SceneRecording *recording, Driver driver, int first, int end, SceneNetSamples *samples,
                 const Progress *progress, Error *error) {
-    const SlotRollout rollout = {.scene = recording->scene,
-                                 .launches = recording->launches + first,
-                                 .launch_count = end - first,
-                                 .first_launch = first + recording->round * recording->training->launches,
-                                 .steps = recording->scene->bomb.impact_frames + STEPS_AFTER,
-                                 .gate = SCENE_RECORDING_GATE,
-                                 .make_solver = make_driver,
-                                 .context = &driver};
+    const SceneNetRollout rollout = {.scene = recording->scene,
+                                     .launches = recording->launches + first,
+                                     .launch_count = end - first,
+                                     .first_launch = first + recording->round * recording->training->launches,
+                                     .steps = recording->scene->bomb.impact_frames + STEPS_AFTER,
+                                     .gate = SCENE_RECORDING_GATE,
+                                     .make_solver = make_driver,
+                                     .context = &driver};
     const int had = samples->count;
-    return slot_rollout(&rollout, samples, NULL, error) && slot_samples_label(samples, had, progress, error);
+    return scene_net_rollout(&rollout, samples, NULL, error) && scene_net_samples_label(samples, had, progress, error);
 }
 
-bool scene_recording_take(const SceneRecording *recording, SceneSet set, SlotSamples *samples, const Progress *progress,
-                          Error *error) {
+bool scene_recording_take(const SceneRecording *recording, SceneSet set, SceneNetSamples *samples,
+                          const Progress *progress, Error *error) {
     return run(recording, (Driver){set, NULL}, recording->first[set], recording->first[set + 1], samples, progress,
                error);
 }
 
-bool scene_recording_next(SceneRecording *recording, const SlotNetwork *network, SlotSamples *samples,
+bool scene_recording_next(SceneRecording *recording, const SceneNet *network, SceneNetSamples *samples,
                           const Progress *progress, Error *error) {
     const int first = recording->first[SCENE_BY_MOMENTUM];
     recording->round++;

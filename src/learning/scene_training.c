@@ -24,11 +24,11 @@ enum { FEW_SWEEPS = 10, MANY_SWEEPS = 60, MOST_SWEEPS = 200, PASSES = 7 };
 static const float never = 1e9f; /* m/s */
 
 /* Solves all samples. s: the time of the solver alone, if shorter than before. m/s: the mean error. */
-static bool solve_all(ContactSolver *solver, const SlotSamples *samples, PairMoment *space, double *seconds,
+static bool solve_all(ContactSolver *solver, const SceneNetSamples *samples, PairMoment *space, double *seconds,
                       double *mean, Error *error) {
     double sum = 0, passed = 0;
     for (int i = 0; i < samples->count; i++) {
-        const SlotSample *sample = &samples->items[i];
+        const SceneNetSample *sample = &samples->items[i];
         if (!pair_moment_reserve(space, &sample->problem)) return error_memory(error, "scene-net");
         ContactSolution solution = pair_moment_solution(space);
         const double begin = clock_seconds();
@@ -47,7 +47,7 @@ static bool make_momentum(ContactSolver *solver, int sweeps, Error *error) {
     return solver_with(solver, &solver_momentum, text, error);
 }
 
-static bool momentum_error(const SlotSamples *samples, int sweeps, PairMoment *space, double *mean, Error *error) {
+static bool momentum_error(const SceneNetSamples *samples, int sweeps, PairMoment *space, double *mean, Error *error) {
     ContactSolver solver = {0};
     double unused = INFINITY;
     const bool ok = make_momentum(&solver, sweeps, error) && solve_all(&solver, samples, space, &unused, mean, error);
@@ -62,8 +62,8 @@ static int sweeps_of(double seconds, double few, double many) {
     return (int)fmin(fmax(sweeps, 1), MOST_SWEEPS);
 }
 
-static bool measure(ContactSolver rivals[3], const SlotSamples *samples, PairMoment *space, SceneNetVerdict *verdict,
-                    Error *error) {
+static bool measure(ContactSolver rivals[3], const SceneNetSamples *samples, PairMoment *space,
+                    SceneNetVerdict *verdict, Error *error) {
     double seconds[3] = {INFINITY, INFINITY, INFINITY}, mean[3];
     for (int pass = 0; pass < PASSES; pass++)
         for (int i = 0; i < 3; i++)
@@ -78,7 +78,7 @@ static bool measure(ContactSolver rivals[3], const SlotSamples *samples, PairMom
 
 /* Solves the samples by the method scene-net and by momentum, in turns, and keeps the shortest time of each. The errors
    are the same on every machine; `sweeps` depends on it. */
-static bool scene_net_verdict(const SlotNetwork *network, const SlotSamples *held_out, SceneNetVerdict *verdict,
+static bool scene_net_verdict(const SceneNet *network, const SceneNetSamples *held_out, SceneNetVerdict *verdict,
                               Error *error) {
     ContactSolver rivals[3] = {{0}};
     PairMoment space = {0};
@@ -92,7 +92,7 @@ static bool scene_net_verdict(const SlotNetwork *network, const SlotSamples *hel
 }
 
 /* Mean error of the network and its sweeps. */
-static bool network_error(const SlotNetwork *network, const SlotSamples *samples, double *result, Error *error) {
+static bool network_error(const SceneNet *network, const SceneNetSamples *samples, double *result, Error *error) {
     double *errors = malloc(((size_t)samples->count + 1) * sizeof *errors), sum = 0;
     bool ok = errors != NULL || error_memory(error, "scene-net");
     ok = ok && slot_errors(network, samples, 0, errors, error);
@@ -102,8 +102,8 @@ static bool network_error(const SlotNetwork *network, const SlotSamples *samples
     return ok;
 }
 
-/* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs (slot_samples_compute_inputs). */
-static bool scene_net_score(const SlotNetwork *network, const SlotSamples *samples, const SlotSamples *held_out,
+/* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs (scene_net_samples_compute_inputs). */
+static bool scene_net_score(const SceneNet *network, const SceneNetSamples *samples, const SceneNetSamples *held_out,
                             SceneNetScore *score, Error *error) {
     PairMoment space = {0};
     score->samples = samples->count;
@@ -120,21 +120,21 @@ typedef struct Trainer {
     const Scene *scene;
     const SceneTraining *training;
     SceneRecording recording;
-    SlotSamples samples, held_out;
-    SlotNetwork *network;
+    SceneNetSamples samples, held_out;
+    SceneNet *network;
     ProgressStage stage;
     Progress progress; /* of the stage */
 } Trainer;
 
-static bool take(Trainer *trainer, SceneSet set, SlotSamples *samples, double share, Error *error) {
+static bool take(Trainer *trainer, SceneSet set, SceneNetSamples *samples, double share, Error *error) {
     progress_next_stage(&trainer->stage, share);
     return scene_recording_take(&trainer->recording, set, samples, &trainer->progress, error);
 }
 
 /* The range of each input over the samples, with a margin. */
-static void find_bounds(SlotNetwork *network, const SlotSamples *samples) {
+static void find_bounds(SceneNet *network, const SceneNetSamples *samples) {
     const float margin = 0.1f;
-    for (int k = 0; k < slot_network_inputs(network); k++) {
+    for (int k = 0; k < scene_net_inputs(network); k++) {
         float low = samples->items[0].inputs[k], high = low;
         for (int i = 1; i < samples->count; i++) {
             low = fminf(low, samples->items[i].inputs[k]);
@@ -150,9 +150,9 @@ static bool first_round(Trainer *trainer, Error *error) {
     if (!take(trainer, SCENE_BY_MOMENTUM, &trainer->samples, 0.1, error) ||
         !take(trainer, SCENE_BY_REFERENCE, &trainer->samples, 0.1, error))
         return false;
-    trainer->network = slot_network_from_samples(&trainer->samples, &training->widths, training->seed, error);
+    trainer->network = scene_net_from_samples(&trainer->samples, &training->widths, training->seed, error);
     if (trainer->network == NULL) return false;
-    SlotNetwork *network = trainer->network;
+    SceneNet *network = trainer->network;
     snprintf(network->scene, sizeof network->scene, "%s", trainer->scene->name);
     network->gate = SCENE_RECORDING_GATE;
     network->bomb_inv_mass = trainer->samples.items[0].problem.bodies[network->bomb].inv_mass;
@@ -166,7 +166,7 @@ static bool next_round(Trainer *trainer, double share, Error *error) {
     const int had = trainer->samples.count;
     progress_next_stage(&trainer->stage, share);
     return scene_recording_next(&trainer->recording, trainer->network, &trainer->samples, &trainer->progress, error) &&
-           slot_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
+           scene_net_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
 }
 
 static bool score(const Trainer *trainer, int round, Error *error) {
@@ -180,14 +180,14 @@ static bool score(const Trainer *trainer, int round, Error *error) {
 static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
     const SceneTraining *training = trainer->training;
     const int epochs = round == 0 ? training->epochs : (training->epochs + 1) / 2;
-    const SlotFit fit = {.impulse_weight = impulse_weight,
-                         .impulse_epochs = round == 0 ? epochs / 12 : 0,
-                         .epochs = epochs,
-                         .rate = round == 0 ? first_rate : first_rate / 2,
-                         .learn_factors = training->momentum,
-                         .seed = training->seed + (uint64_t)round};
+    const SceneNetFit fit = {.impulse_weight = impulse_weight,
+                             .impulse_epochs = round == 0 ? epochs / 12 : 0,
+                             .epochs = epochs,
+                             .rate = round == 0 ? first_rate : first_rate / 2,
+                             .learn_factors = training->momentum,
+                             .seed = training->seed + (uint64_t)round};
     progress_next_stage(&trainer->stage, share);
-    if (!slot_fit(trainer->network, &trainer->samples, &fit, &trainer->progress, error)) return false;
+    if (!scene_net_fit(trainer->network, &trainer->samples, &fit, &trainer->progress, error)) return false;
     find_bounds(trainer->network, &trainer->samples);
     return score(trainer, round, error);
 }
@@ -197,7 +197,7 @@ static bool train(Trainer *trainer, Error *error) {
     const double share = 0.78 / rounds;
     if (!scene_recording_begin(&trainer->recording, trainer->scene, trainer->training, error) ||
         !take(trainer, SCENE_HELD_OUT, &trainer->held_out, 0.02, error) || !first_round(trainer, error) ||
-        !slot_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error) ||
+        !scene_net_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error) ||
         !fit_round(trainer, 0, share, error))
         return false;
     for (int round = 1; round < rounds && !trainer->stage.stopped; round++) {
@@ -212,17 +212,17 @@ static bool train(Trainer *trainer, Error *error) {
     return true;
 }
 
-SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,
-                                Error *error) {
+SceneNet *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,
+                             Error *error) {
     Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
     trainer.progress = (Progress){progress_stage, &trainer.stage};
     bool ok = train(&trainer, error);
     if (ok && training->verdict != NULL)
         ok = scene_net_verdict(trainer.network, &trainer.held_out, training->verdict, error);
     scene_recording_end(&trainer.recording);
-    slot_samples_free(&trainer.samples);
-    slot_samples_free(&trainer.held_out);
+    scene_net_samples_free(&trainer.samples);
+    scene_net_samples_free(&trainer.held_out);
     if (ok) return trainer.network;
-    slot_network_destroy(trainer.network);
+    scene_net_destroy(trainer.network);
     return NULL;
 }

@@ -89,40 +89,40 @@ void solver_destroy(ContactSolver *solver);
 
 /* Training samples of a slot network: contact problems of impacts with their converged solutions. */
 
-typedef struct SlotSample {
+typedef struct SceneNetSample {
     ContactProblem problem; /* owns its arrays */
     int launch, since;      /* number of the launch; steps since the bomb's first touch */
-    /* After slot_samples_label: */
+    /* After scene_net_samples_label: */
     ReferenceVelocity *reference; /* [body_count] */
     ContactImpulse *goal;         /* [contact_count] impulses of the reference */
     UnrolledProblem unrolled;
-    /* After slot_samples_compute_inputs: */
+    /* After scene_net_samples_compute_inputs: */
     SceneView view;
-    float *inputs; /* [slot_network_inputs] */
-} SlotSample;
+    float *inputs; /* [scene_net_inputs] */
+} SceneNetSample;
 
 /* Zero-initialise. */
-typedef struct SlotSamples {
-    SlotSample *items;
+typedef struct SceneNetSamples {
+    SceneNetSample *items;
     int count;
-    int unconverged; /* samples that slot_samples_label() left out */
+    int unconverged; /* samples that scene_net_samples_label() left out */
     size_t capacity;
-} SlotSamples;
+} SceneNetSamples;
 
-void slot_samples_free(SlotSamples *samples);
+void scene_net_samples_free(SceneNetSamples *samples);
 
 /* Appends a copy of a problem. False if out of memory. */
-bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int launch, int since);
+bool scene_net_samples_add(SceneNetSamples *samples, const ContactProblem *problem, int launch, int since);
 
 /* Moves all of `from` to the end of the samples. False if out of memory. */
-bool slot_samples_move(SlotSamples *samples, SlotSamples *from);
+bool scene_net_samples_move(SceneNetSamples *samples, SceneNetSamples *from);
 
 /* Solves the samples from index `first` by the reference, and leaves out those that do not converge. */
-bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error);
+bool scene_net_samples_label(SceneNetSamples *samples, int first, const Progress *progress, Error *error);
 
 /* Computes the view and the network inputs of the samples from index `first`. The inputs are valid only if the network
    has projections. */
-bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);
+bool scene_net_samples_compute_inputs(SceneNetSamples *samples, int first, const SceneNet *network, Error *error);
 
 /* Errors of a scene network and of its untrained baseline. */
 
@@ -146,14 +146,14 @@ typedef struct SceneNetVerdict {
 
 /* Initialises a slot network from samples of a scene: slots, input projections, output scales, random weights. */
 
-typedef struct SlotWidths {
+typedef struct SceneNetWidths {
     int state, present, warm; /* number of input components of each projection */
     int hidden;
-} SlotWidths;
+} SceneNetWidths;
 
 /* Makes an untrained network for labelled samples and computes their inputs. Slots are the contacts that occur in at
-   least 3 samples. NULL with error set: no samples, memory, or a shape out of bounds (slot_network_create). */
-SlotNetwork *slot_network_from_samples(SlotSamples *samples, const SlotWidths *widths, uint64_t seed, Error *error);
+   least 3 samples. NULL with error set: no samples, memory, or a shape out of bounds (scene_net_create). */
+SceneNet *scene_net_from_samples(SceneNetSamples *samples, const SceneNetWidths *widths, uint64_t seed, Error *error);
 
 /* Trains a network for the impacts of one scene (methods/scene_net.c). The first round runs launches, solves their
    impacts by the reference and fits the network through the sweeps that follow it. Later rounds run launches with the
@@ -166,7 +166,7 @@ typedef struct SceneTraining {
     int epochs;    /* of the first round; later rounds have half as many */
     int sweeps;    /* after the network */
     bool momentum; /* learn momentum factors for the sweeps */
-    SlotWidths widths;
+    SceneNetWidths widths;
     uint64_t seed;
     /* Called after each round; may be NULL. */
     void (*on_score)(void *context, const SceneNetScore *score);
@@ -177,8 +177,7 @@ typedef struct SceneTraining {
 /* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN
    or infinite. If progress stops the training after the first network was made, returns the network as it is.
    `command` is left empty. Same bits for any number of threads. */
-SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,
-                                Error *error);
+SceneNet *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress, Error *error);
 
 /* Contact problems that runs have recorded, with their converged velocities. */
 
@@ -229,9 +228,9 @@ bool scene_recording_begin(SceneRecording *recording, const Scene *scene, const 
 void scene_recording_end(SceneRecording *recording);
 
 /* Runs the launches of a set and appends their labelled samples, in the order of launches. */
-bool scene_recording_take(const SceneRecording *recording, SceneSet set, SlotSamples *samples, const Progress *progress,
-                          Error *error);
+bool scene_recording_take(const SceneRecording *recording, SceneSet set, SceneNetSamples *samples,
+                          const Progress *progress, Error *error);
 
 /* Draws the launches of the next round, runs them with the network and appends their labelled samples. */
-bool scene_recording_next(SceneRecording *recording, const SlotNetwork *network, SlotSamples *samples,
+bool scene_recording_next(SceneRecording *recording, const SceneNet *network, SceneNetSamples *samples,
                           const Progress *progress, Error *error);

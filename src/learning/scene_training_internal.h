@@ -73,32 +73,32 @@ bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection
    (learning/scene_training.h): the quantity to minimise. The impulse loss brings the impulses into a range from which
    the sweeps can converge. */
 
-typedef struct SlotTask {
+typedef struct SceneNetTask {
     double impulse_weight, velocity_weight;
     int sweeps;
     const double *factors; /* [sweeps] momentum factors */
-} SlotTask;
+} SceneNetTask;
 
 /* Work space of a thread. Zero-initialise; arrays grow and are reused. */
-typedef struct SlotLoss {
+typedef struct SceneNetLoss {
     Unrolled unrolled;
-    float first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX]; /* hidden layers */
-    float by_first[SLOT_WIDTH_MAX], by_second[SLOT_WIDTH_MAX];
+    float first[SCENE_NET_WIDTH_MAX], second[SCENE_NET_WIDTH_MAX]; /* hidden layers */
+    float by_first[SCENE_NET_WIDTH_MAX], by_second[SCENE_NET_WIDTH_MAX];
     float *outputs, *by_outputs; /* [2 present slots]; by_x: derivative of the loss with respect to x */
     double *numbers;             /* start, by_start, by_velocity */
     size_t output_capacity, by_output_capacity, number_capacity;
-} SlotLoss;
+} SceneNetLoss;
 
-void slot_loss_free(SlotLoss *loss);
+void scene_net_loss_free(SceneNetLoss *loss);
 
-typedef struct SlotScore {
+typedef struct SceneNetErrors {
     double loss, error; /* error: e, m/s */
-} SlotScore;
+} SceneNetErrors;
 
 /* Adds to gradient[parameter_count] and by_factors[sweeps]. by_factors may be NULL; if gradient is NULL, only the score
    is computed. False if out of memory. */
-bool slot_loss(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sample, const SlotTask *task,
-               float *gradient, double *by_factors, SlotScore *score);
+bool scene_net_loss(SceneNetLoss *loss, const SceneNet *network, const SceneNetSample *sample, const SceneNetTask *task,
+                    float *gradient, double *by_factors, SceneNetErrors *score);
 
 /* Steps of launches. */
 
@@ -116,42 +116,43 @@ bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, c
 /* Runs launches of a scene with a given solver and records the contact problems of their impacts: the steps after the
    bomb's first touch in which the residual of the warm start reaches the gate (methods/residual.h). */
 
-typedef struct SlotRollout {
+typedef struct SceneNetRollout {
     const Scene *scene;
     const Launch *launches; /* [launch_count] */
     int launch_count;       /* the bomb's frame must be the scene's in all launches */
-    int first_launch;       /* SlotSample.launch of the first launch */
+    int first_launch;       /* SceneNetSample.launch of the first launch */
     int steps;              /* examined from the first touch */
     float gate;             /* m/s */
-    /* Makes the solver of a launch; slot_rollout() destroys it. */
+    /* Makes the solver of a launch; scene_net_rollout() destroys it. */
     bool (*make_solver)(void *context, ContactSolver *solver, Error *error);
     void *context;
-} SlotRollout;
+} SceneNetRollout;
 
 /* Appends to the samples in the order of launches and steps, for any number of threads. A launch ends if its state
    becomes NaN or infinite. */
-bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progress *progress, Error *error);
+bool scene_net_rollout(const SceneNetRollout *rollout, SceneNetSamples *samples, const Progress *progress,
+                       Error *error);
 
 /* Fits a slot network to samples by mini-batch Adam; the rate decays to 0 by half a cosine. Quantisation-aware: loss
    and gradient are computed with the packed rows (nets/kernels.h), the step changes the float rows, which are
    then packed again. Source: straight-through estimator, Bengio, Leonard, Courville, "Estimating or Propagating
    Gradients Through Stochastic Neurons for Conditional Computation" (2013), 4. */
 
-typedef struct SlotFit {
+typedef struct SceneNetFit {
     double impulse_weight; /* of the impulse loss */
     int impulse_epochs;    /* initial epochs with the impulse loss only */
     int epochs;            /* in total */
     double rate;           /* initial learning rate */
     bool learn_factors;    /* also fit the network's momentum factors */
     uint64_t seed;         /* of the sample order */
-} SlotFit;
+} SceneNetFit;
 
 /* Changes the network's parameters and, if learn_factors, its factors. The samples have its inputs
-   (slot_samples_compute_inputs). If progress stops the fit, keeps the current parameters. Same bits for any number of
+   (scene_net_samples_compute_inputs). If progress stops the fit, keeps the current parameters. Same bits for any number of
    threads. False with error set: memory, or a NaN or infinite loss (the message names the epoch). */
-bool slot_fit(SlotNetwork *network, const SlotSamples *samples, const SlotFit *fit, const Progress *progress,
-              Error *error);
+bool scene_net_fit(SceneNet *network, const SceneNetSamples *samples, const SceneNetFit *fit, const Progress *progress,
+                   Error *error);
 
 /* errors[count - first]: RMS velocity errors in m/s after the network and its sweeps, of the samples from index
    `first`. */
-bool slot_errors(const SlotNetwork *network, const SlotSamples *samples, int first, double *errors, Error *error);
+bool slot_errors(const SceneNet *network, const SceneNetSamples *samples, int first, double *errors, Error *error);

@@ -51,10 +51,10 @@ set(module_sources
     methods/admm methods/admm_scalar methods/avbd methods/block_lu methods/block_order methods/closed_form
     methods/engine methods/gns methods/gns_graph methods/hybrid methods/interior methods/interior_look methods/interior_path methods/interior_point methods/interior_scalar
     methods/islands methods/method methods/momentum methods/nncg methods/order methods/pair methods/pair_net methods/reference_point
-    methods/reference_scalar methods/relation_view methods/residual methods/sain methods/scene_net methods/soft_step methods/steppers methods/stopping
-    methods/subspace methods/substepping methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/tabulation
-    methods/tabulation_file
-    nets/gns_net nets/kernels nets/kernels_scalar nets/net_file nets/network nets/slot_network nets/subspace_net
+    methods/reference_scalar methods/sain_view methods/residual methods/sain methods/scene_net methods/soft_step methods/steppers methods/stopping
+    methods/subspace methods/substepping methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/hybrid_memory
+    methods/hybrid_memory_file
+    nets/gns_net nets/kernels nets/kernels_scalar nets/net_file nets/network nets/scene_net_layers nets/subspace_net
     runs/contact_finder runs/framing runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks
     runs/verdict_energy runs/verdict_passes
     runs/verdict_words

@@ -131,7 +131,7 @@ static bool begin(Gns *gns, const BegunStep *begun) {
             continue;
         }
         const int at = gns->particles.bodies++;
-        gns->particles.body[at] = (GnsBody){body->size, 1.0f / body->inv_mass, i == problem->marked};
+        gns->particles.body[at] = (GnsBody){body->size, 1.0f / body->inv_mass, i == problem->bomb};
         gns->body[at] = i;
         if (gns->memory.known[i])
             take_past(gns, at, gns->place[i]);

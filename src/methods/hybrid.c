@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A memory answers familiar impacts; others are solved to convergence. A step whose warm start has a residual of the gate
-   or more is looked up in the memory (methods/tabulation.h): an entry with the same contacts whose ellipsoid of
+   or more is looked up in the memory (methods/hybrid_memory.h): an entry with the same contacts whose ellipsoid of
    accuracy contains the state answers with its impulses and a linear map,
 
        P = P0 + A (x - x0)     if (x - x0)^T M (x - x0) <= 1,
@@ -22,7 +22,7 @@
 #include "methods/residual.h"
 #include "methods/scene_net.h"
 #include "methods/sweeps.h"
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -47,16 +47,16 @@ typedef struct BodyWords {
 } BodyWords;
 
 typedef struct Hybrid {
-    Tabulation *own;          /* or NULL */
-    char *path;               /* of its file, or NULL */
-    const Tabulation *memory; /* the same, or the caller's; NULL: empty */
+    HybridMemory *own;          /* or NULL */
+    char *path;                 /* of its file, or NULL */
+    const HybridMemory *memory; /* the same, or the caller's; NULL: empty */
     bool retrieves;
     HybridWatch watch; /* see NULL: none */
     void *interior;    /* state of solver_interior */
     float *others;     /* [6 (body_count - 1)] */
     char *words;       /* BodyWords[body_count], dt, ContactWords[contact_count] */
     ArrayBlock arrays; /* others and words */
-    float bomb[TABULATION_NUMBERS], key[TABULATION_KEY_MAX];
+    float bomb[HYBRID_NUMBERS], key[HYBRID_KEY_MAX];
 } Hybrid;
 
 static const SettingSpec settings[] = {
@@ -68,7 +68,7 @@ static const SettingSpec settings[] = {
 static void destroy(void *state) {
     Hybrid *hybrid = state;
     if (hybrid == NULL) return;
-    tabulation_destroy(hybrid->own);
+    hybrid_memory_destroy(hybrid->own);
     free(hybrid->path);
     if (hybrid->interior != NULL) solver_interior.destroy(hybrid->interior);
     free(hybrid->arrays.memory);
@@ -98,13 +98,13 @@ static void *create(const Settings *chosen, Error *error) {
     bool ok = settings_read(chosen, settings, hybrid, error);
     if (ok && path != NULL)
         ok = ((hybrid->path = strdup(path)) != NULL || error_memory(error, "hybrid")) &&
-             (hybrid->memory = hybrid->own = tabulation_read(path, error)) != NULL;
+             (hybrid->memory = hybrid->own = hybrid_memory_read(path, error)) != NULL;
     if (ok) return hybrid;
     destroy(hybrid);
     return NULL;
 }
 
-bool hybrid_make(ContactSolver *solver, const Tabulation *memory, const HybridWatch *watch, Error *error) {
+bool hybrid_make(ContactSolver *solver, const HybridMemory *memory, const HybridWatch *watch, Error *error) {
     Hybrid *hybrid = make(error);
     *solver = (ContactSolver){&solver_hybrid, hybrid};
     if (hybrid == NULL) return false;
@@ -115,21 +115,21 @@ bool hybrid_make(ContactSolver *solver, const Tabulation *memory, const HybridWa
 
 /* Before the bomb appears there is one body less. */
 static bool fits(const Hybrid *hybrid, const ContactProblem *problem, Error *error) {
-    const Tabulation *memory = hybrid->memory;
+    const HybridMemory *memory = hybrid->memory;
     const char *where = hybrid->path != NULL ? hybrid->path : "hybrid";
-    const int bodies = problem->marked < 0 ? memory->body_count - 1 : memory->body_count;
+    const int bodies = problem->bomb < 0 ? memory->body_count - 1 : memory->body_count;
     if (problem->body_count != bodies)
         return error_input(error, where, "the memory is of the scene %s of %d bodies; this one has %d", memory->scene,
                            bodies, problem->body_count);
-    if (problem->marked < 0 || problem->marked == memory->bomb) return true;
+    if (problem->bomb < 0 || problem->bomb == memory->bomb) return true;
     return error_input(error, where, "the memory is of the scene %s, with the bomb as body %d; here it is body %d",
-                       memory->scene, memory->bomb, problem->marked);
+                       memory->scene, memory->bomb, problem->bomb);
 }
 
 static bool reserve(Hybrid *hybrid, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     const size_t words = bodies * sizeof(BodyWords) + sizeof problem->dt + contacts * sizeof(ContactWords);
-    return ARRAY_BLOCK_RESERVE(&hybrid->arrays, ARRAY_PART(hybrid->others, bodies * TABULATION_NUMBERS),
+    return ARRAY_BLOCK_RESERVE(&hybrid->arrays, ARRAY_PART(hybrid->others, bodies * HYBRID_NUMBERS),
                                ARRAY_PART(hybrid->words, words));
 }
 
@@ -143,7 +143,7 @@ static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *proble
     at += sizeof problem->dt;
     for (int i = 0; i < problem->contact_count; i++, at += sizeof(ContactWords)) {
         const ContactPoint *contact = &problem->contacts[i];
-        const bool of_bomb = contact->a == problem->marked || contact->b == problem->marked;
+        const bool of_bomb = contact->a == problem->bomb || contact->b == problem->bomb;
         const uint32_t feature = of_bomb ? scene_view_feature(problem, contact) : contact->feature;
         memcpy(at, &(ContactWords){contact->a, contact->b, feature, contact->friction}, sizeof(ContactWords));
     }
@@ -151,19 +151,19 @@ static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *proble
 }
 
 /* Fills `others`, and the key if there is a memory. */
-static TabulationQuery make_query(Hybrid *hybrid, const ContactProblem *problem) {
-    const ProblemBody *bomb = &problem->bodies[problem->marked];
+static HybridQuery make_query(Hybrid *hybrid, const ContactProblem *problem) {
+    const ProblemBody *bomb = &problem->bodies[problem->bomb];
     float *others = hybrid->others;
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
-        if (i == problem->marked) continue;
-        tabulation_numbers(body, body->angle, problem->dt, others);
-        others += TABULATION_NUMBERS;
+        if (i == problem->bomb) continue;
+        hybrid_memory_numbers(body, body->angle, problem->dt, others);
+        others += HYBRID_NUMBERS;
     }
-    tabulation_numbers(bomb, scene_view_angle(bomb), problem->dt, hybrid->bomb);
-    TabulationQuery query = {hash_contacts(hybrid, problem), problem->contact_count, NULL};
+    hybrid_memory_numbers(bomb, scene_view_angle(bomb), problem->dt, hybrid->bomb);
+    HybridQuery query = {hash_contacts(hybrid, problem), problem->contact_count, NULL};
     if (hybrid->memory == NULL) return query;
-    tabulation_key(hybrid->memory, hybrid->bomb, hybrid->others, hybrid->key);
+    hybrid_memory_key(hybrid->memory, hybrid->bomb, hybrid->others, hybrid->key);
     query.key = hybrid->key;
     return query;
 }
@@ -178,7 +178,7 @@ static void push_all(const ContactProblem *problem, ContactSolution *solution) {
 }
 
 static bool is_impact(const Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution) {
-    if (problem->marked < 0) return false;
+    if (problem->bomb < 0) return false;
     for (int i = 0; i < problem->contact_count; i++)
         solution->impulses[i] = (ContactImpulse){problem->contacts[i].warm_normal, problem->contacts[i].warm_tangent};
     push_all(problem, solution);
@@ -208,9 +208,9 @@ static bool is_bounded(const ContactProblem *problem, const ContactSolution *sol
     return bounded;
 }
 
-void hybrid_answer(const Tabulation *memory, int entry, const float *key, const ContactProblem *problem,
+void hybrid_answer(const HybridMemory *memory, int entry, const float *key, const ContactProblem *problem,
                    ContactSolution *solution) {
-    tabulation_answer(memory, entry, key, solution->impulses);
+    hybrid_memory_answer(memory, entry, key, solution->impulses);
     solution->fallbacks.outside_cone += clamp(problem, solution->impulses);
     push_all(problem, solution);
 }
@@ -231,9 +231,9 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     const bool asks = hybrid->retrieves && (hybrid->memory != NULL || hybrid->watch.see != NULL);
     if (!asks || !is_impact(hybrid, problem, solution)) return converge(hybrid, problem, solution, error);
     if (!reserve(hybrid, problem)) return error_memory(error, "hybrid");
-    const TabulationQuery query = make_query(hybrid, problem);
+    const HybridQuery query = make_query(hybrid, problem);
     HybridStep step = {problem, solution, query, hybrid->bomb, hybrid->others, -1};
-    if (hybrid->memory != NULL) step.entry = tabulation_find(hybrid->memory, &step.query);
+    if (hybrid->memory != NULL) step.entry = hybrid_memory_find(hybrid->memory, &step.query);
     if (step.entry >= 0) {
         hybrid_answer(hybrid->memory, step.entry, step.query.key, problem, solution);
         if (!is_bounded(problem, solution)) {

@@ -4,7 +4,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 
 #include <stdbool.h>
 
@@ -12,10 +12,10 @@
 typedef struct HybridStep {
     const ContactProblem *problem;
     const ContactSolution *solution;
-    TabulationQuery query; /* key NULL if there is no memory */
-    const float *bomb;     /* [6] its numbers */
-    const float *others;   /* [6 (body_count - 1)] the numbers of the bodies but the bomb */
-    int entry;             /* that answered, or -1: solved to convergence */
+    HybridQuery query;   /* key NULL if there is no memory */
+    const float *bomb;   /* [6] its numbers */
+    const float *others; /* [6 (body_count - 1)] the numbers of the bodies but the bomb */
+    int entry;           /* that answered, or -1: solved to convergence */
 } HybridStep;
 
 /* Called after each such step; false with error set stops the step. */
@@ -30,9 +30,9 @@ extern const float hybrid_gate;
 
 /* memory: the caller's, or NULL: no step is answered. It must outlive the solver, and may grow between launches. watch: or
    NULL. */
-bool hybrid_make(ContactSolver *solver, const Tabulation *memory, const HybridWatch *watch, Error *error);
+bool hybrid_make(ContactSolver *solver, const HybridMemory *memory, const HybridWatch *watch, Error *error);
 
 /* The answer of an entry: impulses clamped to their friction cones, and the velocities that follow; adds to
    fallbacks.outside_cone. The problem has the entry's contacts. */
-void hybrid_answer(const Tabulation *memory, int entry, const float *key, const ContactProblem *problem,
+void hybrid_answer(const HybridMemory *memory, int entry, const float *key, const ContactProblem *problem,
                    ContactSolution *solution);

@@ -141,7 +141,7 @@ ContactProblem islands_take(Islands *s, const ContactProblem *problem, int k, Co
     merge(s, members, island->bodies, fixed);
     ContactProblem part = {.body_count = island->bodies + fixed,
                            .contact_count = island->contacts,
-                           .marked = -1,
+                           .bomb = -1,
                            .dt = problem->dt,
                            .fall = problem->fall,
                            .bodies = s->body_copies,
@@ -149,7 +149,7 @@ ContactProblem islands_take(Islands *s, const ContactProblem *problem, int k, Co
     for (int i = 0; i < part.body_count; i++) {
         s->place[s->bodies[i]] = i;
         s->body_copies[i] = problem->bodies[s->bodies[i]];
-        if (s->bodies[i] == problem->marked) part.marked = i;
+        if (s->bodies[i] == problem->bomb) part.bomb = i;
     }
     for (int i = 0; i < island->contacts; i++) {
         ContactPoint *contact = &s->contact_copies[i];

@@ -4,7 +4,7 @@
 
        e_rs = relation(r, s),   v_r = v_r(engine) + scale_r * object(r, sum over s of e_rs)
 
-   for each receiver r and each sender s that touches it (methods/relation_view.h). It is trained on the converged
+   for each receiver r and each sender s that touches it (methods/sain_view.h). It is trained on the converged
    solution minus the engine's (learning/sain_training.h). Impulses, the warm start of the next step, stay
    those of the engine. Two ablations have networks of their own in the same file: engine=off sees the velocities before
    the step and predicts their whole change, without impulses (an interaction network); engine=shuffled sees, and
@@ -21,7 +21,7 @@
 #include "base/npz.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "methods/sain.h"
 #include "nets/nets.h"
 
@@ -30,44 +30,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RELATION_LAYERS = 3, OBJECT_LAYERS = 2 };
+enum { SAIN_LAYERS = 3, OBJECT_LAYERS = 2 };
 
-bool relation_network_create(RelationNetwork *network, Error *error) {
-    static const int relation[RELATION_LAYERS + 1] = {RELATION_PAIR_INPUTS, RELATION_HIDDEN, RELATION_HIDDEN,
-                                                      RELATION_EFFECTS},
-                                                object[OBJECT_LAYERS + 1] = {RELATION_OBJECT_INPUTS, RELATION_HIDDEN,
-                                                                             RELATION_OUTPUTS};
-    *network = (RelationNetwork){.relation = network_create(RELATION_LAYERS, relation, error)};
+bool sain_network_create(SainNetwork *network, Error *error) {
+    static const int relation[SAIN_LAYERS + 1] = {SAIN_PAIR_INPUTS, SAIN_HIDDEN, SAIN_HIDDEN, SAIN_EFFECTS},
+                                            object[OBJECT_LAYERS + 1] = {SAIN_OBJECT_INPUTS, SAIN_HIDDEN, SAIN_OUTPUTS};
+    *network = (SainNetwork){.relation = network_create(SAIN_LAYERS, relation, error)};
     if (network->relation != NULL) network->object = network_create(OBJECT_LAYERS, object, error);
     if (network->object == NULL) return false;
-    for (int l = 0; l < RELATION_LAYERS; l++) network->relation->activations[l] = ACTIVATION_TANH;
+    for (int l = 0; l < SAIN_LAYERS; l++) network->relation->activations[l] = ACTIVATION_TANH;
     network->object->activations[0] = ACTIVATION_TANH;
     return true;
 }
 
-void relation_network_destroy(RelationNetwork *network) {
+void sain_network_destroy(SainNetwork *network) {
     network_destroy(network->relation);
     network_destroy(network->object);
-    *network = (RelationNetwork){0};
+    *network = (SainNetwork){0};
 }
 
-void relation_networks_destroy(RelationNetworks *networks) {
-    for (int f = 0; f < RELATION_FORMS; f++) relation_network_destroy(&networks->forms[f]);
+void sain_networks_destroy(SainNetworks *networks) {
+    for (int f = 0; f < SAIN_FORMS; f++) sain_network_destroy(&networks->forms[f]);
 }
 
-void relation_answers_free(RelationAnswers *answers) {
+void sain_answers_free(SainAnswers *answers) {
     free(answers->arrays.memory);
-    *answers = (RelationAnswers){0};
+    *answers = (SainAnswers){0};
 }
 
-static bool reserve(RelationAnswers *answers, const RelationNetwork *network, const RelationView *view) {
+static bool reserve(SainAnswers *answers, const SainNetwork *network, const SainView *view) {
     const size_t bodies = (size_t)view->body_count + 1, rows = (size_t)view->row_count + 1,
                  relation = network_batch_scratch(network->relation), object = network_batch_scratch(network->object);
-    return ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * RELATION_OUTPUTS),
-                               ARRAY_PART(answers->known, bodies),
-                               ARRAY_PART(answers->effects, rows * RELATION_EFFECTS),
-                               ARRAY_PART(answers->inputs, bodies * RELATION_OBJECT_INPUTS),
-                               ARRAY_PART(answers->columns, bodies * RELATION_OUTPUTS),
+    return ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * SAIN_OUTPUTS),
+                               ARRAY_PART(answers->known, bodies), ARRAY_PART(answers->effects, rows * SAIN_EFFECTS),
+                               ARRAY_PART(answers->inputs, bodies * SAIN_OBJECT_INPUTS),
+                               ARRAY_PART(answers->columns, bodies * SAIN_OUTPUTS),
                                ARRAY_PART(answers->scratch, relation > object ? relation : object));
 }
 
@@ -83,13 +80,13 @@ static bool check(float *numbers, int stride, int count, const float *low, const
     return inside;
 }
 
-static void check_ranges(RelationAnswers *answers, const RelationNetwork *network, RelationView *view, bool clamp) {
+static void check_ranges(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
     for (int b = 0; b < view->body_count; b++) {
-        const RelationBody *body = &view->bodies[b];
-        bool known = check(view->body_inputs + b, view->body_count, RELATION_BODY_INPUTS, network->body_low,
+        const SainBody *body = &view->bodies[b];
+        bool known = check(view->body_inputs + b, view->body_count, SAIN_BODY_INPUTS, network->body_low,
                            network->body_high, clamp);
         for (int r = body->first; r < body->first + body->rows; r++)
-            known = check(view->pair_inputs + r, view->row_count, RELATION_PAIR_INPUTS, network->pair_low,
+            known = check(view->pair_inputs + r, view->row_count, SAIN_PAIR_INPUTS, network->pair_low,
                           network->pair_high, clamp) &&
                     known;
         answers->known[b] = known;
@@ -97,14 +94,14 @@ static void check_ranges(RelationAnswers *answers, const RelationNetwork *networ
 }
 
 /* Body inputs, and the sums of effects in the order of the rows. */
-static void fill_object_inputs(RelationAnswers *answers, const RelationView *view) {
+static void fill_object_inputs(SainAnswers *answers, const SainView *view) {
     const int bodies = view->body_count;
-    memcpy(answers->inputs, view->body_inputs, (size_t)bodies * RELATION_BODY_INPUTS * sizeof *answers->inputs);
-    for (int e = 0; e < RELATION_EFFECTS; e++) {
+    memcpy(answers->inputs, view->body_inputs, (size_t)bodies * SAIN_BODY_INPUTS * sizeof *answers->inputs);
+    for (int e = 0; e < SAIN_EFFECTS; e++) {
         const float *effects = answers->effects + (ptrdiff_t)e * view->row_count;
-        float *sums = answers->inputs + (ptrdiff_t)(RELATION_BODY_INPUTS + e) * bodies;
+        float *sums = answers->inputs + (ptrdiff_t)(SAIN_BODY_INPUTS + e) * bodies;
         for (int b = 0; b < bodies; b++) {
-            const RelationBody *body = &view->bodies[b];
+            const SainBody *body = &view->bodies[b];
             float sum = 0;
             for (int r = body->first; r < body->first + body->rows; r++) sum += effects[r];
             sums[b] = sum;
@@ -112,7 +109,7 @@ static void fill_object_inputs(RelationAnswers *answers, const RelationView *vie
     }
 }
 
-bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, RelationView *view, bool clamp) {
+bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
     if (!reserve(answers, network, view)) return false;
     check_ranges(answers, network, view, clamp);
     if (view->body_count == 0) return true;
@@ -120,8 +117,8 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
     fill_object_inputs(answers, view);
     network_predict_batch(network->object, answers->inputs, answers->scratch, answers->columns, view->body_count);
     for (int b = 0; b < view->body_count; b++)
-        for (int o = 0; o < RELATION_OUTPUTS; o++)
-            answers->outputs[b * RELATION_OUTPUTS + o] = answers->columns[o * view->body_count + b];
+        for (int o = 0; o < SAIN_OUTPUTS; o++)
+            answers->outputs[b * SAIN_OUTPUTS + o] = answers->columns[o * view->body_count + b];
     return true;
 }
 
@@ -129,11 +126,11 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
    vector. */
 
 static int list_fields(void *of, NetField *fields) {
-    RelationNetworks *networks = of;
+    SainNetworks *networks = of;
     NetField *at = fields;
     *at++ = (NetField){"command", NPZ_TEXT, 0, {sizeof networks->command}, .data = networks->command};
-    for (int f = 0; f < RELATION_FORMS; f++) {
-        RelationNetwork *network = &networks->forms[f];
+    for (int f = 0; f < SAIN_FORMS; f++) {
+        SainNetwork *network = &networks->forms[f];
         const Network *pair = network->relation, *body = network->object;
         const struct {
             const char *name;
@@ -141,47 +138,47 @@ static int list_fields(void *of, NetField *fields) {
             float *data;
             const FloatBounds *range;
         } floats[] = {{"pair_weights", network_parameter_count(pair), pair->weights[0], &float_any},
-                      {"pair_offset", RELATION_PAIR_INPUTS, pair->input.offset, &float_any},
-                      {"pair_scale", RELATION_PAIR_INPUTS, pair->input.scale, &float_positive},
+                      {"pair_offset", SAIN_PAIR_INPUTS, pair->input.offset, &float_any},
+                      {"pair_scale", SAIN_PAIR_INPUTS, pair->input.scale, &float_positive},
                       {"body_weights", network_parameter_count(body), body->weights[0], &float_any},
-                      {"body_offset", RELATION_OBJECT_INPUTS, body->input.offset, &float_any},
-                      {"body_scale", RELATION_OBJECT_INPUTS, body->input.scale, &float_positive},
-                      {"pair_low", RELATION_PAIR_INPUTS, network->pair_low, &float_any},
-                      {"pair_high", RELATION_PAIR_INPUTS, network->pair_high, &float_any},
-                      {"body_low", RELATION_BODY_INPUTS, network->body_low, &float_any},
-                      {"body_high", RELATION_BODY_INPUTS, network->body_high, &float_any},
-                      {"limit", RELATION_OUTPUTS, network->limit, &float_not_negative}};
+                      {"body_offset", SAIN_OBJECT_INPUTS, body->input.offset, &float_any},
+                      {"body_scale", SAIN_OBJECT_INPUTS, body->input.scale, &float_positive},
+                      {"pair_low", SAIN_PAIR_INPUTS, network->pair_low, &float_any},
+                      {"pair_high", SAIN_PAIR_INPUTS, network->pair_high, &float_any},
+                      {"body_low", SAIN_BODY_INPUTS, network->body_low, &float_any},
+                      {"body_high", SAIN_BODY_INPUTS, network->body_high, &float_any},
+                      {"limit", SAIN_OUTPUTS, network->limit, &float_not_negative}};
         for (size_t i = 0; i < sizeof floats / sizeof *floats; i++, at++) {
             *at = (NetField){"", NPZ_FLOAT32, 1, {floats[i].count}, .data = floats[i].data, .range = floats[i].range};
-            snprintf(at->name, sizeof at->name, "%s_%s", relation_form_names[f], floats[i].name);
+            snprintf(at->name, sizeof at->name, "%s_%s", sain_form_names[f], floats[i].name);
         }
     }
     return (int)(at - fields);
 }
 
-static const NetFileKind kind = {"sain", RELATION_VERSION, list_fields, NULL, NULL, NULL};
+static const NetFileKind kind = {"sain", SAIN_VERSION, list_fields, NULL, NULL, NULL};
 
-bool relation_networks_write(const RelationNetworks *networks, const char *path, Error *error) {
+bool sain_networks_write(const SainNetworks *networks, const char *path, Error *error) {
     return net_file_write(&kind, networks, path, error);
 }
 
-bool relation_networks_read(RelationNetworks *networks, const char *path, Error *error) {
-    *networks = (RelationNetworks){0};
+bool sain_networks_read(SainNetworks *networks, const char *path, Error *error) {
+    *networks = (SainNetworks){0};
     bool ok = true;
-    for (int f = 0; ok && f < RELATION_FORMS; f++) ok = relation_network_create(&networks->forms[f], error);
+    for (int f = 0; ok && f < SAIN_FORMS; f++) ok = sain_network_create(&networks->forms[f], error);
     ok = ok && net_file_read(&kind, networks, path, error);
-    if (!ok) relation_networks_destroy(networks);
+    if (!ok) sain_networks_destroy(networks);
     return ok;
 }
 
 typedef struct Sain {
-    RelationNetworks own; /* empty if the network is another's */
-    const RelationNetwork *network;
-    RelationForm form;
+    SainNetworks own; /* empty if the network is another's */
+    const SainNetwork *network;
+    SainForm form;
     bool predicts;
     void *engine; /* state of solver_engine */
-    RelationView view;
-    RelationAnswers answers;
+    SainView view;
+    SainAnswers answers;
 } Sain;
 
 static const SettingSpec settings[] = {
@@ -196,10 +193,10 @@ static const SettingSpec settings[] = {
 static void destroy(void *state) {
     Sain *solver = state;
     if (solver == NULL) return;
-    relation_networks_destroy(&solver->own);
+    sain_networks_destroy(&solver->own);
     if (solver->engine != NULL) solver_engine.destroy(solver->engine);
-    relation_view_free(&solver->view);
-    relation_answers_free(&solver->answers);
+    sain_view_free(&solver->view);
+    sain_answers_free(&solver->answers);
     free(solver);
 }
 
@@ -211,20 +208,20 @@ static Sain *make(Error *error) {
         return NULL;
     }
     solver->predicts = true;
-    if (settings_parse(&of_engine, RELATION_ENGINE_SETTINGS, solver_engine.description.settings, "sain", error))
+    if (settings_parse(&of_engine, SAIN_ENGINE_SETTINGS, solver_engine.description.settings, "sain", error))
         solver->engine = solver_engine.create(&of_engine, error);
     if (solver->engine != NULL) return solver;
     destroy(solver);
     return NULL;
 }
 
-static bool read_form(const Settings *chosen, RelationForm *form, Error *error) {
+static bool read_form(const Settings *chosen, SainForm *form, Error *error) {
     const char *name = settings_get(chosen, "engine");
     if (name == NULL) return true;
     NameList known = {0};
-    for (RelationForm f = 0; f < RELATION_FORMS; f++) {
-        name_list_add(&known, relation_form_names[f]);
-        if (strcmp(relation_form_names[f], name) != 0) continue;
+    for (SainForm f = 0; f < SAIN_FORMS; f++) {
+        name_list_add(&known, sain_form_names[f]);
+        if (strcmp(sain_form_names[f], name) != 0) continue;
         *form = f;
         return true;
     }
@@ -236,7 +233,7 @@ static void *create(const Settings *chosen, Error *error) {
     Sain *solver = path != NULL ? make(error) : NULL;
     if (solver == NULL) return NULL;
     if (read_form(chosen, &solver->form, error) && settings_read(chosen, settings, solver, error) &&
-        relation_networks_read(&solver->own, path, error)) {
+        sain_networks_read(&solver->own, path, error)) {
         solver->network = &solver->own.forms[solver->form];
         return solver;
     }
@@ -244,7 +241,7 @@ static void *create(const Settings *chosen, Error *error) {
     return NULL;
 }
 
-bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationForm form, Error *error) {
+bool sain_make(ContactSolver *solver, const SainNetwork *network, SainForm form, Error *error) {
     Sain *state = make(error);
     if (state == NULL) return false;
     state->network = network;
@@ -255,7 +252,7 @@ bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationFo
 
 /* All are finite and within the limits of the training data. */
 static bool is_usable(const float *outputs, const float *limit, const BodyVelocity *velocity) {
-    for (int o = 0; o < RELATION_OUTPUTS; o++)
+    for (int o = 0; o < SAIN_OUTPUTS; o++)
         if (!(fabsf(outputs[o]) <= limit[o])) return false;
     return isfinite(velocity->linear.x) && isfinite(velocity->linear.y) && isfinite(velocity->angular);
 }
@@ -267,14 +264,14 @@ static float created_momentum(const ProblemBody *body, const BodyVelocity *veloc
 }
 
 static void correct(Sain *solver, const ContactProblem *problem, ContactSolution *solution) {
-    const RelationView *view = &solver->view;
+    const SainView *view = &solver->view;
     bool all_known = true;
     for (int b = 0; b < view->body_count; b++) {
-        const RelationBody *body = &view->bodies[b];
-        const float *outputs = solver->answers.outputs + (ptrdiff_t)b * RELATION_OUTPUTS;
-        const BodyVelocity velocity = relation_corrected(body, outputs), before = solution->velocities[body->body];
+        const SainBody *body = &view->bodies[b];
+        const float *outputs = solver->answers.outputs + (ptrdiff_t)b * SAIN_OUTPUTS;
+        const BodyVelocity velocity = sain_corrected(body, outputs), before = solution->velocities[body->body];
         all_known = all_known && solver->answers.known[b];
-        if (!solver->answers.known[b] && solver->form != RELATION_ALONE) continue;
+        if (!solver->answers.known[b] && solver->form != SAIN_ALONE) continue;
         if (!is_usable(outputs, solver->network->limit, &velocity)) {
             solution->fallbacks.not_finite++;
             continue;
@@ -287,14 +284,14 @@ static void correct(Sain *solver, const ContactProblem *problem, ContactSolution
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Sain *solver = state;
-    const bool alone = solver->form == RELATION_ALONE && solver->predicts;
+    const bool alone = solver->form == SAIN_ALONE && solver->predicts;
     if (alone)
         contact_solution_begin(problem, solution);
     else if (!solver_engine.solve(solver->engine, problem, solution, error))
         return false;
     if (!solver->predicts) return true;
-    if (!relation_view_make(&solver->view, problem, solution->velocities, solver->form) ||
-        !relation_answer(&solver->answers, solver->network, &solver->view, alone))
+    if (!sain_view_make(&solver->view, problem, solution->velocities, solver->form) ||
+        !sain_answer(&solver->answers, solver->network, &solver->view, alone))
         return error_memory(error, "sain");
     solution->momentum_error = 0;
     solution->fallbacks = (NetworkFallbacks){0};

@@ -3,7 +3,7 @@
 #pragma once
 #include "base/base.h"
 #include "methods/methods.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "nets/nets.h"
 
 #include <stdbool.h>
@@ -15,55 +15,55 @@
    16. */
 
 enum {
-    RELATION_VERSION = 1,
-    RELATION_EFFECTS = 16,
-    RELATION_HIDDEN = 32,
-    RELATION_OBJECT_INPUTS = RELATION_BODY_INPUTS + RELATION_EFFECTS,
-    RELATION_COMMAND_SIZE = 512,
-    RELATION_ANSWER_MAX = 100 /* times the scale: larger corrections are not trained */
+    SAIN_VERSION = 1,
+    SAIN_EFFECTS = 16,
+    SAIN_HIDDEN = 32,
+    SAIN_OBJECT_INPUTS = SAIN_BODY_INPUTS + SAIN_EFFECTS,
+    SAIN_COMMAND_SIZE = 512,
+    SAIN_ANSWER_MAX = 100 /* times the scale: larger corrections are not trained */
 };
 
 /* The networks of one form. */
-typedef struct RelationNetwork {
-    Network *relation; /* RELATION_PAIR_INPUTS to RELATION_EFFECTS */
-    Network *object;   /* body inputs, then the sum of effects, to RELATION_OUTPUTS */
+typedef struct SainNetwork {
+    Network *relation; /* SAIN_PAIR_INPUTS to SAIN_EFFECTS */
+    Network *object;   /* body inputs, then the sum of effects, to SAIN_OUTPUTS */
     /* Ranges of the training data; outputs beyond +-limit are discarded. */
-    float pair_low[RELATION_PAIR_INPUTS], pair_high[RELATION_PAIR_INPUTS];
-    float body_low[RELATION_BODY_INPUTS], body_high[RELATION_BODY_INPUTS];
-    float limit[RELATION_OUTPUTS];
-} RelationNetwork;
+    float pair_low[SAIN_PAIR_INPUTS], pair_high[SAIN_PAIR_INPUTS];
+    float body_low[SAIN_BODY_INPUTS], body_high[SAIN_BODY_INPUTS];
+    float limit[SAIN_OUTPUTS];
+} SainNetwork;
 
 /* A file holds the networks of all forms. */
-typedef struct RelationNetworks {
-    RelationNetwork forms[RELATION_FORMS];
-    char command[RELATION_COMMAND_SIZE]; /* that trained them */
-} RelationNetworks;
+typedef struct SainNetworks {
+    SainNetwork forms[SAIN_FORMS];
+    char command[SAIN_COMMAND_SIZE]; /* that trained them */
+} SainNetworks;
 
 /* Weights and ranges 0. False with error set when memory is short; destroy it in any case. */
-bool relation_network_create(RelationNetwork *network, Error *error);
-void relation_network_destroy(RelationNetwork *network);
+bool sain_network_create(SainNetwork *network, Error *error);
+void sain_network_destroy(SainNetwork *network);
 
-bool relation_networks_write(const RelationNetworks *networks, const char *path, Error *error);
+bool sain_networks_write(const SainNetworks *networks, const char *path, Error *error);
 
 /* False with error set, and nothing to be destroyed: not such a file, of other widths, or a number that is NaN,
    infinite or out of range. */
-bool relation_networks_read(RelationNetworks *networks, const char *path, Error *error);
-void relation_networks_destroy(RelationNetworks *networks);
+bool sain_networks_read(SainNetworks *networks, const char *path, Error *error);
+void sain_networks_destroy(SainNetworks *networks);
 
-/* Answers to a view. Zero-initialise, free with relation_answers_free. */
-typedef struct RelationAnswers {
-    float *outputs; /* [body_count, RELATION_OUTPUTS] */
+/* Answers to a view. Zero-initialise, free with sain_answers_free. */
+typedef struct SainAnswers {
+    float *outputs; /* [body_count, SAIN_OUTPUTS] */
     bool *known;    /* [body_count] all inputs of the body and its rows are within the ranges of the training data */
     float *effects, *inputs, *columns, *scratch;
     ArrayBlock arrays;
-} RelationAnswers;
+} SainAnswers;
 
-void relation_answers_free(RelationAnswers *answers);
+void sain_answers_free(SainAnswers *answers);
 
 /* clamp: inputs beyond the ranges are moved to their ends. False when memory is short. */
-bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, RelationView *view, bool clamp);
+bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp);
 
 /* The method sain with a network in memory, for training. */
 
 /* The networks remain the caller's and must outlive the solver. False with error set when memory is short. */
-bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationForm form, Error *error);
+bool sain_make(ContactSolver *solver, const SainNetwork *network, SainForm form, Error *error);

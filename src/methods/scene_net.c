@@ -26,7 +26,7 @@
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct ScenePrediction {
     SceneView view;
-    float inputs[4 * SLOT_WIDTH_MAX], first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX];
+    float inputs[4 * SCENE_NET_WIDTH_MAX], first[SCENE_NET_WIDTH_MAX], second[SCENE_NET_WIDTH_MAX];
     float *outputs;         /* [2 slots present] */
     ContactImpulse *change; /* [contact_count] from the warm start to the prediction */
     ArrayBlock arrays;
@@ -88,20 +88,20 @@ static int turns_modulo_4(float turns) { return (int)(turns - 4 * floorf(turns /
 
 /* With the bomb rotated back by so many quarter turns. */
 static uint32_t feature_of(const ContactProblem *problem, const ContactPoint *contact, int turns) {
-    if (contact->a != problem->marked && contact->b != problem->marked) return contact->feature;
-    return turn_feature(contact->feature, contact->a == problem->marked, turns);
+    if (contact->a != problem->bomb && contact->b != problem->bomb) return contact->feature;
+    return turn_feature(contact->feature, contact->a == problem->bomb, turns);
 }
 
 uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact) {
-    const int bomb = problem->marked;
+    const int bomb = problem->bomb;
     return feature_of(problem, contact, bomb < 0 ? 0 : turns_modulo_4(turns_of(&problem->bodies[bomb])));
 }
 
-static void load_contact(SceneView *view, const SlotNetwork *network, const ContactProblem *problem, int turns, int i) {
+static void load_contact(SceneView *view, const SceneNet *network, const ContactProblem *problem, int turns, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     ContactImpulse *base = &view->base[i];
     *base = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
-    const int slot = slot_network_find(network, contact->a, contact->b, feature_of(problem, contact, turns));
+    const int slot = scene_net_find(network, contact->a, contact->b, feature_of(problem, contact, turns));
     if (slot < 0) return;
     const int k = view->slots.slot_count++;
     view->contacts[k] = i;
@@ -115,7 +115,7 @@ static void load_contact(SceneView *view, const SlotNetwork *network, const Cont
     base->tangent = contact_clamp(base->tangent, -most, most);
 }
 
-bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+bool scene_view_take(SceneView *view, const SceneNet *network, const ContactProblem *problem) {
     if (!reserve_view(view, problem)) return false;
     const ProblemBody *bomb = &problem->bodies[network->bomb];
     load_body(view->bomb, bomb);
@@ -124,7 +124,7 @@ bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactP
     view->bomb[2] -= quarter_turn * turns;
     for (int i = 0, k = 0; i < problem->body_count; i++)
         if (i != network->bomb) load_body(view->state + SLOT_BODY_NUMBERS * k++, &problem->bodies[i]);
-    view->slots = (SlotView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
+    view->slots = (SceneNetView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
     for (int i = 0; i < problem->contact_count; i++) load_contact(view, network, problem, features_turn, i);
     return true;
 }
@@ -137,16 +137,16 @@ static void free_prediction(ScenePrediction *prediction) {
 
 /* *known: whether all inputs are within the range of the training data. The problem must have the network's bodies.
    False when memory is short. */
-static bool look_in_range(ScenePrediction *prediction, const SlotNetwork *network, const ContactProblem *problem,
+static bool look_in_range(ScenePrediction *prediction, const SceneNet *network, const ContactProblem *problem,
                           bool *known) {
     const size_t contacts = (size_t)problem->contact_count;
     if (!scene_view_take(&prediction->view, network, problem) ||
         !ARRAY_BLOCK_RESERVE(&prediction->arrays, ARRAY_PART(prediction->outputs, 2 * contacts),
                              ARRAY_PART(prediction->change, contacts)))
         return false;
-    slot_network_look(network, &prediction->view.slots, prediction->inputs);
+    scene_net_look(network, &prediction->view.slots, prediction->inputs);
     int within = 1; /* branchless, so that the loop is vectorised */
-    for (int i = 0; i < slot_network_inputs(network); i++)
+    for (int i = 0; i < scene_net_inputs(network); i++)
         within &= (prediction->inputs[i] >= network->low[i]) & (prediction->inputs[i] <= network->high[i]);
     *known = within != 0;
     return true;
@@ -154,11 +154,11 @@ static bool look_in_range(ScenePrediction *prediction, const SlotNetwork *networ
 
 /* After look_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
    friction cones, and counts those that were outside. NaN or infinite if the network's outputs are. */
-static void predict(ScenePrediction *prediction, const SlotNetwork *network, const ContactProblem *problem,
+static void predict(ScenePrediction *prediction, const SceneNet *network, const ContactProblem *problem,
                     NetworkFallbacks *fallbacks) {
     const SceneView *view = &prediction->view;
-    slot_network_predict(network, prediction->inputs, &view->slots, prediction->first, prediction->second,
-                         prediction->outputs);
+    scene_net_predict(network, prediction->inputs, &view->slots, prediction->first, prediction->second,
+                      prediction->outputs);
     for (int i = 0; i < problem->contact_count; i++) prediction->change[i] = view->base[i];
     for (int k = 0; k < view->slots.slot_count; k++) {
         ContactImpulse *to = &prediction->change[view->contacts[k]];
@@ -200,22 +200,22 @@ typedef struct SceneNetChoice {
     StoppingRule rule; /* after the network; after calm steps a share of it */
 } SceneNetChoice;
 
-typedef struct SceneNet {
-    SlotNetwork *own;           /* or NULL */
-    const SlotNetwork *network; /* the same, or the caller's */
+typedef struct SceneNetSolver {
+    SceneNet *own;           /* or NULL */
+    const SceneNet *network; /* the same, or the caller's */
     Momentum momentum;
     ScenePrediction prediction;
     SceneNetChoice choice;
-    int half;                             /* sweeps in calm steps */
-    float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
-    float *rest_factors, *half_factors;   /* [rest], [half] */
-    float *more_factors;                  /* [rule.more] of the sweeps that follow if the residual is too large */
-} SceneNet;
+    int half;                                  /* sweeps in calm steps */
+    float after_factors[SCENE_NET_SWEEPS_MAX]; /* [after] */
+    float *rest_factors, *half_factors;        /* [rest], [half] */
+    float *more_factors;                       /* [rule.more] of the sweeps that follow if the residual is too large */
+} SceneNetSolver;
 
 static const SettingSpec settings[] = {
     {"network", "file of the trained network (default: the scene's)", SETTING_OWN},
     {"after", "sweeps after the network (default: as in its training)",
-     SETTING_INT(SceneNetChoice, after, 0, SLOT_SWEEPS_MAX)},
+     SETTING_INT(SceneNetChoice, after, 0, SCENE_NET_SWEEPS_MAX)},
     {"near", "sweeps go on while contacts miss their velocity by this, m/s (in blocks of 8; default: 0.02)",
      SETTING_OWN},
     {"more", "sweeps that near may add (rounded up to whole blocks; default: 48)", SETTING_OWN},
@@ -226,9 +226,9 @@ static const SettingSpec settings[] = {
     {0}};
 
 static void destroy(void *state) {
-    SceneNet *solver = state;
+    SceneNetSolver *solver = state;
     if (solver == NULL) return;
-    slot_network_destroy(solver->own);
+    scene_net_destroy(solver->own);
     momentum_free(&solver->momentum);
     free_prediction(&solver->prediction);
     free(solver->rest_factors);
@@ -238,8 +238,8 @@ static void destroy(void *state) {
 }
 
 /* Learned factors are valid only for the number of sweeps they were learned for. */
-static void choose_factors(SceneNet *solver) {
-    const SlotNetwork *network = solver->network;
+static void choose_factors(SceneNetSolver *solver) {
+    const SceneNet *network = solver->network;
     bool learned = false;
     for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
     learned |= !solver->choice.predicts;
@@ -250,8 +250,8 @@ static void choose_factors(SceneNet *solver) {
                                              : 0;
 }
 
-static SceneNet *make(const SlotNetwork *network, const SceneNetChoice *choice, Error *error) {
-    SceneNet *solver = calloc(1, sizeof *solver);
+static SceneNetSolver *make(const SceneNet *network, const SceneNetChoice *choice, Error *error) {
+    SceneNetSolver *solver = calloc(1, sizeof *solver);
     if (solver == NULL) {
         error_memory(error, "scene-net");
         return NULL;
@@ -273,29 +273,30 @@ static SceneNet *make(const SlotNetwork *network, const SceneNetChoice *choice, 
 
 static void *create(const Settings *chosen, Error *error) {
     const char *path = method_network(chosen, NULL, "scene-net", error);
-    SlotNetwork *network = path != NULL ? slot_network_read(path, error) : NULL;
+    SceneNet *network = path != NULL ? scene_net_read(path, error) : NULL;
     if (network == NULL) return NULL;
     SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {0, near_default, STOPPING_MORE}};
-    SceneNet *solver = settings_read(chosen, settings, &choice, error) && stopping_read(&choice.rule, chosen, error)
-                           ? make(network, &choice, error)
-                           : NULL;
+    SceneNetSolver *solver =
+        settings_read(chosen, settings, &choice, error) && stopping_read(&choice.rule, chosen, error)
+            ? make(network, &choice, error)
+            : NULL;
     if (solver == NULL)
-        slot_network_destroy(network);
+        scene_net_destroy(network);
     else
         solver->own = network;
     return solver;
 }
 
 /* Before the bomb appears there is one body less. */
-static bool fits(const SlotNetwork *network, const ContactProblem *problem, Error *error) {
-    const int bodies = problem->marked < 0 ? network->body_count - 1 : network->body_count;
+static bool fits(const SceneNet *network, const ContactProblem *problem, Error *error) {
+    const int bodies = problem->bomb < 0 ? network->body_count - 1 : network->body_count;
     if (problem->body_count != bodies)
         return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
                            network->scene, bodies, problem->body_count);
-    if (problem->marked < 0 || problem->marked == network->bomb) return true;
+    if (problem->bomb < 0 || problem->bomb == network->bomb) return true;
     return error_input(error, "scene-net",
                        "the network is for the scene %s, with the bomb as body %d; here it is body %d", network->scene,
-                       network->bomb, problem->marked);
+                       network->bomb, problem->bomb);
 }
 
 static int within(float speed) { return fabsf(speed) <= speed_max; }
@@ -317,11 +318,11 @@ static bool is_bounded(const Sweeps *sweeps) {
     return bounded != 0;
 }
 
-static bool run_more(SceneNet *solver, const StoppingRule *rule) {
+static bool run_more(SceneNetSolver *solver, const StoppingRule *rule) {
     return momentum_run_more(&solver->momentum, rule, solver->more_factors);
 }
 
-static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
+static bool run(SceneNetSolver *solver, const ContactProblem *problem, Route route) {
     Momentum *momentum = &solver->momentum;
     const StoppingRule *rule = &solver->choice.rule;
     const StoppingRule calm = {0, calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
@@ -336,11 +337,11 @@ static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
 }
 
 /* After the warm start. */
-static bool choose_route(SceneNet *solver, const ContactProblem *problem, Route *route, NetworkFallbacks *fallbacks,
-                         Error *error) {
-    const SlotNetwork *network = solver->network;
+static bool choose_route(SceneNetSolver *solver, const ContactProblem *problem, Route *route,
+                         NetworkFallbacks *fallbacks, Error *error) {
+    const SceneNet *network = solver->network;
     *route = ROUTE_MOMENTUM;
-    if (problem->marked < 0) return true;
+    if (problem->bomb < 0) return true;
     bool known = problem->bodies[network->bomb].inv_mass == network->bomb_inv_mass;
     if (!residual_reaches(&solver->momentum.sweeps, problem->contact_count, network->gate)) {
         if (known) *route = ROUTE_CALM;
@@ -352,12 +353,13 @@ static bool choose_route(SceneNet *solver, const ContactProblem *problem, Route 
     return true;
 }
 
-static bool solve_without(SceneNet *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve_without(SceneNetSolver *solver, const ContactProblem *problem, ContactSolution *solution,
+                          Error *error) {
     return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->choice.rest, solution, error);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    SceneNet *solver = state;
+    SceneNetSolver *solver = state;
     Sweeps *sweeps = &solver->momentum.sweeps;
     if (!fits(solver->network, problem, error)) return false;
     if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return error_memory(error, "scene-net");
@@ -392,7 +394,7 @@ const ContactSolverKind solver_scene_net = {
     .solve = solve,
     .destroy = destroy};
 
-bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
+bool scene_net_make(ContactSolver *solver, const SceneNet *network, float near, Error *error) {
     solver->kind = &solver_scene_net;
     const SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {0, near, STOPPING_MORE}};
     solver->state = make(network, &choice, error);

@@ -16,7 +16,7 @@
 
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct SceneView {
-    SlotView slots;
+    SceneNetView slots;
     int32_t *contacts;    /* [slots.slot_count] the contact of each slot */
     ContactImpulse *base; /* [contact_count] impulses without the network: the warm start, for contacts with a slot
                              up to its cap and inside the cone */
@@ -35,9 +35,9 @@ uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *c
 float scene_view_angle(const ProblemBody *body);
 
 /* The problem must have the network's bodies. False when memory is short. */
-bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem);
+bool scene_view_take(SceneView *view, const SceneNet *network, const ContactProblem *problem);
 
 /* The method scene-net with a network in memory, for training. */
 
 /* The network remains the caller's and must outlive the solver. near: the setting, m/s. */
-bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error);
+bool scene_net_make(ContactSolver *solver, const SceneNet *network, float near, Error *error);

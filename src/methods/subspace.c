@@ -225,7 +225,7 @@ static bool reserve(SubspaceStepper *method, size_t bodies, Error *error) {
 /* The network's bodies must be those of the world: a caller may step any world of the scene. */
 static bool check_world(const SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
                         Error *error) {
-    int moving = problem->marked < 0;
+    int moving = problem->bomb < 0;
     for (int i = 0; i < problem->body_count; i++) moving += bodies[i].inv_mass != 0;
     return moving == method->net->shape.bodies ||
            error_input(error, "subspace", "the world has %d bodies that move, with the bomb; the network is for %d",
@@ -239,7 +239,7 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
     if (!reserve(method, (size_t)problem->body_count, error) || !check_world(method, bodies, problem, error))
         return false;
     for (int i = 0; i < problem->body_count; i++) method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
-    if (problem->marked >= 0)
+    if (problem->bomb >= 0)
         begun->solution->fallbacks = predict(method, bodies, problem, begun->step);
     else
         repeat(method, bodies, problem->body_count, begun->step->frame);
@@ -256,7 +256,7 @@ static void measure(void *state, const BegunStep *begun) {
 static void keep(void *state, const World *world) {
     SubspaceStepper *method = state;
     const ContactProblem *problem = world_problem(world);
-    method->after_count = problem->marked >= 0 ? problem->body_count : 0;
+    method->after_count = problem->bomb >= 0 ? problem->body_count : 0;
     memcpy(method->after, world_bodies(world), (size_t)problem->body_count * sizeof *method->after);
 }
 

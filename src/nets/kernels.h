@@ -23,7 +23,7 @@ size_t packed_rows_bytes(int count, int width);
 /* Rounds rows[count, width] of finite numbers to the nearest steps. */
 void packed_rows_fill(PackedRows *packed, const float *rows);
 
-/* The loops of a network with sparse inputs (SlotNetwork). A matrix has one row per possible input, and only the
+/* The loops of a network with sparse inputs (SceneNet). A matrix has one row per possible input, and only the
    rows of inputs that are present are read. Memory traffic dominates, so rows are packed into bytes. */
 
 enum { ROW_LANES = 16 }; /* the width of a row is a multiple of this */

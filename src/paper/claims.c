@@ -4,7 +4,7 @@
 #include "base/base.h"
 #include "base/csv.h"
 #include "learning/subspace_training.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
@@ -376,10 +376,10 @@ typedef struct Launches {
     double first[2], last[2]; /* both errors with the fewest and the most launches of these */
 } Launches;
 
-static Launches compare_forms(const CsvTable *table, RelationForm other) {
+static Launches compare_forms(const CsvTable *table, SainForm other) {
     Launches cases = {0};
     for (int launches = 1; launches <= SAIN_LITTLE; launches *= 2) {
-        const double with = sain_median(table, SAIN_STACK, RELATION_ENGINE, launches, sain_error),
+        const double with = sain_median(table, SAIN_STACK, SAIN_WITH_ENGINE, launches, sain_error),
                      without = sain_median(table, SAIN_STACK, other, launches, sain_error);
         if (isnan(with) || isnan(without)) continue;
         double *kept = cases.count == 0 ? cases.first : cases.last;
@@ -391,8 +391,7 @@ static Launches compare_forms(const CsvTable *table, RelationForm other) {
     return cases;
 }
 
-static bool claim_cases(const Claims *claims, const CsvTable *table, RelationForm other, const Claim *claim,
-                        Error *error) {
+static bool claim_cases(const Claims *claims, const CsvTable *table, SainForm other, const Claim *claim, Error *error) {
     const Launches cases = compare_forms(table, other);
     Claim judged = *claim;
     judged.holds = claim_in_cases(cases.holding, cases.count);
@@ -403,9 +402,9 @@ static bool claim_cases(const Claims *claims, const CsvTable *table, RelationFor
 /* Against the engine alone, with all launches. */
 static bool claim_gain(const Claims *claims, const CsvTable *table, SainScene scene, const Claim *claim, Error *error) {
     const int most = sain_most_launches(table);
-    const double with = sain_median(table, scene, RELATION_ENGINE, most, sain_error),
-                 alone = sain_median(table, scene, RELATION_ALONE, most, sain_error),
-                 engine = sain_median(table, scene, RELATION_ENGINE, most, sain_engine_error);
+    const double with = sain_median(table, scene, SAIN_WITH_ENGINE, most, sain_error),
+                 alone = sain_median(table, scene, SAIN_ALONE, most, sain_error),
+                 engine = sain_median(table, scene, SAIN_WITH_ENGINE, most, sain_engine_error);
     Claim judged = *claim;
     judged.holds = claim_at_most(with / engine, clear, 1);
     return claim_state(claims, &judged, error, "%.2f m/s; engine alone %.2f, network alone %.2f", with, engine, alone);
@@ -417,7 +416,7 @@ static bool claim_faster(const Claims *claims, const CsvTable *table, Error *err
                                 .measured =
                                     "stack, RMS velocity error at held-out impacts after 1 to 16 launches; holds "
                                     "where it is at most 95% of that without the engine"};
-    return claim_cases(claims, table, RELATION_ALONE, &claim, error);
+    return claim_cases(claims, table, SAIN_ALONE, &claim, error);
 }
 
 static bool claim_knows(const Claims *claims, const CsvTable *table, Error *error) {
@@ -425,7 +424,7 @@ static bool claim_knows(const Claims *claims, const CsvTable *table, Error *erro
                                 .source = SOURCE ", model",
                                 .measured = "the same beside a network that sees, and corrects, what the engine did to "
                                             "another body"};
-    return claim_cases(claims, table, RELATION_SHUFFLED, &claim, error);
+    return claim_cases(claims, table, SAIN_SHUFFLED, &claim, error);
 }
 
 static bool claim_better(const Claims *claims, const CsvTable *table, Error *error) {

@@ -10,7 +10,7 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "methods/hybrid.h"
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
@@ -23,7 +23,7 @@
 #include <stdlib.h>
 
 /* The launches have numbers from UNLEARNED on, which no learning reaches. */
-enum { TIMED = 20, QUICK_TIMED = 4, REPETITIONS = 9, QUICK_REPETITIONS = 3, UNLEARNED = 2 * TABULATION_LAUNCHES_MAX };
+enum { TIMED = 20, QUICK_TIMED = 4, REPETITIONS = 9, QUICK_REPETITIONS = 3, UNLEARNED = 2 * HYBRID_LAUNCHES_MAX };
 
 /* What is measured at each row of a learning. */
 typedef struct HybridTimes {
@@ -46,10 +46,10 @@ typedef struct Measuring {
     int answers;
 } Measuring;
 
-static bool run_launches(Measuring *measuring, const Tabulation *memory, bool turned, Error *error) {
+static bool run_launches(Measuring *measuring, const HybridMemory *memory, bool turned, Error *error) {
     const HybridTimes *times = measuring->times;
     for (int i = 0; i < times->launches; i++) {
-        const Launch launch = tabulation_launch(times->scene, times->seed, UNLEARNED + i, turned);
+        const Launch launch = hybrid_launch(times->scene, times->seed, UNLEARNED + i, turned);
         if (!launch_steps_run(times->scene, times->prefix, &launch, memory, times->steps, &measuring->asked, error))
             return false;
     }
@@ -117,7 +117,7 @@ static bool measure(Measuring *measuring, Error *error) {
 /* Runs some launches with the memory, then solves each step with an impact in turns by hybrid and by interior:near=0.001,
    with medians over repetitions. Fills the row's error and error_95 of answers and us_answer to us_step_solve; NAN where no
    step is answered, or none is not. */
-static bool hybrid_measure(const HybridTimes *times, const Tabulation *memory, HybridRow *row, Error *error) {
+static bool hybrid_measure(const HybridTimes *times, const HybridMemory *memory, HybridRow *row, Error *error) {
     Measuring measuring = {.times = times};
     const bool ok = hybrid_make(&measuring.rivals[0], memory, NULL, error) &&
                     hybrid_make(&measuring.rivals[1], NULL, NULL, error) &&
@@ -145,7 +145,7 @@ enum {
     MEMORY_LIMIT = 64 << 20
 };
 
-static const int checkpoints[] = {TABULATION_FIRST, 100, 200, 300, 400, 500, 600, 700, 800, 900, 1000};
+static const int checkpoints[] = {HYBRID_FIRST, 100, 200, 300, 400, 500, 600, 700, 800, 900, 1000};
 enum { CHECKPOINTS = sizeof checkpoints / sizeof *checkpoints };
 
 #define NUMBER(member) CSV_MEMBER(HybridRow, member, CSV_OPTIONAL, .minimum = -1e9, .maximum = 1e9)
@@ -155,7 +155,7 @@ static const CsvColumn columns[] = {
     {"tolerance", CSV_NUMBER, .offset = offsetof(HybridRow, tolerance), .minimum = 1e-6, .maximum = 1000},
     {"changes", CSV_INTEGER, .offset = offsetof(HybridRow, changes), .maximum = 1},
     {"turned", CSV_INTEGER, .offset = offsetof(HybridRow, turned), .maximum = 1},
-    {"launches", CSV_NUMBER, .offset = offsetof(HybridRow, launches), .minimum = 1, .maximum = TABULATION_LAUNCHES_MAX},
+    {"launches", CSV_NUMBER, .offset = offsetof(HybridRow, launches), .minimum = 1, .maximum = HYBRID_LAUNCHES_MAX},
     {"share", CSV_OPTIONAL, .offset = offsetof(HybridRow, share), .maximum = 1},
     {"share_all", CSV_OPTIONAL, .offset = offsetof(HybridRow, share_all), .maximum = 1},
     NUMBER(error),
@@ -196,7 +196,7 @@ typedef struct Run {
     FILE *lines;
     int launches, change;
     HybridTimes times;
-    TabulationLaunch since[LAUNCHES]; /* [count] since the last row */
+    HybridLaunch since[LAUNCHES]; /* [count] since the last row */
     int count;
     double learned, saved; /* s */
     double paid;           /* NAN: not yet */
@@ -216,7 +216,7 @@ static void account(Run *run, HybridRow *row) {
     int64_t steps = 0;
     int asked = 0, answered = 0;
     for (int i = 0; i < run->count; i++) {
-        const TabulationLaunch *launch = &run->since[i];
+        const HybridLaunch *launch = &run->since[i];
         steps += launch->steps;
         asked += launch->asked;
         answered += launch->answered;
@@ -233,7 +233,7 @@ static void account(Run *run, HybridRow *row) {
     row->share_all = steps > 0 ? (double)answered / (double)steps : NAN;
 }
 
-static bool add_row(Run *run, const TabulationLaunch *launch, Error *error) {
+static bool add_row(Run *run, const HybridLaunch *launch, Error *error) {
     HybridRow row = {.scene = run->learning->scene,
                      .tolerance = (double)run->learning->tolerance,
                      .changes = run->learning->changes,
@@ -242,33 +242,33 @@ static bool add_row(Run *run, const TabulationLaunch *launch, Error *error) {
     if (!hybrid_measure(&run->times, launch->memory, &row, error)) return false;
     account(run, &row);
     row.entries = launch->memory->entry_count;
-    row.kib = (double)tabulation_bytes(launch->memory) / 1024;
+    row.kib = (double)hybrid_memory_bytes(launch->memory) / 1024;
     row.learning_ms = 1e3 * run->learned;
     row.saved_ms = 1e3 * run->saved;
     row.paid = run->paid;
     return piece_tables_print(run->lines, &hybrid_layout, -1, &row, error);
 }
 
-static bool note(void *context, const TabulationLaunch *launch, Error *error) {
+static bool note(void *context, const HybridLaunch *launch, Error *error) {
     Run *run = context;
     run->since[run->count++] = *launch;
     return launch->memory == NULL || !is_checkpoint(run, launch->number) || add_row(run, launch, error);
 }
 
 static bool learn(Run *run, const Progress *progress, Error *error) {
-    const TabulationTraining training = {.launches = run->launches,
-                                         .turned_from = run->learning->changes ? run->change : -1,
-                                         .steps = run->learning->steps,
-                                         .components = TABULATION_STANDARD_COMPONENTS,
-                                         .tolerance = run->learning->tolerance,
-                                         .limit = MEMORY_LIMIT,
-                                         .seed = run->study->seed,
-                                         .command = "",
-                                         .on_launch = note,
-                                         .context = run};
-    Tabulation *memory = tabulation_training_run(run->scene, &training, progress, error);
+    const HybridTraining training = {.launches = run->launches,
+                                     .turned_from = run->learning->changes ? run->change : -1,
+                                     .steps = run->learning->steps,
+                                     .components = HYBRID_STANDARD_COMPONENTS,
+                                     .tolerance = run->learning->tolerance,
+                                     .limit = MEMORY_LIMIT,
+                                     .seed = run->study->seed,
+                                     .command = "",
+                                     .on_launch = note,
+                                     .context = run};
+    HybridMemory *memory = hybrid_training_run(run->scene, &training, progress, error);
     const bool whole = memory != NULL && memory->launches == run->launches;
-    tabulation_destroy(memory);
+    hybrid_memory_destroy(memory);
     return whole || (memory == NULL ? false : error_interrupted(error, "hybrid", "stopped"));
 }
 

@@ -42,11 +42,11 @@ static void take_row(SweepRow *row, const EngineRun *run) {
     const ContactProblem *problem = world_problem(run->world);
     for (int i = next_pair(problem, -1); i < problem->contact_count; i = next_pair(problem, i)) {
         const int a = problem->contacts[i].a, b = problem->contacts[i].b;
-        bool bomb = a == problem->marked || b == problem->marked;
+        bool bomb = a == problem->bomb || b == problem->bomb;
         if (!bomb || problem->bodies[a].inv_mass == 0 || problem->bodies[b].inv_mass == 0) continue;
         *row = (SweepRow){.step = run->frame,
                           .bodies = {a, b},
-                          .bomb = problem->marked,
+                          .bomb = problem->bomb,
                           .boxes = {engine_run_box(run, a), engine_run_box(run, b)}};
         fill_row(row, problem, world_solution(run->world), i);
         return;

@@ -209,7 +209,7 @@ static bool count_step(StepCounts *counts, const EngineRun *run, Error *error) {
     counts->could_touch = counts->bodies * (counts->bodies - 1) / 2 - fixed * (fixed - 1) / 2;
     for (int i = 0; i < problem->contact_count; i++) counts->warm += problem->contacts[i].warm_normal != 0;
     for (int i = next_pair(problem, -1); i < problem->contact_count; i = next_pair(problem, i)) counts->touching++;
-    Vec2 v = world_bodies(run->world)[problem->marked].velocity;
+    Vec2 v = world_bodies(run->world)[problem->bomb].velocity;
     counts->bomb_moved = (double)(scene->dt * hypotf(v.x, v.y));
     return counts->candidates >= 0 || error_memory(error, "figure");
 }

@@ -76,7 +76,7 @@ static double tilt(const ProblemBody *a, const ProblemBody *b) {
 static bool shows_all(const ContactProblem *problem, int first) {
     int a = problem->contacts[first].a, b = problem->contacts[first].b;
     const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
-    return (a == problem->marked || b == problem->marked) && body_a->inv_mass > 0 && body_b->inv_mass > 0 &&
+    return (a == problem->bomb || b == problem->bomb) && body_a->inv_mass > 0 && body_b->inv_mass > 0 &&
            pair_contact_count(problem, first) == 2 && tilt(body_a, body_b) >= LEAST_TILT;
 }
 
@@ -87,7 +87,7 @@ static bool find_in_step(Collision *collision, const EngineRun *run) {
         int a = problem->contacts[i].a, b = problem->contacts[i].b;
         *collision = (Collision){.boxes = {engine_run_box(run, a), engine_run_box(run, b)},
                                  .bodies = {a, b},
-                                 .bomb = problem->marked,
+                                 .bomb = problem->bomb,
                                  .step = run->frame,
                                  .points = 8};
         for (int k = 0; k < 2; k++)

@@ -7,7 +7,7 @@
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "methods/pair.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "nets/nets.h"
 #include "paper/paper.h"
 #include "runs/pieces.h"
@@ -103,7 +103,7 @@ typedef enum SainScene { SAIN_STACK, SAIN_PYRAMID, SAIN_SCENES } SainScene;
 
 /* A training, scored on one scene. RMS velocity errors of all bodies that touch another, m/s. */
 typedef struct SainRow {
-    int scene, form; /* SainScene, RelationForm */
+    int scene, form; /* SainScene, SainForm */
     int launches;    /* of the stack, trained on */
     int seed;
     double error, engine, constant; /* the network; 10 sweeps alone; the mean correction of the training data */
@@ -115,7 +115,7 @@ enum { SAIN_MAX_LAUNCHES = 64, SAIN_LITTLE = 16 /* launches: "little data" */ };
 
 /* The median over seeds; NaN without rows. of: the row's number. */
 typedef double SainNumber(const SainRow *row);
-double sain_median(const CsvTable *table, SainScene scene, RelationForm form, int launches, SainNumber *of);
+double sain_median(const CsvTable *table, SainScene scene, SainForm form, int launches, SainNumber *of);
 
 SainNumber sain_error, sain_engine_error, sain_constant_error;
 

@@ -4,7 +4,7 @@
 #include "base/csv.h"
 #include "figures/sketch.h"
 #include "learning/subspace_training.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
@@ -16,13 +16,13 @@
 /* Two panels: the error of sain and its ablations over the number of launches of the stack, on the stack and on the
    settled pyramid. */
 
-enum { SAIN_ENGINE = RELATION_FORMS, SAIN_CONSTANT, SAIN_SERIES };
+enum { SAIN_ENGINE = SAIN_FORMS, SAIN_CONSTANT, SAIN_SERIES };
 
 static PlotLook sain_look(const void *of, int series) {
-    static const char *const names[RELATION_FORMS] = {"sain", "engine=off: network alone", "engine=shuffled"};
+    static const char *const names[SAIN_FORMS] = {"sain", "engine=off: network alone", "engine=shuffled"};
     (void)of;
     if (series == SAIN_ENGINE) return plot_look_dashed("engine alone, 10 sweeps");
-    if (series == SAIN_CONSTANT) return plot_look_thin(plot_look(RELATION_FORMS, "mean correction"));
+    if (series == SAIN_CONSTANT) return plot_look_thin(plot_look(SAIN_FORMS, "mean correction"));
     return plot_look(series, names[series]);
 }
 
@@ -31,7 +31,7 @@ static bool sain_point(const void *of, int panel, int series, int i, PlotPoint *
     SainNumber *const number = series == SAIN_ENGINE     ? sain_engine_error
                                : series == SAIN_CONSTANT ? sain_constant_error
                                                          : sain_error;
-    const RelationForm form = series < RELATION_FORMS ? (RelationForm)series : RELATION_ENGINE;
+    const SainForm form = series < SAIN_FORMS ? (SainForm)series : SAIN_WITH_ENGINE;
     *out = (PlotPoint){1 << i, sain_median(of, (SainScene)panel, form, 1 << i, number), 0};
     return 1 << i <= SAIN_MAX_LAUNCHES;
 }

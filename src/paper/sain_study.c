@@ -6,7 +6,7 @@
 #include "learning/learning.h"
 #include "learning/sain_training.h"
 #include "learning/scene_training.h"
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 #include "methods/sain.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
@@ -29,7 +29,7 @@ static const char *const sain_scene_words[SAIN_SCENES + 1] = {"stack", "pyramid_
 
 static const CsvColumn columns[] = {
     {"scene", CSV_WORD, offsetof(SainRow, scene), .words = sain_scene_words, .key = true},
-    {"engine", CSV_WORD, offsetof(SainRow, form), .words = relation_form_names, .key = true},
+    {"engine", CSV_WORD, offsetof(SainRow, form), .words = sain_form_names, .key = true},
     {"launches", CSV_INTEGER, offsetof(SainRow, launches), .minimum = 1, .maximum = SAIN_MAX_LAUNCHES, .key = true},
     {"seed", CSV_INTEGER, offsetof(SainRow, seed), .minimum = 1, .maximum = 1000000, .key = true},
     {"error", CSV_NUMBER, offsetof(SainRow, error), .maximum = 1e9},
@@ -43,7 +43,7 @@ typedef struct Data {
     const SystemStudy *study;
     int launches, seeds;
     ImpactProblems trained, scored[SAIN_SCENES];
-    SainRow *rows; /* [RELATION_FORMS, seeds, SAIN_SCENES] */
+    SainRow *rows; /* [SAIN_FORMS, seeds, SAIN_SCENES] */
 } Data;
 
 static bool record(const SystemStudy *study, SainScene scene, int launches, bool scoring, ImpactProblems *problems,
@@ -51,60 +51,60 @@ static bool record(const SystemStudy *study, SainScene scene, int launches, bool
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s.yaml", study->scenes, sain_scene_words[scene]);
     Scene *read = scene_read(path, error);
-    const RelationLaunches from = {&read, 1, launches, 1, 0, scoring, NULL};
-    const bool ok = read != NULL && relation_launches_record(&from, problems, progress, error);
+    const SainLaunches from = {&read, 1, launches, 1, 0, scoring, NULL};
+    const bool ok = read != NULL && sain_launches_record(&from, problems, progress, error);
     scene_destroy(read);
     return ok;
 }
 
 /* A training in memory. */
 typedef struct Learner {
-    RelationNetwork network;
-    RelationSamples samples;
-    RelationFit fit;
+    SainNetwork network;
+    SainSamples samples;
+    SainFit fit;
     Adam adam;
 } Learner;
 
 static void free_learner(Learner *learner) {
-    relation_fit_free(&learner->fit);
+    sain_fit_free(&learner->fit);
     adam_free(&learner->adam);
-    relation_samples_free(&learner->samples);
-    relation_network_destroy(&learner->network);
+    sain_samples_free(&learner->samples);
+    sain_network_destroy(&learner->network);
 }
 
 static bool learn(Learner *learner, const Data *data, uint64_t seed, Error *error) {
     const int steps = data->study->quick ? QUICK_STEPS : STEPS;
     double loss;
-    if (!relation_network_create(&learner->network, error) ||
-        !relation_samples_add(&learner->samples, &data->trained, false, error) ||
-        !adam_create(&learner->adam, relation_weight_count(&learner->network), ADAM_SQUARE_DECAY, error))
+    if (!sain_network_create(&learner->network, error) ||
+        !sain_samples_add(&learner->samples, &data->trained, false, error) ||
+        !adam_create(&learner->adam, sain_weight_count(&learner->network), ADAM_SQUARE_DECAY, error))
         return false;
     if (learner->samples.count == 0) return error_input(error, "sain", "no box is touched");
-    relation_normalise(&learner->network, &learner->samples);
-    relation_set_ranges(&learner->network, &learner->samples);
-    relation_first_weights(&learner->network, seed, learner->adam.weights);
-    if (!relation_fit_begin(&learner->fit, &learner->network, &learner->samples, BATCH, error)) return false;
+    sain_normalise(&learner->network, &learner->samples);
+    sain_set_ranges(&learner->network, &learner->samples);
+    sain_first_weights(&learner->network, seed, learner->adam.weights);
+    if (!sain_fit_begin(&learner->fit, &learner->network, &learner->samples, BATCH, error)) return false;
     for (int step = 0; step < steps; step++)
-        if (!relation_fit_step(&learner->fit, &learner->adam, seed, step, first_rate * (1 - (double)step / steps),
-                               &loss, error))
+        if (!sain_fit_step(&learner->fit, &learner->adam, seed, step, first_rate * (1 - (double)step / steps), &loss,
+                           error))
             return false;
     return true;
 }
 
 /* The engine alone is what the form that knows it would correct. */
 static bool score(Learner *learner, const Data *data, SainScene scene, SainRow *row, Error *error) {
-    RelationSamples samples = {.form = learner->samples.form}, engine = {.form = RELATION_ENGINE};
-    RelationErrors errors = {0}, of_engine = {0};
-    bool ok = relation_samples_add(&samples, &data->scored[scene], true, error) &&
-              relation_samples_add(&engine, &data->scored[scene], true, error);
+    SainSamples samples = {.form = learner->samples.form}, engine = {.form = SAIN_WITH_ENGINE};
+    SainErrors errors = {0}, of_engine = {0};
+    bool ok = sain_samples_add(&samples, &data->scored[scene], true, error) &&
+              sain_samples_add(&engine, &data->scored[scene], true, error);
     if (ok && samples.count == 0) ok = error_input(error, "sain", "no held-out launch has an impact");
-    ok = ok && relation_fit_errors(&learner->fit, learner->adam.weights, &samples, &errors, error) &&
-         relation_fit_errors(&learner->fit, learner->adam.weights, &engine, &of_engine, error);
+    ok = ok && sain_fit_errors(&learner->fit, learner->adam.weights, &samples, &errors, error) &&
+         sain_fit_errors(&learner->fit, learner->adam.weights, &engine, &of_engine, error);
     row->error = errors.with;
     row->constant = errors.constant;
     row->engine = of_engine.without;
-    relation_samples_free(&samples);
-    relation_samples_free(&engine);
+    sain_samples_free(&samples);
+    sain_samples_free(&engine);
     return ok;
 }
 
@@ -112,7 +112,7 @@ static bool score(Learner *learner, const Data *data, SainScene scene, SainRow *
 static bool train_one(void *context, int i, Error *error) {
     const Data *data = context;
     const int form = i / data->seeds, seed = i % data->seeds;
-    Learner learner = {.samples = {.form = (RelationForm)form}};
+    Learner learner = {.samples = {.form = (SainForm)form}};
     bool ok = learn(&learner, data, data->study->seed + (uint64_t)seed * 7919, error);
     for (SainScene scene = 0; ok && scene < SAIN_SCENES; scene++) {
         SainRow *row = &data->rows[i * SAIN_SCENES + (int)scene];
@@ -135,7 +135,7 @@ static bool write_launches(const SystemStudy *study, int launches, FILE *lines, 
                            Error *error) {
     Data data = {.study = study, .launches = launches, .seeds = study->quick ? 1 : SEEDS};
     if (study->quick && launches != 1 && launches != SAIN_LITTLE) return true;
-    const int trainings = RELATION_FORMS * data.seeds, count = trainings * SAIN_SCENES;
+    const int trainings = SAIN_FORMS * data.seeds, count = trainings * SAIN_SCENES;
     data.rows = calloc((size_t)count, sizeof *data.rows);
     ProgressStage recording = {progress, 0, 0.2, false}, training = {progress, 0.2, 0.8, false};
     const Progress of_recording = {progress_stage, &recording}, of_training = {progress_stage, &training};
@@ -155,7 +155,7 @@ double sain_engine_error(const SainRow *row) { return row->engine; }
 
 double sain_constant_error(const SainRow *row) { return row->constant; }
 
-double sain_median(const CsvTable *table, SainScene scene, RelationForm form, int launches, SainNumber *of) {
+double sain_median(const CsvTable *table, SainScene scene, SainForm form, int launches, SainNumber *of) {
     enum { MOST = 64 };
     const SainRow *rows = table->rows;
     double numbers[MOST];

@@ -64,7 +64,7 @@ static bool read_file_head(StoredProblem *stored, NpzFile *file, const char *pat
     stored->frame = frame;
     stored->problem.dt = dt;
     stored->problem.fall = fall;
-    stored->problem.marked = bomb;
+    stored->problem.bomb = bomb;
     return true;
 }
 
@@ -98,8 +98,8 @@ static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, 
     ContactProblem *problem = &stored->problem;
     problem->body_count = (int)bodies;
     problem->contact_count = (int)contacts[0];
-    if (problem->marked < -1 || problem->marked >= problem->body_count)
-        return error_input(error, path, "the bomb is body %d of %d", problem->marked, problem->body_count);
+    if (problem->bomb < -1 || problem->bomb >= problem->body_count)
+        return error_input(error, path, "the bomb is body %d of %d", problem->bomb, problem->body_count);
     if (!check_shapes(file, bodies, contacts[0], error)) return false;
     problem->bodies = stored->bodies = calloc((size_t)bodies, sizeof *stored->bodies);
     problem->contacts = stored->contacts = calloc((size_t)contacts[0] + 1, sizeof *stored->contacts);
@@ -239,7 +239,7 @@ static void split_contact_heads(const ContactProblem *problem, int32_t (*pairs)[
 }
 
 bool problem_write(const ContactProblem *problem, const char *scene, int frame, const char *path, Error *error) {
-    int32_t version = PROBLEM_VERSION, frame_number = frame, bomb = problem->marked;
+    int32_t version = PROBLEM_VERSION, frame_number = frame, bomb = problem->bomb;
     size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     int32_t(*pairs)[2] = calloc(contacts + 1, sizeof *pairs);
     uint32_t *features = calloc(contacts + 1, sizeof *features);

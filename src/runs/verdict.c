@@ -200,7 +200,7 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
     const VerdictStep step = {.frame = frame,
                               .body_count = world_body_count(world),
                               .contact_count = problem->contact_count,
-                              .bomb = problem->marked,
+                              .bomb = problem->bomb,
                               .bodies = world_bodies(world),
                               .contacts = problem->contacts};
     network_fallbacks_add(&((VerdictWatch *)watch)->fallbacks, &world_solution(world)->fallbacks);

@@ -182,9 +182,9 @@ bool launches_for_scoring(const Scene *scene, int count, Launch *out, Error *err
 }
 
 static bool bomb_touches(const ContactProblem *problem) {
-    for (int i = 0; problem->marked >= 0 && i < problem->contact_count; i++) {
+    for (int i = 0; problem->bomb >= 0 && i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
-        bool bomb = contact->a == problem->marked || contact->b == problem->marked;
+        bool bomb = contact->a == problem->bomb || contact->b == problem->bomb;
         if (bomb && problem->bodies[contact->a].inv_mass > 0 && problem->bodies[contact->b].inv_mass > 0) return true;
     }
     return false;

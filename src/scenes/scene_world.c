@@ -18,7 +18,7 @@ bool scene_add_bomb(const Scene *scene, World *world, Error *error) {
     BodyDef body = scene_bomb_body(scene);
     int index = world_body_count(world);
     if (!world_add_body(world, &body, error)) return false;
-    world_mark(world, index);
+    world_set_bomb(world, index);
     return true;
 }
 

@@ -39,7 +39,7 @@ static const ContactPoint touch = {.a = 0,
 
 static void make_example(Example *example) {
     *example = (Example){
-        .problem = {.body_count = BODIES, .contact_count = CONTACTS, .marked = 2, .dt = 1.0f / 60.0f, .fall = 0.2f},
+        .problem = {.body_count = BODIES, .contact_count = CONTACTS, .bomb = 2, .dt = 1.0f / 60.0f, .fall = 0.2f},
         .bodies = {{.size = {100, 20}}, box, box},
         .contacts = {touch, touch, touch}};
     example->problem.bodies = example->bodies;
@@ -58,7 +58,7 @@ TEST(written_is_read) {
     assert_ok(stored != NULL, error);
     assert_string_equal(stored->scene, "stack");
     assert_int_equal(stored->frame, 41);
-    assert_int_equal(stored->problem.marked, 2);
+    assert_int_equal(stored->problem.bomb, 2);
     assert_true(stored->problem.dt == example.problem.dt);
     assert_true(stored->problem.fall == example.problem.fall);
     assert_int_equal(stored->problem.body_count, BODIES);
@@ -74,12 +74,12 @@ TEST(a_problem_without_contacts_is_one) {
     make_example(&example);
     example.problem.contact_count = 0;
     example.problem.contacts = NULL;
-    example.problem.marked = -1;
+    example.problem.bomb = -1;
     assert_ok(problem_write(&example.problem, "", 1, path, &error), error);
     StoredProblem *stored = problem_read(path, &error);
     assert_ok(stored != NULL, error);
     assert_int_equal(stored->problem.contact_count, 0);
-    assert_int_equal(stored->problem.marked, -1);
+    assert_int_equal(stored->problem.bomb, -1);
     problem_destroy(stored);
 }
 
@@ -108,8 +108,8 @@ TEST(bad_heads_are_refused) {
     REFUSE(problem.dt, NAN, "dt must be");
     REFUSE(problem.fall, -1, "fall must be finite and not negative (got -1)");
     REFUSE(problem.fall, INFINITY, "fall must be");
-    REFUSE(problem.marked, 3, "the bomb is body 3 of 3");
-    REFUSE(problem.marked, -2, "the bomb is body -2 of 3");
+    REFUSE(problem.bomb, 3, "the bomb is body 3 of 3");
+    REFUSE(problem.bomb, -2, "the bomb is body -2 of 3");
     REFUSE(problem.body_count, 0, "0 bodies");
     Example example;
     make_example(&example);

@@ -44,12 +44,12 @@ static void step(World *world, FakeSolver *fake) {
 TEST(a_contact_problem_holds_what_the_step_froze) {
     World *world = box_on_ground(true, true, 0.47f);
     FakeSolver fake = {0};
-    world_mark(world, 1);
+    world_set_bomb(world, 1);
     step(world, &fake);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->body_count, 2);
     assert_int_equal(problem->contact_count, 2);
-    assert_int_equal(problem->marked, 1);
+    assert_int_equal(problem->bomb, 1);
     assert_near(problem->dt, dt, 0);
     assert_near(problem->bodies[1].velocity.y, -10 * dt, 1e-6);
     assert_near(problem->bodies[0].velocity.y, 0, 0);
@@ -182,7 +182,7 @@ static void expect_warm(const World *world, int contact, float warm) {
 TEST(a_body_taken_out_takes_its_contacts_with_it) {
     World *world = two_boxes_on_ground(vec2(1, 1));
     FakeSolver fake = {.impulse = 7};
-    world_mark(world, 2);
+    world_set_bomb(world, 2);
     step(world, &fake);
     world_remove_last_body(world);
     assert_int_equal(world_body_count(world), 2);
@@ -191,7 +191,7 @@ TEST(a_body_taken_out_takes_its_contacts_with_it) {
     assert_near(world_solution(world)->impulses[3].normal, 10, 0);
     step(world, &fake);
     assert_int_equal(world_problem(world)->body_count, 2);
-    assert_int_equal(world_problem(world)->marked, -1);
+    assert_int_equal(world_problem(world)->bomb, -1);
     assert_int_equal(world_problem(world)->contact_count, 2);
     for (int i = 0; i < 2; i++) expect_warm(world, i, 7 + (float)i);
     world_destroy(world);

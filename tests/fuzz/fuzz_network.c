@@ -7,7 +7,7 @@
 #include "nets/nets.h"
 #include "nets/kinds.h"
 #include "methods/sain.h"
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,30 +29,30 @@ static void read_network(const char *path) {
 }
 
 /* One slot is present, and the bodies are at 0. */
-static void predict_slots(const SlotNetwork *network) {
-    enum { VALUES = SLOT_BODY_NUMBERS * SLOT_BODIES_MAX };
+static void predict_slots(const SceneNet *network) {
+    enum { VALUES = SLOT_BODY_NUMBERS * SCENE_NET_BODIES_MAX };
     static const float zeros[VALUES], ones[1] = {1};
-    static float inputs[8 * SLOT_WIDTH_MAX], first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX], outputs[2];
+    static float inputs[8 * SCENE_NET_WIDTH_MAX], first[SCENE_NET_WIDTH_MAX], second[SCENE_NET_WIDTH_MAX], outputs[2];
     const int32_t slot = 0, impulses[2] = {0, 1};
-    const SlotView view = {.bomb = zeros,
-                           .state = zeros,
-                           .slot_count = 1,
-                           .slots = &slot,
-                           .impulses = impulses,
-                           .ones = ones,
-                           .warm = zeros};
-    if (slot_network_inputs(network) > (int)(sizeof inputs / sizeof *inputs)) fuzz_fail("too many inputs");
-    slot_network_look(network, &view, inputs);
-    slot_network_predict(network, inputs, &view, first, second, outputs);
+    const SceneNetView view = {.bomb = zeros,
+                               .state = zeros,
+                               .slot_count = 1,
+                               .slots = &slot,
+                               .impulses = impulses,
+                               .ones = ones,
+                               .warm = zeros};
+    if (scene_net_inputs(network) > (int)(sizeof inputs / sizeof *inputs)) fuzz_fail("too many inputs");
+    scene_net_look(network, &view, inputs);
+    scene_net_predict(network, inputs, &view, first, second, outputs);
 }
 
 static void read_slot_network(const char *path) {
     Error error = {0};
     fuzz_begin();
-    SlotNetwork *network = slot_network_read(path, &error);
+    SceneNet *network = scene_net_read(path, &error);
     fuzz_end(network != NULL, &error, path);
     if (network != NULL) predict_slots(network);
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 static void check_weights(const double *weights, int count) {
@@ -85,41 +85,41 @@ static void read_fit(const char *path) {
 
 /* Each entry answers its own key with finite impulses. */
 static void read_memory(const char *path) {
-    static ContactImpulse impulses[TABULATION_CONTACTS_MAX];
+    static ContactImpulse impulses[HYBRID_CONTACTS_MAX];
     Error error = {0};
     fuzz_begin();
-    Tabulation *memory = tabulation_read(path, &error);
+    HybridMemory *memory = hybrid_memory_read(path, &error);
     fuzz_end(memory != NULL, &error, path);
     for (int entry = 0; memory != NULL && entry < memory->entry_count; entry++) {
         const int set = memory->entry_set[entry];
         const float *key = memory->keys + (size_t)entry * (size_t)memory->key_size;
-        const TabulationQuery query = {memory->set_hash[set], memory->set_contacts[set], key};
-        if (tabulation_find(memory, &query) < 0) continue; /* a metric may be anything */
-        tabulation_answer(memory, entry, key, impulses);
-        tabulation_stretch(memory, entry, key);
+        const HybridQuery query = {memory->set_hash[set], memory->set_contacts[set], key};
+        if (hybrid_memory_find(memory, &query) < 0) continue; /* a metric may be anything */
+        hybrid_memory_answer(memory, entry, key, impulses);
+        hybrid_memory_stretch(memory, entry, key);
     }
-    tabulation_destroy(memory);
+    hybrid_memory_destroy(memory);
 }
 
 /* Asked about one receiver with one sender, both at 0. */
 static void read_sain(const char *path) {
-    RelationNetworks networks;
+    SainNetworks networks;
     Error error = {0};
     fuzz_begin();
-    const bool ok = relation_networks_read(&networks, path, &error);
+    const bool ok = sain_networks_read(&networks, path, &error);
     fuzz_end(ok, &error, path);
     if (!ok) return;
-    float pair[RELATION_PAIR_INPUTS] = {0}, inputs[RELATION_BODY_INPUTS] = {0};
-    RelationBody body = {.rows = 1, .axis = {1, 0}, .radius = 1};
-    RelationView view = {.body_count = 1, .row_count = 1, .bodies = &body, .pair_inputs = pair, .body_inputs = inputs};
-    RelationAnswers answers = {0};
-    for (int f = 0; f < RELATION_FORMS; f++) {
-        if (!relation_answer(&answers, &networks.forms[f], &view, true)) fuzz_fail("memory");
-        for (int i = 0; i < RELATION_PAIR_INPUTS; i++)
+    float pair[SAIN_PAIR_INPUTS] = {0}, inputs[SAIN_BODY_INPUTS] = {0};
+    SainBody body = {.rows = 1, .axis = {1, 0}, .radius = 1};
+    SainView view = {.body_count = 1, .row_count = 1, .bodies = &body, .pair_inputs = pair, .body_inputs = inputs};
+    SainAnswers answers = {0};
+    for (int f = 0; f < SAIN_FORMS; f++) {
+        if (!sain_answer(&answers, &networks.forms[f], &view, true)) fuzz_fail("memory");
+        for (int i = 0; i < SAIN_PAIR_INPUTS; i++)
             if (!isfinite(pair[i])) fuzz_fail("input %d is not in its range", i);
     }
-    relation_answers_free(&answers);
-    relation_networks_destroy(&networks);
+    sain_answers_free(&answers);
+    sain_networks_destroy(&networks);
 }
 
 /* Steps from a state of zeros: what follows is finite and in range. */

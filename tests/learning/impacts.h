@@ -9,7 +9,7 @@
 enum { IMPACT_STEPS = 8 };
 
 static const float impact_gate = 2; /* m/s */
-static const SlotWidths small_widths = {16, 16, 16, 32};
+static const SceneNetWidths small_widths = {16, 16, 16, 32};
 
 static inline bool make_momentum(void *context, ContactSolver *solver, Error *error) {
     (void)context;
@@ -26,34 +26,34 @@ static inline void throw_over_grid(const Scene *scene, int count, Launch *launch
     for (int i = 1; i < count; i += 2) launches[i].rotation = 0.4f;
 }
 
-static inline void record_impacts(SlotSamples *samples, int launches, int first) {
+static inline void record_impacts(SceneNetSamples *samples, int launches, int first) {
     Error error = {0};
     Scene *scene = scene_named("stack");
     Launch table[200];
     assert_in_range(launches, 1, 200);
     throw_over_grid(scene, launches, table);
-    const SlotRollout rollout = {.scene = scene,
-                                 .launches = table,
-                                 .launch_count = launches,
-                                 .first_launch = first,
-                                 .steps = IMPACT_STEPS,
-                                 .gate = impact_gate,
-                                 .make_solver = make_momentum};
-    assert_ok(slot_rollout(&rollout, samples, NULL, &error), error);
+    const SceneNetRollout rollout = {.scene = scene,
+                                     .launches = table,
+                                     .launch_count = launches,
+                                     .first_launch = first,
+                                     .steps = IMPACT_STEPS,
+                                     .gate = impact_gate,
+                                     .make_solver = make_momentum};
+    assert_ok(scene_net_rollout(&rollout, samples, NULL, &error), error);
     scene_destroy(scene);
 }
 
-static inline SlotSamples labelled_impacts(int launches) {
-    SlotSamples samples = {0};
+static inline SceneNetSamples labelled_impacts(int launches) {
+    SceneNetSamples samples = {0};
     Error error = {0};
     record_impacts(&samples, launches, 0);
-    assert_ok(slot_samples_label(&samples, 0, NULL, &error), error);
+    assert_ok(scene_net_samples_label(&samples, 0, NULL, &error), error);
     return samples;
 }
 
-static inline SlotNetwork *network_for(SlotSamples *samples) {
+static inline SceneNet *network_for(SceneNetSamples *samples) {
     Error error = {0};
-    SlotNetwork *network = slot_network_from_samples(samples, &small_widths, 1, &error);
+    SceneNet *network = scene_net_from_samples(samples, &small_widths, 1, &error);
     assert_ok(network != NULL, error);
     return network;
 }

@@ -20,7 +20,7 @@ static void note(void *context, const SceneNetScore *score) {
     scores->items[scores->count++] = *score;
 }
 
-static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *progress, Error *error) {
+static SceneNet *train(const Scene *scene, Scores *scores, const Progress *progress, Error *error) {
     const SceneTraining training = {.launches = 10,
                                     .rounds = ROUNDS,
                                     .epochs = 6,
@@ -37,7 +37,7 @@ static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *pr
 TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
     Scene *scene = scene_named("stack");
     Scores scores[2];
-    SlotNetwork *networks[2];
+    SceneNet *networks[2];
     const int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
         omp_set_num_threads(1 + i);
@@ -60,9 +60,9 @@ TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
     assert_string_equal(networks[0]->scene, "stack");
     assert_int_equal(networks[0]->sweeps, SWEEPS);
     assert_near(networks[0]->bomb_inv_mass, 1 / 50.0, 1e-9);
-    for (int i = 0; i < slot_network_inputs(networks[0]); i++) /* the range of the samples, with a margin */
+    for (int i = 0; i < scene_net_inputs(networks[0]); i++) /* the range of the samples, with a margin */
         assert_true(networks[0]->low[i] < networks[0]->high[i]);
-    for (int i = 0; i < 2; i++) slot_network_destroy(networks[i]);
+    for (int i = 0; i < 2; i++) scene_net_destroy(networks[i]);
     scene_destroy(scene);
 }
 
@@ -88,13 +88,13 @@ TEST(a_stopped_training_keeps_the_rounds_so_far) {
         error = (Error){0};
         Scores scores;
         Stop stop = {.at = at[i]};
-        SlotNetwork *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
+        SceneNet *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
         assert_ok(network != NULL, error);
         assert_int_equal(error.kind, ERROR_NONE);
         assert_int_equal(stop.calls_after, 0);
         assert_int_equal(scores.count, i < 2 ? 1 : 2);
         for (size_t p = 0; p < network->parameter_count; p++) assert_true(isfinite(network->parameters[p]));
-        slot_network_destroy(network);
+        scene_net_destroy(network);
     }
     scene_destroy(scene);
 }

@@ -201,7 +201,7 @@ static bool derive_impact(void *context, int frame, const World *world, Error *e
     if (*met) return true;
     const ContactProblem *problem = world_problem(world);
     uint32_t seed = 3;
-    for (int i = 0; i < problem->contact_count && !*met; i++) *met = problem->contacts[i].b == problem->marked;
+    for (int i = 0; i < problem->contact_count && !*met; i++) *met = problem->contacts[i].b == problem->bomb;
     for (int sweeps = 0; *met && sweeps <= SWEEPS; sweeps += 4) assert_derivatives(problem, sweeps, &seed);
     return true;
 }

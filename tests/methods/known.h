@@ -2,7 +2,7 @@
 /* Random problems with random networks that know them, for tests of the method scene-net. */
 #pragma once
 #include "kernels.h"
-#include "slot_problems.h"
+#include "scene_net_problems.h"
 
 #include "methods/scene_net.h"
 
@@ -13,13 +13,13 @@ static const float near_aim = 0.05f; /* m/s, of the solver */
 /* A problem whose step a network knows. */
 typedef struct Known {
     RandomProblem random;
-    SlotNetwork *network;
+    SceneNet *network;
     ContactSolution found, expected;
 } Known;
 
 /* The problem, whose bomb is the network's, is like its training. */
 static inline void let_know(Known *known) {
-    SlotNetwork *network = known->network;
+    SceneNet *network = known->network;
     strcpy(network->scene, "random");
     network->bomb_inv_mass = known->random.bodies[network->bomb].inv_mass;
     network->gate = 0.01f;
@@ -30,17 +30,17 @@ static inline void let_know(Known *known) {
 }
 
 static inline void make_known(Known *known, uint32_t *seed, int run, float share) {
-    known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
+    known->network = make_scene_net_problem(&known->random, seed, 3 + run, 0.4f, share);
     while (known->random.problem.contact_count < 2) {
-        slot_network_destroy(known->network);
-        known->network = make_slot_problem(&known->random, seed, 3 + run, 0.4f, share);
+        scene_net_destroy(known->network);
+        known->network = make_scene_net_problem(&known->random, seed, 3 + run, 0.4f, share);
     }
-    known->random.problem.marked = known->network->bomb;
+    known->random.problem.bomb = known->network->bomb;
     let_know(known);
 }
 
 static inline void free_known(Known *known) {
-    slot_network_destroy(known->network);
+    scene_net_destroy(known->network);
     free_solution(&known->found);
     free_solution(&known->expected);
 }

@@ -3,18 +3,18 @@
 #pragma once
 #include "testing.h"
 
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 
-enum { BODIES = 3, COMPONENTS = 2, KEY = TABULATION_NUMBERS + COMPONENTS + 1, METRIC = KEY * (KEY + 1) / 2 };
+enum { BODIES = 3, COMPONENTS = 2, KEY = HYBRID_NUMBERS + COMPONENTS + 1, METRIC = KEY * (KEY + 1) / 2 };
 
 static inline float any_number(uint32_t *seed) {
     *seed = *seed * 1664525u + 1013904223u;
     return (float)(*seed >> 8) / 8388608.0f - 1;
 }
 
-static inline Tabulation *make_memory(void) {
+static inline HybridMemory *make_memory(void) {
     Error error = {0};
-    Tabulation *memory = tabulation_create(BODIES, 2, COMPONENTS, &error);
+    HybridMemory *memory = hybrid_memory_create(BODIES, 2, COMPONENTS, &error);
     assert_ok(memory != NULL, error);
     memory->gate = 0.3f;
     memory->tolerance = 0.1f;
@@ -24,19 +24,19 @@ static inline Tabulation *make_memory(void) {
 
 /* An entry for `contacts` contacts with hash 7 + contacts, impulses (n, n / 10) with n = first + contact, a ball of this
    radius, and neighbours with weights; both NULL: none. Returns its index. */
-static inline int add_entry(Tabulation *memory, int contacts, const float *key, float first, float radius,
+static inline int add_entry(HybridMemory *memory, int contacts, const float *key, float first, float radius,
                             const int32_t *near, const float *weights) {
     Error error = {0};
-    static const int32_t nobody[TABULATION_NEAR] = {-1, -1, -1};
-    static const float none[TABULATION_NEAR * KEY];
+    static const int32_t nobody[HYBRID_NEAR] = {-1, -1, -1};
+    static const float none[HYBRID_NEAR * KEY];
     ContactImpulse impulses[8];
     float metric[METRIC];
     for (int i = 0; i < contacts; i++) impulses[i] = (ContactImpulse){first + (float)i, (first + (float)i) / 10};
     for (int i = 0, k = 0; i < KEY; i++)
         for (int j = 0; j <= i; j++) metric[k++] = i == j ? 1 / (radius * radius) : 0;
-    const TabulationQuery query = {7 + (uint64_t)contacts, contacts, key};
-    const TabulationEntry entry = {impulses, near != NULL ? near : nobody, weights != NULL ? weights : none, metric,
-                                   radius * radius};
-    assert_ok(tabulation_add(memory, &query, &entry, &error), error);
+    const HybridQuery query = {7 + (uint64_t)contacts, contacts, key};
+    const HybridEntry entry = {impulses, near != NULL ? near : nobody, weights != NULL ? weights : none, metric,
+                               radius * radius};
+    assert_ok(hybrid_memory_add(memory, &query, &entry, &error), error);
     return memory->entry_count - 1;
 }

@@ -15,7 +15,7 @@ static const ContactPoint chain_contacts[2] = {{.a = 0, .b = 1, .normal = {0, 1}
 static const ProblemBody chain_bodies[3] = {
     {.inv_mass = 0.5f, .inv_inertia = 3, .velocity = {1, 0}}, {.inv_mass = 1}, {.inv_mass = 0.25f}};
 static const ContactProblem chain = {
-    .body_count = 3, .contact_count = 2, .marked = -1, .bodies = chain_bodies, .contacts = chain_contacts};
+    .body_count = 3, .contact_count = 2, .bomb = -1, .bodies = chain_bodies, .contacts = chain_contacts};
 
 /* One linear layer of zeros with the texts of its view and target. */
 static inline Network *make_pair_network(PairView view, PairTarget target, int outputs) {

@@ -65,7 +65,7 @@ static inline void make_random(RandomProblem *random, uint32_t *seed, int bodies
     }
     random->problem = (ContactProblem){.body_count = bodies,
                                        .contact_count = contacts,
-                                       .marked = -1,
+                                       .bomb = -1,
                                        .dt = world_dt,
                                        .bodies = random->bodies,
                                        .contacts = random->contacts};

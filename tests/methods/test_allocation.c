@@ -2,8 +2,8 @@
 /* A step allocates nothing once the world has warmed up. */
 #include "allocations.h"
 #include "pair_networks.h"
-#include "methods/relation_networks.h"
-#include "slot_problems.h"
+#include "methods/sain_networks.h"
+#include "scene_net_problems.h"
 
 #include "methods/sain.h"
 #include "methods/scene_net.h"
@@ -71,8 +71,8 @@ TEST(a_view_of_no_larger_problem_allocates_nothing) {
     static RandomProblem large, small;
     uint32_t seed = 1;
     SceneView view = {0};
-    SlotNetwork *network = make_slot_problem(&large, &seed, 20, 0.5f, 1);
-    SlotNetwork *smaller = make_slot_problem(&small, &seed, 12, 0.5f, 1);
+    SceneNet *network = make_scene_net_problem(&large, &seed, 20, 0.5f, 1);
+    SceneNet *smaller = make_scene_net_problem(&small, &seed, 12, 0.5f, 1);
     allocations = 0;
     assert_true(scene_view_take(&view, network, &large.problem));
     assert_true(allocations > 0);
@@ -82,8 +82,8 @@ TEST(a_view_of_no_larger_problem_allocates_nothing) {
     assert_true(scene_view_take(&view, network, &large.problem));
     assert_int_equal(allocations, 0);
     scene_view_free(&view);
-    slot_network_destroy(smaller);
-    slot_network_destroy(network);
+    scene_net_destroy(smaller);
+    scene_net_destroy(network);
 }
 
 TEST(a_network_of_a_scene_solves_without_allocating) {
@@ -93,8 +93,8 @@ TEST(a_network_of_a_scene_solves_without_allocating) {
     BodyVelocity velocities[BODIES_MAX];
     ContactImpulse impulses[CONTACTS_MAX];
     ContactSolution solution = {velocities, impulses, 0, {0}};
-    SlotNetwork *network = make_slot_problem(&random, &seed, 20, 0.5f, 0.7f);
-    random.problem.marked = network->bomb;
+    SceneNet *network = make_scene_net_problem(&random, &seed, 20, 0.5f, 0.7f);
+    random.problem.bomb = network->bomb;
     network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;
     network->sweeps = 6;
     let_know_all(network);
@@ -106,19 +106,19 @@ TEST(a_network_of_a_scene_solves_without_allocating) {
     assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
     assert_int_equal(allocations, 0);
     free_solver(&solver);
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 TEST(corrected_steps_allocate_nothing) {
     uint32_t seed = 1;
-    RelationNetwork network;
-    make_relation_network(&network, &seed, 0.1f);
+    SainNetwork network;
+    make_sain_network(&network, &seed, 0.1f);
     World *world = make_pyramid();
     ContactSolver engine = make_engine(""), solver;
     run(world, &engine, 10);
     const ContactProblem *problem = world_problem(world);
     ContactSolution solution = *world_solution(world);
-    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+    for (SainForm form = 0; form < SAIN_FORMS; form++) {
         assert_ok(sain_make(&solver, &network, form, &error), error);
         assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
         allocations = 0;
@@ -128,7 +128,7 @@ TEST(corrected_steps_allocate_nothing) {
     }
     free_solver(&engine);
     world_destroy(world);
-    relation_network_destroy(&network);
+    sain_network_destroy(&network);
 }
 
 RUN_TESTS(NULL, NULL)

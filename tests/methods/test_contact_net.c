@@ -147,7 +147,7 @@ static const float asked[PAIR_POINT_CHANGES] = {3, -9, 6, 0};
 /* 2 + 3 / 1.5 = 4 along the normal; 0.5 - 9 / 1.5 beyond the cone, whose side is at 0.25 * 4; then 5 and 0.75. */
 TEST(predictions_go_beyond_the_warm_start_into_the_cone) {
     const ContactProblem problem = {
-        .body_count = 2, .contact_count = 2, .marked = -1, .bodies = bodies, .contacts = contacts};
+        .body_count = 2, .contact_count = 2, .bomb = -1, .bodies = bodies, .contacts = contacts};
     BodyVelocity v[2];
     ContactImpulse impulses[2];
     const ContactSolution solution = solution_by(
@@ -166,7 +166,7 @@ TEST(predictions_go_beyond_the_warm_start_into_the_cone) {
 /* Of one point, only the first two numbers count. */
 TEST(a_missing_second_point_gets_nothing) {
     const ContactProblem problem = {
-        .body_count = 2, .contact_count = 1, .marked = -1, .bodies = bodies, .contacts = contacts};
+        .body_count = 2, .contact_count = 1, .bomb = -1, .bodies = bodies, .contacts = contacts};
     BodyVelocity v[2];
     ContactImpulse impulses[2] = {{0, 0}, {77, 77}};
     solve_by(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, asked), 1, &problem, v, impulses);
@@ -184,7 +184,7 @@ TEST(what_is_not_finite_leaves_a_point_its_warm_start) {
     two[0].warm_tangent = 5;
     ProblemBody fast[2] = {bodies[0], bodies[1]};
     fast[1].velocity = vec2(10, 10);
-    const ContactProblem problem = {.body_count = 2, .contact_count = 2, .marked = -1, .bodies = fast, .contacts = two};
+    const ContactProblem problem = {.body_count = 2, .contact_count = 2, .bomb = -1, .bodies = fast, .contacts = two};
     BodyVelocity v[2];
     ContactImpulse impulses[2];
     const ContactSolution solution =

@@ -32,7 +32,7 @@ static ContactCriteria criteria_of(Ball *ball, float normal, float tangent, bool
     ball->velocities[1] = (BodyVelocity){vec2(4 + tangent / 2, -3 + normal / 2), 0};
     ball->problem = (ContactProblem){.body_count = 2,
                                      .contact_count = 1,
-                                     .marked = -1,
+                                     .bomb = -1,
                                      .dt = 0.25f,
                                      .bodies = ball->bodies,
                                      .contacts = &ball->contact};

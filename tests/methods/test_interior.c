@@ -282,7 +282,7 @@ TEST(earlier_problems_leave_no_trace) {
 
 TEST(without_contacts_bodies_keep_their_velocities) {
     const ProblemBody body = {.inv_mass = 1, .inv_inertia = 6, .velocity = {1, 2}, .angular_velocity = 3};
-    const ContactProblem problem = {.body_count = 1, .marked = -1, .dt = world_dt, .bodies = &body};
+    const ContactProblem problem = {.body_count = 1, .bomb = -1, .dt = world_dt, .bodies = &body};
     ContactSolution found = make_solution(&problem);
     solve_with(&solver_interior, "", &problem, &found);
     const BodyVelocity expected = {{1, 2}, 3};
@@ -299,7 +299,7 @@ TEST(two_static_bodies_are_no_obstacle) {
         {.a = 0, .b = 1, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1},
         {.a = 0, .b = 2, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1, .friction = 0.5f}};
     const ContactProblem problem = {
-        .body_count = 3, .contact_count = 2, .marked = -1, .dt = world_dt, .bodies = bodies, .contacts = contacts};
+        .body_count = 3, .contact_count = 2, .bomb = -1, .dt = world_dt, .bodies = bodies, .contacts = contacts};
     ContactSolution found = make_solution(&problem);
     solve_with(&solver_interior, "near=1e-6", &problem, &found);
     assert_near(found.velocities[1].linear.y, -1, 0);

@@ -9,7 +9,7 @@ enum { BODIES_MAX = 400, CONTACTS_MAX = 2000 };
 
 static ProblemBody bodies[BODIES_MAX];
 static ContactPoint contacts[CONTACTS_MAX];
-static ContactProblem problem = {.marked = -1, .dt = 1, .bodies = bodies, .contacts = contacts};
+static ContactProblem problem = {.bomb = -1, .dt = 1, .bodies = bodies, .contacts = contacts};
 
 /* Body 0 is the ground. */
 static void begin(int body_count) {
@@ -101,7 +101,7 @@ TEST(an_island_is_a_problem_of_its_own) {
     touch(0, 1), touch(0, 2), touch(1, 3), touch(1, 4), touch(2, 7), touch(3, 6), touch(4, 5), touch(2, 5);
     touch(4, 7); /* neither moves: of no island */
     number_all();
-    problem.marked = 5;
+    problem.bomb = 5;
     BodyVelocity velocities[9] = {0};
     ContactImpulse impulses[18] = {0};
     ContactSolution all = {.velocities = velocities, .impulses = impulses};
@@ -112,7 +112,7 @@ TEST(an_island_is_a_problem_of_its_own) {
         ContactSolution room;
         const ContactProblem part = islands_take(&islands, &problem, k, &room);
         assert_true(part.body_count == 5 && part.contact_count == 8 && part.dt == problem.dt);
-        assert_int_equal(part.marked, k == 1 ? 3 : -1);
+        assert_int_equal(part.bomb, k == 1 ? 3 : -1);
         for (int i = 0; i < 5; i++) {
             assert_int_equal((int)part.bodies[i].velocity.x, members[k][i]);
             room.velocities[i].angular = (float)(10 + members[k][i]);
@@ -130,7 +130,7 @@ TEST(an_island_is_a_problem_of_its_own) {
         assert_int_equal((int)velocities[i].angular, i == 0 || i == 4 || i == 7 || i == 8 ? 0 : 10 + i);
     for (int i = 0; i < 18; i++) assert_int_equal((int)impulses[i].normal, i < 16 ? 100 + i : 0);
     assert_int_equal(all.fallbacks.by_sweeps, 2);
-    problem.marked = -1;
+    problem.bomb = -1;
     islands_free(&islands);
 }
 

@@ -18,7 +18,7 @@ static const ContactPoint contacts[2] = {
     {.a = 0, .b = 1, .position = {0.5f, 0.5f}, .normal = {0, 1}, .arm_a = {0.5f, 0.5f}, .arm_b = {0.25f, -0.5f}}};
 
 static ContactProblem touching(const ProblemBody *with) {
-    return (ContactProblem){.body_count = 3, .contact_count = 2, .marked = -1, .bodies = with, .contacts = contacts};
+    return (ContactProblem){.body_count = 3, .contact_count = 2, .bomb = -1, .bodies = with, .contacts = contacts};
 }
 
 /* Returns the momentum made from nothing. */
@@ -75,7 +75,7 @@ TEST(outputs_by_contact_are_turned_into_the_world) {
     ContactImpulse impulses[1];
     const ContactPoint slanted = {.a = 0, .b = 1, .normal = {0.6f, 0.8f}, .position = {0.125f, 0.5f}};
     const ContactProblem problem = {
-        .body_count = 3, .contact_count = 1, .marked = -1, .bodies = bodies, .contacts = &slanted};
+        .body_count = 3, .contact_count = 1, .bomb = -1, .bodies = bodies, .contacts = &slanted};
     solve_by(&solver_pair_net, constant_network(PAIR_CONTACT, TARGET_PAIR, 6, (const float[]){5, 0, 1, 0, 5, 2}), 1,
              &problem, v, impulses);
     assert_velocity(v[0], 1 + 3, 2 + 4, 0.5 + 1, 1e-6);
@@ -166,8 +166,7 @@ TEST(every_pair_gets_its_own_prediction) {
     memcpy(three, bodies, sizeof three);
     three[2].inv_mass = 1, three[2].velocity = vec2(-3, 0.5f), three[2].angle = 0.7f;
     const ContactPoint all[3] = {{.a = 0, .b = 1}, {.a = 0, .b = 2}, {.a = 1, .b = 2}};
-    const ContactProblem problem = {
-        .body_count = 3, .contact_count = 3, .marked = -1, .bodies = three, .contacts = all};
+    const ContactProblem problem = {.body_count = 3, .contact_count = 3, .bomb = -1, .bodies = three, .contacts = all};
     BodyVelocity expected[3], found[3];
     for (int i = 0; i < 3; i++) expected[i] = (BodyVelocity){three[i].velocity, three[i].angular_velocity};
     for (int p = 0; p < 3; p++) {
@@ -205,7 +204,7 @@ TEST(a_network_by_contact_sees_the_moment_after_the_warm_start) {
     network->weights[0][5 * 20 + 0] = 1; /* dwb = vn1 */
     const ContactPoint warm = {.a = 0, .b = 1, .normal = {0, 1}, .warm_normal = 4};
     const ContactProblem problem = {
-        .body_count = 3, .contact_count = 1, .marked = -1, .bodies = bodies, .contacts = &warm};
+        .body_count = 3, .contact_count = 1, .bomb = -1, .bodies = bodies, .contacts = &warm};
     BodyVelocity v[3];
     ContactImpulse impulses[1];
     solve_by(&solver_pair_net, write_pair_network(network), 1, &problem, v, impulses);
@@ -214,7 +213,7 @@ TEST(a_network_by_contact_sees_the_moment_after_the_warm_start) {
 }
 
 TEST(nothing_touches_nothing_happens) {
-    const ContactProblem apart = {.body_count = 3, .marked = -1, .bodies = bodies};
+    const ContactProblem apart = {.body_count = 3, .bomb = -1, .bodies = bodies};
     for (PairTarget target = TARGET_PAIR; target <= TARGET_IMPULSE; target++) {
         BodyVelocity v[3];
         ContactImpulse impulses[1];

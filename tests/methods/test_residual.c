@@ -32,7 +32,7 @@ static void make_boxes(Boxes *boxes, float left, float right) {
     }
     boxes->problem = (ContactProblem){.body_count = 3,
                                       .contact_count = 4,
-                                      .marked = -1,
+                                      .bomb = -1,
                                       .dt = world_dt,
                                       .bodies = boxes->bodies,
                                       .contacts = boxes->contacts};

@@ -2,7 +2,7 @@
 /* The method sain: without its network it is the engine, and answers that cannot be used are discarded. */
 #include "kernels.h"
 #include "random_problem.h"
-#include "methods/relation_networks.h"
+#include "methods/sain_networks.h"
 
 #include "methods/sain.h"
 
@@ -13,7 +13,7 @@ static void fill_heap(RandomProblem *random, uint32_t *seed, int run) {
     for (int i = 0; i < random->problem.body_count; i++) random->bodies[i].size = vec2(1, 1);
 }
 
-static void solve_by(const RelationNetwork *network, RelationForm form, const ContactProblem *problem,
+static void solve_by(const SainNetwork *network, SainForm form, const ContactProblem *problem,
                      ContactSolution *solution) {
     Error error = {0};
     ContactSolver solver;
@@ -34,10 +34,10 @@ TEST(without_its_network_it_is_the_engine) {
     static RandomProblem random;
     static const char *const forms[] = {"on", "off", "shuffled"};
     uint32_t seed = 5;
-    RelationNetworks networks;
+    SainNetworks networks;
     const char *path = temporary_path("sain.npz");
-    make_relation_networks(&networks, &seed, 1);
-    assert_ok(relation_networks_write(&networks, path, &error), error);
+    make_sain_networks(&networks, &seed, 1);
+    assert_ok(sain_networks_write(&networks, path, &error), error);
     for (int run = 0; run < RUNS; run++) {
         char settings[256];
         fill_heap(&random, &seed, run);
@@ -49,25 +49,25 @@ TEST(without_its_network_it_is_the_engine) {
         free_solution(&found);
         free_solution(&engine);
     }
-    relation_networks_destroy(&networks);
+    sain_networks_destroy(&networks);
 }
 
 /* Impulses stay those of the engine, velocities do not; without an engine there are no impulses. */
 TEST(a_network_corrects_velocities_only) {
     static RandomProblem random;
     uint32_t seed = 6;
-    RelationNetwork network;
-    make_relation_network(&network, &seed, 0.5f);
+    SainNetwork network;
+    make_sain_network(&network, &seed, 0.5f);
     fill_heap(&random, &seed, 8);
     ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
     solve_with(&solver_engine, "k=10", &random.problem, &engine);
     const size_t impulses = (size_t)random.problem.contact_count * sizeof *engine.impulses;
-    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+    for (SainForm form = 0; form < SAIN_FORMS; form++) {
         solve_by(&network, form, &random.problem, &found);
         assert_true(memcmp(found.velocities, engine.velocities,
                            (size_t)random.problem.body_count * sizeof *found.velocities) != 0);
         assert_true(found.momentum_error > 0);
-        if (form == RELATION_ALONE)
+        if (form == SAIN_ALONE)
             for (int i = 0; i < random.problem.contact_count; i++)
                 assert_true(found.impulses[i].normal == 0 && found.impulses[i].tangent == 0);
         else
@@ -77,19 +77,19 @@ TEST(a_network_corrects_velocities_only) {
     }
     free_solution(&engine);
     free_solution(&found);
-    relation_network_destroy(&network);
+    sain_network_destroy(&network);
 }
 
 /* Closed form: the sum of mass times correction. */
 TEST(created_momentum_is_that_of_the_corrections) {
     static RandomProblem random;
     uint32_t seed = 11;
-    RelationNetwork network;
-    make_relation_network(&network, &seed, 0.5f);
+    SainNetwork network;
+    make_sain_network(&network, &seed, 0.5f);
     fill_heap(&random, &seed, 9);
     ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
     solve_with(&solver_engine, "k=10", &random.problem, &engine);
-    solve_by(&network, RELATION_ENGINE, &random.problem, &found);
+    solve_by(&network, SAIN_WITH_ENGINE, &random.problem, &found);
     double sum = 0;
     for (int i = 0; i < random.problem.body_count; i++) {
         if (random.bodies[i].inv_mass == 0.0f) continue;
@@ -99,43 +99,43 @@ TEST(created_momentum_is_that_of_the_corrections) {
     assert_near(found.momentum_error, sum, 1e-4 * sum);
     free_solution(&engine);
     free_solution(&found);
-    relation_network_destroy(&network);
+    sain_network_destroy(&network);
 }
 
 TEST(states_beyond_training_are_left_to_the_engine) {
     static RandomProblem random;
     uint32_t seed = 7;
-    RelationNetwork network;
-    make_relation_network(&network, &seed, 0.5f);
-    for (int i = 0; i < RELATION_PAIR_INPUTS; i++) network.pair_low[i] = 1e6f;
+    SainNetwork network;
+    make_sain_network(&network, &seed, 0.5f);
+    for (int i = 0; i < SAIN_PAIR_INPUTS; i++) network.pair_low[i] = 1e6f;
     for (int run = 0; run < RUNS; run++) {
         fill_heap(&random, &seed, run);
         if (random.problem.contact_count == 0) continue;
         ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
         solve_with(&solver_engine, "k=10", &random.problem, &engine);
-        solve_by(&network, RELATION_ENGINE, &random.problem, &found);
+        solve_by(&network, SAIN_WITH_ENGINE, &random.problem, &found);
         assert_same_bits(&random.problem, &found, &engine, "beyond training");
         assert_int_equal(found.fallbacks.beyond_training, 1);
-        solve_by(&network, RELATION_ALONE, &random.problem, &found);
+        solve_by(&network, SAIN_ALONE, &random.problem, &found);
         assert_int_equal(found.fallbacks.beyond_training, 1);
         assert_true(is_finite(&random.problem, &found));
         free_solution(&engine);
         free_solution(&found);
     }
-    relation_network_destroy(&network);
+    sain_network_destroy(&network);
 }
 
 /* Weights of any size: what is not finite or beyond the limit never reaches a body. */
 TEST(useless_answers_are_discarded) {
     static RandomProblem random;
     uint32_t seed = 9;
-    RelationNetwork network;
-    make_relation_network(&network, &seed, 1e38f);
+    SainNetwork network;
+    make_sain_network(&network, &seed, 1e38f);
     int discarded = 0;
     for (int run = 0; run < RUNS; run++) {
         fill_heap(&random, &seed, run);
         ContactSolution found = make_solution(&random.problem);
-        for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+        for (SainForm form = 0; form < SAIN_FORMS; form++) {
             solve_by(&network, form, &random.problem, &found);
             assert_true(is_finite(&random.problem, &found));
             discarded += found.fallbacks.not_finite;
@@ -143,7 +143,7 @@ TEST(useless_answers_are_discarded) {
         free_solution(&found);
     }
     assert_true(discarded > 20);
-    relation_network_destroy(&network);
+    sain_network_destroy(&network);
 }
 
 TEST(settings_are_checked) {

@@ -79,17 +79,17 @@ TEST(another_scene_is_refused) {
     make_known(&known, &seed, 7, 1);
     ContactProblem *problem = &known.random.problem;
     const int bomb = known.network->bomb, bodies = problem->body_count;
-    problem->marked = bomb == 0 ? 1 : 0;
+    problem->bomb = bomb == 0 ? 1 : 0;
     snprintf(text, sizeof text, "scene-net: error: the network is for the scene random, with the bomb as body %d",
              bomb);
     refuse(&known, text);
-    problem->marked = bomb;
+    problem->bomb = bomb;
     known.network->body_count = bodies + 1;
     snprintf(text, sizeof text, "scene random of %d bodies; this one has %d", bodies + 1, bodies);
     refuse(&known, text);
     known.network->body_count = bodies;
     /* Before the bomb comes there is one body less. */
-    problem->marked = -1;
+    problem->bomb = -1;
     snprintf(text, sizeof text, "scene random of %d bodies; this one has %d", bodies - 1, bodies);
     refuse(&known, text);
     free_known(&known);
@@ -100,8 +100,8 @@ TEST(a_step_unlike_the_training_is_momentums) {
     uint32_t seed = 7;
     for (int run = 0; run < RUNS; run++) {
         make_known(&known, &seed, run, 0.7f);
-        SlotNetwork *network = known.network;
-        const int input = run % slot_network_inputs(network);
+        SceneNet *network = known.network;
+        const int input = run % scene_net_inputs(network);
         network->bomb_inv_mass += 0.001f;
         assert_momentums_bits(&known, "another mass");
         assert_int_equal(known.found.fallbacks.beyond_training, 1);
@@ -149,7 +149,7 @@ TEST(no_answer_throws_a_body_away) {
     for (int run = 0; run < RUNS; run++)
         for (size_t w = 0; w < sizeof wild / sizeof wild[0]; w++) {
             make_known(&known, &seed, run % 20, 1);
-            SlotNetwork *network = known.network;
+            SceneNet *network = known.network;
             const int outputs = 2 * network->slot_count;
             for (int i = 0; i < outputs; i++)
                 if (run % 3 == 0 || uniform(&seed, 0, 1) < 0.3f) network->biases[i] = wild[w];
@@ -169,7 +169,7 @@ TEST(no_answer_throws_a_body_away) {
 TEST(pushes_that_cancel_are_no_answer) {
     static Known known;
     static const Slot slots[] = {{0, 1, 0}, {1, 2, 1}};
-    static const SlotShape shape = {3, 1, 2, 16, 16, 16, 16};
+    static const SceneNetShape shape = {3, 1, 2, 16, 16, 16, 16};
     uint32_t seed = 12;
     make_random(&known.random, &seed, 3, 0, 1);
     for (int i = 0; i < 3; i++) known.random.bodies[i] = (ProblemBody){.inv_mass = i == 1, .inv_inertia = i == 1};
@@ -178,8 +178,8 @@ TEST(pushes_that_cancel_are_no_answer) {
         known.random.contacts[k] = (ContactPoint){
             .a = k, .b = k + 1, .normal = {1, 0}, .mass_normal = 1, .mass_tangent = 1, .feature = (uint32_t)k};
     known.random.problem.contact_count = 2;
-    known.random.problem.marked = 1;
-    known.network = make_slot_network(&shape, slots, &seed);
+    known.random.problem.bomb = 1;
+    known.network = make_scene_net(&shape, slots, &seed);
     let_know(&known);
     known.network->biases[0] = known.network->biases[2] = 1e9f;
     known.network->scale[0] = known.network->scale[1] = 1;

@@ -104,12 +104,12 @@ TEST(a_network_that_says_nothing_changes_nothing) {
     int more = 0, twice = 0;
     for (int run = 0; run < RUNS; run++) {
         make_known(&known, &seed, run, 0.7f);
-        SlotNetwork *network = known.network;
+        SceneNet *network = known.network;
         for (int i = 0; i < network->slot_count; i++) network->cap[i] = 1e6f;
         memset(network->rows, 0,
                (network->parameter_count - (size_t)(network->rows - network->parameters)) * sizeof(float));
         for (int s = 1; s < AFTER && run % 2 == 1; s++) network->factors[s] = 0.5f;
-        slot_network_pack(network);
+        scene_net_pack(network);
         calm(&known.random, run % 4 == 0 ? 0.01f : run % 4 == 1 ? 0.1f : 1);
         put_warm_impulses_into_the_cone(&known.random);
         network->gate = 0.7f * (float)residual_of(&known.random.problem);
@@ -135,7 +135,7 @@ TEST(without_its_prediction_it_is_momentum_with_the_same_stopping_rule) {
         for (int s = 1; s < AFTER && run % 2 == 1; s++) known.network->factors[s] = 0.5f;
         known.network->gate = 0.7f * (float)residual_of(&known.random.problem);
         const char *path = temporary_path("known.npz");
-        assert_ok(slot_network_write(known.network, path, &error), error);
+        assert_ok(scene_net_write(known.network, path, &error), error);
         for (int more = 8; more <= MORE; more += 40) {
             snprintf(text, sizeof text, "network=%s,near=0.05,more=%d,net=off", path, more);
             solve_with(&solver_scene_net, text, &known.random.problem, &known.found);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How random contact problems look to slot networks that know a part of their contacts. */
-#include "slot_problems.h"
+#include "scene_net_problems.h"
 
 #include "engine/engine.h"
 #include "methods/scene_net.h"
@@ -13,26 +13,26 @@ static const struct {
 enum { SIZES = sizeof sizes / sizeof sizes[0] };
 
 /* Calls check with a view of each problem; the view is one and the same, so stale numbers are met too. */
-static void for_all(void (*check)(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem)) {
+static void for_all(void (*check)(const SceneView *view, const SceneNet *network, const ContactProblem *problem)) {
     static RandomProblem random;
     SceneView view = {0};
     uint32_t seed = 1;
     for (int round = 0; round < 6; round++)
         for (int s = 0; s < SIZES; s++) {
-            SlotNetwork *network = make_slot_problem(&random, &seed, sizes[s].bodies, sizes[s].density, 0.6f);
+            SceneNet *network = make_scene_net_problem(&random, &seed, sizes[s].bodies, sizes[s].density, 0.6f);
             assert_true(scene_view_take(&view, network, &random.problem));
             check(&view, network, &random.problem);
-            slot_network_destroy(network);
+            scene_net_destroy(network);
         }
     scene_view_free(&view);
 }
 
-static int slot_of(const SlotNetwork *network, const ContactProblem *problem, const ContactPoint *contact) {
-    return slot_network_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
+static int slot_of(const SceneNet *network, const ContactProblem *problem, const ContactPoint *contact) {
+    return scene_net_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
 }
 
-static void check_list(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
-    const SlotView *slots = &view->slots;
+static void check_list(const SceneView *view, const SceneNet *network, const ContactProblem *problem) {
+    const SceneNetView *slots = &view->slots;
     int k = 0;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
@@ -54,7 +54,7 @@ static void check_list(const SceneView *view, const SlotNetwork *network, const 
 TEST(what_has_a_slot_is_listed_in_the_order_of_contacts) { for_all(check_list); }
 
 /* What lies within is taken as it is. */
-static void check_base(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+static void check_base(const SceneView *view, const SceneNet *network, const ContactProblem *problem) {
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         const ContactImpulse *base = &view->base[i];
@@ -96,7 +96,7 @@ static void assert_turned_back(const ProblemBody *bomb, float seen) {
     assert_true(fabs((double)seen) <= step / 2 * (1 + 1e-6));
 }
 
-static void check_state(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+static void check_state(const SceneView *view, const SceneNet *network, const ContactProblem *problem) {
     const float *next = view->slots.state;
     const ProblemBody *bomb = &problem->bodies[network->bomb];
     ProblemBody seen = *bomb;
@@ -121,7 +121,7 @@ static int see_features(uint32_t seen[2], const Box *box, Vec2 position, Vec2 si
     ProblemBody bodies[2] = {0};
     bodies[1].size = size;
     bodies[1].angle = angle;
-    const ContactProblem problem = {.body_count = 2, .bodies = bodies, .marked = 1};
+    const ContactProblem problem = {.body_count = 2, .bodies = bodies, .bomb = 1};
     for (int i = 0; i < manifold.count; i++)
         seen[i] = scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 1, .feature = manifold.points[i].feature});
     if (manifold.count == 2 && seen[0] > seen[1]) {
@@ -161,21 +161,21 @@ TEST(other_features_stay) {
     ProblemBody bodies[3] = {0};
     bodies[2].size = vec2(1, 1);
     bodies[2].angle = 1.6f;
-    ContactProblem problem = {.body_count = 3, .bodies = bodies, .marked = 2};
+    ContactProblem problem = {.body_count = 3, .bodies = bodies, .bomb = 2};
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 1, .feature = 0x01020304}), 0x01020304);
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x00ff0304}), 0x00ff0304);
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x04010304}), 0x01020304);
-    problem.marked = 0;
+    problem.bomb = 0;
     bodies[0] = bodies[2];
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x04010304}), 0x04010401);
-    problem.marked = -1;
+    problem.bomb = -1;
     assert_int_equal(scene_view_feature(&problem, &(ContactPoint){.a = 0, .b = 2, .feature = 0x04010304}), 0x04010304);
 }
 
 /* Else the laws above would hold of nothing. */
 static int with_slot, without_slot, capped, outside;
 
-static void count_cases(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+static void count_cases(const SceneView *view, const SceneNet *network, const ContactProblem *problem) {
     (void)view;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];

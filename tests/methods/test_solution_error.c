@@ -13,7 +13,7 @@ enum { BODIES = 3 };
 static const ProblemBody bodies[BODIES] = {{.size = {9, 9}},
                                            {.inv_mass = 1, .inv_inertia = 6, .velocity = {10, 0}},
                                            {.inv_mass = 0.5f, .inv_inertia = 3, .velocity = {0, 1}}};
-static const ContactProblem problem = {.body_count = BODIES, .marked = -1, .dt = 0.1f, .bodies = bodies};
+static const ContactProblem problem = {.body_count = BODIES, .bomb = -1, .dt = 0.1f, .bodies = bodies};
 static const ReferenceVelocity reference[BODIES] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 
 static SolutionError error_of(BodyVelocity first, BodyVelocity second) {
@@ -65,7 +65,7 @@ TEST(what_is_no_number_is_wrong) {
 }
 
 TEST(nothing_that_moves_is_no_error) {
-    const ContactProblem ground = {.body_count = 1, .marked = -1, .dt = 0.1f, .bodies = bodies};
+    const ContactProblem ground = {.body_count = 1, .bomb = -1, .dt = 0.1f, .bodies = bodies};
     SolutionError found = solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference);
     assert_true(found.rms == 0);
     assert_int_equal(found.counted, 0);

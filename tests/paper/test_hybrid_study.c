@@ -53,7 +53,7 @@ TEST(a_learning_has_rows_that_fit_together) {
     fclose(lines);
     const HybridRow *rows = table.rows;
     assert_int_equal(table.count, 3);
-    assert_near(rows[0].launches, TABULATION_FIRST, 0);
+    assert_near(rows[0].launches, HYBRID_FIRST, 0);
     assert_near(rows[0].share, 0, 0);
     for (int i = 0; i < table.count; i++) {
         assert_int_equal(rows[i].scene, 0);

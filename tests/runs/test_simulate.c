@@ -97,7 +97,7 @@ static bool count_step(void *context, int frame, const World *world, Error *erro
     int *steps = context;
     assert_int_equal(frame, ++*steps);
     assert_int_equal(problem->body_count, 3);
-    assert_int_equal(problem->marked, 2);
+    assert_int_equal(problem->bomb, 2);
     return frame < 7 || error_input(error, "observer", "enough");
 }
 

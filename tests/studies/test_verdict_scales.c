@@ -31,7 +31,7 @@ static bool record(void *context, int frame, const World *world, Error *error) {
     const ContactProblem *problem = world_problem(world);
     const int bodies = world_body_count(world), contacts = frame > 0 ? problem->contact_count : 0;
     (void)error;
-    recording->frames[recording->count++] = (Frame){bodies, contacts, frame > 0 ? problem->marked : -1,
+    recording->frames[recording->count++] = (Frame){bodies, contacts, frame > 0 ? problem->bomb : -1,
                                                     copy(world_bodies(world), (size_t)bodies * sizeof(Body)),
                                                     copy(problem->contacts, (size_t)contacts * sizeof(ContactPoint))};
     return true;

@@ -14,11 +14,11 @@ static const double hand_tuned[SWEEPS] = {0, 0.3, 0.5, 0.6, 0.7, 0.8}, no_moment
 
 /* A network and the sample that its loss is evaluated on. */
 typedef struct Trial {
-    SlotSamples samples;
-    SlotNetwork *network;
-    const SlotSample *sample;
-    SlotLoss loss;
-    SlotTask task;
+    SceneNetSamples samples;
+    SceneNet *network;
+    const SceneNetSample *sample;
+    SceneNetLoss loss;
+    SceneNetTask task;
     double factors[SWEEPS];
 } Trial;
 
@@ -26,30 +26,30 @@ typedef struct Trial {
 static void begin(Trial *trial) {
     uint32_t seed = 4;
     *trial = (Trial){.samples = labelled_impacts(LAUNCHES)};
-    SlotNetwork *network = trial->network = network_for(&trial->samples);
-    const int hidden = slot_network_hidden(network), outputs = 2 * network->slot_count;
+    SceneNet *network = trial->network = network_for(&trial->samples);
+    const int hidden = scene_net_hidden(network), outputs = 2 * network->slot_count;
     for (int i = 0; i < hidden; i++) network->first.biases[i] = uniform(&seed, -0.5f, 0.5f);
     for (int i = 0; i < hidden; i++) network->second.biases[i] = uniform(&seed, -0.5f, 0.5f);
     for (int i = 0; i < hidden * outputs; i++) network->rows[i] *= 5;
     for (int i = 0; i < outputs; i++) network->biases[i] = uniform(&seed, -0.5f, 0.5f);
-    slot_network_pack(network);
+    scene_net_pack(network);
 }
 
 static void end(Trial *trial) {
-    slot_loss_free(&trial->loss);
-    slot_network_destroy(trial->network);
-    slot_samples_free(&trial->samples);
+    scene_net_loss_free(&trial->loss);
+    scene_net_destroy(trial->network);
+    scene_net_samples_free(&trial->samples);
 }
 
 static void choose(Trial *trial, int sample, double impulse_weight, double velocity_weight, const double *factors) {
     memcpy(trial->factors, factors, sizeof trial->factors);
     trial->sample = &trial->samples.items[sample];
-    trial->task = (SlotTask){impulse_weight, velocity_weight, SWEEPS, trial->factors};
+    trial->task = (SceneNetTask){impulse_weight, velocity_weight, SWEEPS, trial->factors};
 }
 
 static double loss_of(Trial *trial) {
-    SlotScore score;
-    assert_true(slot_loss(&trial->loss, trial->network, trial->sample, &trial->task, NULL, NULL, &score));
+    SceneNetErrors score;
+    assert_true(scene_net_loss(&trial->loss, trial->network, trial->sample, &trial->task, NULL, NULL, &score));
     return score.loss;
 }
 
@@ -141,8 +141,8 @@ static void check_biases(Trial *trial, float *biases, const float *gradient, int
 }
 
 static void check_parameters(Trial *trial, const float *gradient, uint32_t *seed, Tally tallies[6]) {
-    SlotNetwork *network = trial->network;
-    const int hidden = slot_network_hidden(network), outputs = 2 * network->slot_count;
+    SceneNet *network = trial->network;
+    const int hidden = scene_net_hidden(network), outputs = 2 * network->slot_count;
     check_rows(trial, &network->first.packed, gradient + (network->first.rows - network->parameters), seed,
                &tallies[0]);
     check_rows(trial, &network->second.packed, gradient + (network->second.rows - network->parameters), seed,
@@ -179,11 +179,12 @@ static void assert_gradient(double impulse_weight, double velocity_weight, const
     assert_non_null(gradient);
     for (int i = 0; i < trial.samples.count; i += 3) {
         double by_factors[SWEEPS];
-        SlotScore score;
+        SceneNetErrors score;
         choose(&trial, i, impulse_weight, velocity_weight, factors);
         for (size_t p = 0; p < count; p++) gradient[p] = 1;
         for (int s = 0; s < SWEEPS; s++) by_factors[s] = 7;
-        assert_true(slot_loss(&trial.loss, trial.network, trial.sample, &trial.task, gradient, by_factors, &score));
+        assert_true(
+            scene_net_loss(&trial.loss, trial.network, trial.sample, &trial.task, gradient, by_factors, &score));
         assert_true(score.loss == loss_of(&trial));
         for (size_t p = 0; p < count; p++) gradient[p] -= 1;
         for (int s = 0; s < SWEEPS; s++) by_factors[s] -= 7;
@@ -215,8 +216,8 @@ TEST(the_error_is_that_of_the_studies) {
     begin(&trial);
     for (int i = 0; i < trial.samples.count; i++) {
         choose(&trial, i, 0, 3, hand_tuned);
-        SlotScore score;
-        assert_true(slot_loss(&trial.loss, trial.network, trial.sample, &trial.task, NULL, NULL, &score));
+        SceneNetErrors score;
+        assert_true(scene_net_loss(&trial.loss, trial.network, trial.sample, &trial.task, NULL, NULL, &score));
         BodyVelocity velocities[16];
         assert_in_range(trial.sample->problem.body_count, 2, 16);
         for (int k = 0; k < trial.sample->problem.body_count; k++) {
@@ -234,10 +235,10 @@ TEST(impulse_loss_is_a_mean_over_slots) {
     Trial trial;
     int linear = 0, quadratic = 0;
     begin(&trial);
-    SlotNetwork *network = trial.network;
+    SceneNet *network = trial.network;
     memset(network->rows, 0,
            (network->parameter_count - (size_t)(network->rows - network->parameters)) * sizeof(float));
-    slot_network_pack(network);
+    scene_net_pack(network);
     for (int i = 0; i < trial.samples.count; i++) {
         choose(&trial, i, 2, 0, no_momentum);
         const SceneView *view = &trial.sample->view;

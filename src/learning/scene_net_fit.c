@@ -269,15 +269,15 @@ void unrolled_back(Unrolled *unrolled, const UnrolledProblem *problem, const dou
 static const double linear_from = 0.3;  /* threshold of smooth L1, in scales */
 static const double least_error = 0.01; /* m/s: below it the loss is nearly quadratic */
 
-void slot_loss_free(SlotLoss *loss) {
+void scene_net_loss_free(SceneNetLoss *loss) {
     unrolled_free(&loss->unrolled);
     free(loss->outputs);
     free(loss->by_outputs);
     free(loss->numbers);
-    *loss = (SlotLoss){0};
+    *loss = (SceneNetLoss){0};
 }
 
-static bool reserve(SlotLoss *loss, const SlotSample *sample) {
+static bool reserve(SceneNetLoss *loss, const SceneNetSample *sample) {
     const size_t contacts = (size_t)sample->problem.contact_count, bodies = (size_t)sample->problem.body_count;
     return array_reserve((void **)&loss->outputs, &loss->output_capacity, 2 * contacts + 2, sizeof(float)) &&
            array_reserve((void **)&loss->by_outputs, &loss->by_output_capacity, 2 * contacts + 2, sizeof(float)) &&
@@ -292,9 +292,9 @@ static double smooth(double x, double *by) {
 }
 
 /* Returns the impulse loss; writes its derivative with respect to the outputs. */
-static double impulse_loss(const SlotNetwork *network, const SlotSample *sample, const double *start, double weight,
+static double impulse_loss(const SceneNet *network, const SceneNetSample *sample, const double *start, double weight,
                            float *by_outputs) {
-    const SlotView *slots = &sample->view.slots;
+    const SceneNetView *slots = &sample->view.slots;
     double sum = 0;
     for (int i = 0; i < slots->slot_count; i++) {
         const int contact = sample->view.contacts[i];
@@ -310,7 +310,8 @@ static double impulse_loss(const SlotNetwork *network, const SlotSample *sample,
 }
 
 /* The squared error summed over the dynamic bodies, weighted as by solution_error(), and half its derivative. */
-static double velocity_error(const SlotSample *sample, const double *velocities, double *by_velocity, int *counted) {
+static double velocity_error(const SceneNetSample *sample, const double *velocities, double *by_velocity,
+                             int *counted) {
     double sum = 0;
     *counted = 0;
     for (int i = 0; i < sample->problem.body_count; i++) {
@@ -327,9 +328,9 @@ static double velocity_error(const SlotSample *sample, const double *velocities,
 }
 
 /* Adds the velocity loss to the score and, if `back`, its derivative to loss->by_outputs. */
-static bool velocity_loss(SlotLoss *loss, const SlotSample *sample, const SlotTask *task, bool back, double *by_factors,
-                          SlotScore *score) {
-    const SlotView *slots = &sample->view.slots;
+static bool velocity_loss(SceneNetLoss *loss, const SceneNetSample *sample, const SceneNetTask *task, bool back,
+                          double *by_factors, SceneNetErrors *score) {
+    const SceneNetView *slots = &sample->view.slots;
     const int contacts = sample->problem.contact_count;
     double *start = loss->numbers, *by_start = start + 2 * contacts, *by_velocity = by_start + 2 * contacts;
     if (!unrolled_run(&loss->unrolled, &sample->unrolled, start, task->factors, task->sweeps)) return false;
@@ -347,11 +348,11 @@ static bool velocity_loss(SlotLoss *loss, const SlotSample *sample, const SlotTa
 }
 
 /* The gradient entry of a parameter. */
-static float *place(const SlotNetwork *network, float *gradient, const float *parameter) {
+static float *place(const SceneNet *network, float *gradient, const float *parameter) {
     return gradient + (parameter - network->parameters);
 }
 
-static void back_through_layer(const SlotNetwork *network, const SlotLayer *layer, const float *in, const float *out,
+static void back_through_layer(const SceneNet *network, const SceneNetLayer *layer, const float *in, const float *out,
                                float *by_out, float *by_in, float *gradient) {
     const RowKernels *kernels = network->kernels;
     float *biases = place(network, gradient, layer->biases);
@@ -361,10 +362,10 @@ static void back_through_layer(const SlotNetwork *network, const SlotLayer *laye
     if (by_in != NULL) kernels->multiply(by_in, &layer->packed, NULL, by_out, layer->from / 2);
 }
 
-static void back(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sample, float *gradient) {
-    const SlotView *slots = &sample->view.slots;
+static void back(SceneNetLoss *loss, const SceneNet *network, const SceneNetSample *sample, float *gradient) {
+    const SceneNetView *slots = &sample->view.slots;
     const RowKernels *kernels = network->kernels;
-    const int hidden = slot_network_hidden(network), outputs = 2 * slots->slot_count;
+    const int hidden = scene_net_hidden(network), outputs = 2 * slots->slot_count;
     float *biases = place(network, gradient, network->biases), *by = loss->by_outputs;
     for (int i = 0; i < outputs; i++) {
         by[i] *= network->scale[slots->slots[i / 2]];
@@ -377,11 +378,11 @@ static void back(SlotLoss *loss, const SlotNetwork *network, const SlotSample *s
     back_through_layer(network, &network->first, sample->inputs, loss->first, loss->by_first, NULL, gradient);
 }
 
-bool slot_loss(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sample, const SlotTask *task,
-               float *gradient, double *by_factors, SlotScore *score) {
+bool scene_net_loss(SceneNetLoss *loss, const SceneNet *network, const SceneNetSample *sample, const SceneNetTask *task,
+                    float *gradient, double *by_factors, SceneNetErrors *score) {
     if (!reserve(loss, sample)) return false;
-    const SlotView *slots = &sample->view.slots;
-    slot_network_predict(network, sample->inputs, slots, loss->first, loss->second, loss->outputs);
+    const SceneNetView *slots = &sample->view.slots;
+    scene_net_predict(network, sample->inputs, slots, loss->first, loss->second, loss->outputs);
     double *start = loss->numbers;
     for (int i = 0; i < sample->problem.contact_count; i++) {
         start[2 * i] = (double)sample->view.base[i].normal;
@@ -389,7 +390,7 @@ bool slot_loss(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sam
     }
     for (int i = 0; i < slots->slot_count; i++)
         for (int k = 0; k < 2; k++) start[2 * sample->view.contacts[i] + k] += (double)loss->outputs[2 * i + k];
-    *score = (SlotScore){.loss = impulse_loss(network, sample, start, task->impulse_weight, loss->by_outputs)};
+    *score = (SceneNetErrors){.loss = impulse_loss(network, sample, start, task->impulse_weight, loss->by_outputs)};
     const bool run_sweeps = task->velocity_weight > 0 || gradient == NULL;
     if (run_sweeps && !velocity_loss(loss, sample, task, gradient != NULL, by_factors, score)) return false;
     if (gradient != NULL) back(loss, network, sample, gradient);
@@ -400,31 +401,31 @@ bool slot_loss(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sam
 enum { BATCH = 32, PARTS = 4, PART = BATCH / PARTS };
 
 typedef struct Fitter {
-    SlotNetwork *network;
-    const SlotSamples *samples;
-    const SlotFit *fit;
+    SceneNet *network;
+    const SceneNetSamples *samples;
+    const SceneNetFit *fit;
     float *gradients;     /* [PARTS, parameter_count] */
     float *mean, *square; /* [parameter_count] moments of Adam; in double they would need twice the memory */
-    double factors[SLOT_SWEEPS_MAX], factor_mean[SLOT_SWEEPS_MAX], factor_square[SLOT_SWEEPS_MAX];
-    double by_factors[PARTS][SLOT_SWEEPS_MAX], losses[PARTS];
-    SlotLoss loss[PARTS];
+    double factors[SCENE_NET_SWEEPS_MAX], factor_mean[SCENE_NET_SWEEPS_MAX], factor_square[SCENE_NET_SWEEPS_MAX];
+    double by_factors[PARTS][SCENE_NET_SWEEPS_MAX], losses[PARTS];
+    SceneNetLoss loss[PARTS];
     Adam adam;  /* of the factors; its steps are those of all parameters */
     int *order; /* [samples] */
 } Fitter;
 
-static SlotTask task_of(const Fitter *fitter, int epoch) {
+static SceneNetTask task_of(const Fitter *fitter, int epoch) {
     const bool impulses_only = epoch < fitter->fit->impulse_epochs;
-    return (SlotTask){impulses_only ? 1 : fitter->fit->impulse_weight, impulses_only ? 0 : 1, fitter->network->sweeps,
-                      fitter->factors};
+    return (SceneNetTask){impulses_only ? 1 : fitter->fit->impulse_weight, impulses_only ? 0 : 1,
+                          fitter->network->sweeps, fitter->factors};
 }
 
-static bool do_part(Fitter *fitter, const SlotTask *task, const int *items, int count, int part) {
+static bool do_part(Fitter *fitter, const SceneNetTask *task, const int *items, int count, int part) {
     float *gradient = fitter->gradients + (size_t)part * fitter->network->parameter_count;
     double *by_factors = fitter->fit->learn_factors && task->velocity_weight > 0 ? fitter->by_factors[part] : NULL;
     for (int i = 0; i < count; i++) {
-        SlotScore score;
-        if (!slot_loss(&fitter->loss[part], fitter->network, &fitter->samples->items[items[i]], task, gradient,
-                       by_factors, &score))
+        SceneNetErrors score;
+        if (!scene_net_loss(&fitter->loss[part], fitter->network, &fitter->samples->items[items[i]], task, gradient,
+                            by_factors, &score))
             return false;
         fitter->losses[part] += score.loss;
     }
@@ -432,7 +433,7 @@ static bool do_part(Fitter *fitter, const SlotTask *task, const int *items, int 
 }
 
 /* The gradients of a batch, one per part. */
-static bool do_batch(Fitter *fitter, const SlotTask *task, const int *items, int count) {
+static bool do_batch(Fitter *fitter, const SceneNetTask *task, const int *items, int count) {
     bool ok = true;
 #pragma omp parallel for schedule(static, 1) reduction(&& : ok)
     for (int part = 0; part < PARTS; part++) {
@@ -457,7 +458,7 @@ static void step_parameters(Fitter *fitter, int count, const AdamStep *step) {
         fitter->mean[p] = (float)mean;
         fitter->square[p] = (float)square;
     }
-    slot_network_pack_layers(fitter->network);
+    scene_net_pack_layers(fitter->network);
 }
 
 /* Factors are clamped to 0 .. 2: extrapolating further than two sweeps gains nothing. */
@@ -474,7 +475,7 @@ static void step_factors(Fitter *fitter, int count, const AdamStep *step) {
 }
 
 static bool do_epoch(Fitter *fitter, int epoch, double *mean_loss) {
-    const SlotTask task = task_of(fitter, epoch);
+    const SceneNetTask task = task_of(fitter, epoch);
     const int count = fitter->samples->count, batches = (count + BATCH - 1) / BATCH;
     memset(fitter->losses, 0, sizeof fitter->losses);
     for (int batch = 0; batch < batches; batch++) {
@@ -516,8 +517,8 @@ static bool run(Fitter *fitter, gsl_rng *generator, const Progress *progress, Er
     return true;
 }
 
-bool slot_fit(SlotNetwork *network, const SlotSamples *samples, const SlotFit *fit, const Progress *progress,
-              Error *error) {
+bool scene_net_fit(SceneNet *network, const SceneNetSamples *samples, const SceneNetFit *fit, const Progress *progress,
+                   Error *error) {
     Fitter *fitter = calloc(1, sizeof *fitter);
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     bool ok = fitter != NULL && generator != NULL;
@@ -529,7 +530,7 @@ bool slot_fit(SlotNetwork *network, const SlotSamples *samples, const SlotFit *f
         ok = begin(fitter);
     }
     ok = ok ? run(fitter, generator, progress, error) : error_memory(error, "scene-net");
-    for (int part = 0; fitter != NULL && part < PARTS; part++) slot_loss_free(&fitter->loss[part]);
+    for (int part = 0; fitter != NULL && part < PARTS; part++) scene_net_loss_free(&fitter->loss[part]);
     if (fitter != NULL) {
         free(fitter->gradients);
         free(fitter->order);
@@ -539,21 +540,21 @@ bool slot_fit(SlotNetwork *network, const SlotSamples *samples, const SlotFit *f
     return ok;
 }
 
-bool slot_errors(const SlotNetwork *network, const SlotSamples *samples, int first, double *errors, Error *error) {
-    double factors[SLOT_SWEEPS_MAX];
+bool slot_errors(const SceneNet *network, const SceneNetSamples *samples, int first, double *errors, Error *error) {
+    double factors[SCENE_NET_SWEEPS_MAX];
     for (int s = 0; s < network->sweeps; s++) factors[s] = (double)network->factors[s];
-    const SlotTask task = {0, 1, network->sweeps, factors};
-    SlotLoss *losses = calloc((size_t)omp_get_max_threads(), sizeof *losses);
+    const SceneNetTask task = {0, 1, network->sweeps, factors};
+    SceneNetLoss *losses = calloc((size_t)omp_get_max_threads(), sizeof *losses);
     bool ok = losses != NULL;
 #pragma omp parallel for schedule(dynamic, 16) reduction(&& : ok)
     for (int i = first; i < samples->count; i++) {
-        SlotScore score = {0};
-        bool fine = losses != NULL &&
-                    slot_loss(&losses[omp_get_thread_num()], network, &samples->items[i], &task, NULL, NULL, &score);
+        SceneNetErrors score = {0};
+        bool fine = losses != NULL && scene_net_loss(&losses[omp_get_thread_num()], network, &samples->items[i], &task,
+                                                     NULL, NULL, &score);
         errors[i - first] = score.error;
         ok = ok && fine;
     }
-    for (int i = 0; losses != NULL && i < omp_get_max_threads(); i++) slot_loss_free(&losses[i]);
+    for (int i = 0; losses != NULL && i < omp_get_max_threads(); i++) scene_net_loss_free(&losses[i]);
     free(losses);
     return ok || error_memory(error, "scene-net");
 }

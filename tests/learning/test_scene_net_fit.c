@@ -8,39 +8,39 @@
 enum { LAUNCHES = 3, SAMPLES = 24, SWEEPS = 6 };
 
 /* Followed by sweeps without momentum. */
-static SlotNetwork *begin_with(SlotSamples *samples, int launches) {
+static SceneNet *begin_with(SceneNetSamples *samples, int launches) {
     *samples = labelled_impacts(launches);
-    SlotNetwork *network = network_for(samples);
+    SceneNet *network = network_for(samples);
     network->sweeps = SWEEPS;
     return network;
 }
 
-static SlotNetwork *begin(SlotSamples *samples) {
-    SlotNetwork *network = begin_with(samples, LAUNCHES);
+static SceneNet *begin(SceneNetSamples *samples) {
+    SceneNet *network = begin_with(samples, LAUNCHES);
     assert_in_range(samples->count, SAMPLES / 2, SAMPLES);
     return network;
 }
 
-static void end(SlotSamples *samples, SlotNetwork *network) {
-    slot_network_destroy(network);
-    slot_samples_free(samples);
+static void end(SceneNetSamples *samples, SceneNet *network) {
+    scene_net_destroy(network);
+    scene_net_samples_free(samples);
 }
 
-static SlotFit fit_of(int impulse_epochs, int epochs, double rate, bool factors) {
-    return (SlotFit){.impulse_weight = 0.1,
-                     .impulse_epochs = impulse_epochs,
-                     .epochs = epochs,
-                     .rate = rate,
-                     .learn_factors = factors,
-                     .seed = 1};
+static SceneNetFit fit_of(int impulse_epochs, int epochs, double rate, bool factors) {
+    return (SceneNetFit){.impulse_weight = 0.1,
+                         .impulse_epochs = impulse_epochs,
+                         .epochs = epochs,
+                         .rate = rate,
+                         .learn_factors = factors,
+                         .seed = 1};
 }
 
-static void fit_to(SlotNetwork *network, const SlotSamples *samples, SlotFit fit) {
+static void fit_to(SceneNet *network, const SceneNetSamples *samples, SceneNetFit fit) {
     Error error = {0};
-    assert_ok(slot_fit(network, samples, &fit, NULL, &error), error);
+    assert_ok(scene_net_fit(network, samples, &fit, NULL, &error), error);
 }
 
-static double mean_error(const SlotNetwork *network, const SlotSamples *samples) {
+static double mean_error(const SceneNet *network, const SceneNetSamples *samples) {
     Error error = {0};
     double errors[SAMPLES], sum = 0;
     assert_ok(slot_errors(network, samples, 0, errors, &error), error);
@@ -49,8 +49,8 @@ static double mean_error(const SlotNetwork *network, const SlotSamples *samples)
 }
 
 TEST(a_few_samples_are_learned) {
-    SlotSamples samples;
-    SlotNetwork *network = begin(&samples);
+    SceneNetSamples samples;
+    SceneNet *network = begin(&samples);
     const double before = mean_error(network, &samples);
     fit_to(network, &samples, fit_of(60, 200, 0.02, true));
     const double after = mean_error(network, &samples);
@@ -68,8 +68,8 @@ TEST(a_few_samples_are_learned) {
 
 /* Only the velocity loss has a gradient with respect to the factors. */
 TEST(factors_change_only_if_learned) {
-    SlotSamples samples;
-    SlotNetwork *network = begin(&samples);
+    SceneNetSamples samples;
+    SceneNet *network = begin(&samples);
     for (int s = 1; s < SWEEPS; s++) network->factors[s] = 0.5f;
     fit_to(network, &samples, fit_of(0, 3, 0.01, false));
     for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
@@ -82,8 +82,8 @@ TEST(factors_change_only_if_learned) {
 
 /* Adam's first step has the size of the rate for every parameter with a gradient. */
 TEST(the_first_step_has_the_size_of_the_rate) {
-    SlotSamples samples;
-    SlotNetwork *network = begin(&samples);
+    SceneNetSamples samples;
+    SceneNet *network = begin(&samples);
     float *before = malloc(network->parameter_count * sizeof *before);
     assert_non_null(before);
     memcpy(before, network->parameters, network->parameter_count * sizeof *before);
@@ -101,8 +101,8 @@ TEST(the_first_step_has_the_size_of_the_rate) {
 
 /* Enough samples to fill all parts of a batch and to need more than one batch. */
 TEST(same_bits_for_any_number_of_threads) {
-    SlotSamples samples[2];
-    SlotNetwork *networks[2];
+    SceneNetSamples samples[2];
+    SceneNet *networks[2];
     const int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
         omp_set_num_threads(1 + i);
@@ -117,17 +117,17 @@ TEST(same_bits_for_any_number_of_threads) {
 }
 
 TEST(a_loss_of_nan_is_an_error_naming_the_epoch) {
-    SlotSamples samples;
-    SlotNetwork *network = begin(&samples);
-    const SlotFit fit = fit_of(2, 9, 0.01, false);
+    SceneNetSamples samples;
+    SceneNet *network = begin(&samples);
+    const SceneNetFit fit = fit_of(2, 9, 0.01, false);
     /* The velocity loss starts in the third epoch. */
     samples.items[7].reference[3].x = NAN;
-    assert_refused(slot_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 3");
+    assert_refused(scene_net_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 3");
     end(&samples, network);
     error = (Error){0};
     network = begin(&samples);
     samples.items[7].goal[samples.items[7].view.contacts[0]].normal = INFINITY;
-    assert_refused(slot_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 1");
+    assert_refused(scene_net_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 1");
     end(&samples, network);
 }
 
@@ -138,13 +138,13 @@ static bool stop_after_three(void *context, double done, double total) {
 }
 
 TEST(a_stopped_fit_keeps_its_parameters) {
-    SlotSamples samples;
-    SlotNetwork *network = begin(&samples);
+    SceneNetSamples samples;
+    SceneNet *network = begin(&samples);
     int epochs = 0;
     const Progress progress = {stop_after_three, &epochs};
     const double before = mean_error(network, &samples);
-    const SlotFit fit = fit_of(0, 90, 4e-3, true);
-    assert_ok(slot_fit(network, &samples, &fit, &progress, &error), error);
+    const SceneNetFit fit = fit_of(0, 90, 4e-3, true);
+    assert_ok(scene_net_fit(network, &samples, &fit, &progress, &error), error);
     assert_int_equal(epochs, 3);
     for (size_t p = 0; p < network->parameter_count; p++) assert_true(isfinite(network->parameters[p]));
     assert_true(mean_error(network, &samples) < before);

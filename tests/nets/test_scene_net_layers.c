@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "slot_networks.h"
+#include "scene_net_layers.h"
 
 #include <math.h>
 
@@ -9,7 +9,7 @@ enum { BODIES = 5, STATE = SLOT_BODY_NUMBERS * (BODIES - 1), INPUTS = ROW_LANES 
 typedef struct Scene {
     float bomb[SLOT_BODY_NUMBERS], state[STATE], ones[FIVE_SLOTS], warm[2 * FIVE_SLOTS];
     int32_t slots[FIVE_SLOTS], impulses[2 * FIVE_SLOTS];
-    SlotView view;
+    SceneNetView view;
 } Scene;
 
 static void see(Scene *scene, int count, const int32_t *slots) {
@@ -18,7 +18,8 @@ static void see(Scene *scene, int count, const int32_t *slots) {
         scene->ones[i] = 1;
         for (int k = 0; k < 2; k++) scene->impulses[2 * i + k] = 2 * slots[i] + k;
     }
-    scene->view = (SlotView){scene->bomb, scene->state, count, scene->slots, scene->impulses, scene->ones, scene->warm};
+    scene->view =
+        (SceneNetView){scene->bomb, scene->state, count, scene->slots, scene->impulses, scene->ones, scene->warm};
 }
 
 static const int32_t all_slots[FIVE_SLOTS] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, few_slots[] = {7, 1, 4};
@@ -34,36 +35,36 @@ static void make_scene(Scene *scene, uint32_t *seed) {
 TEST(every_slot_is_found_and_no_other) {
     const uint32_t features[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, UINT32_MAX - 1, UINT32_MAX};
     uint32_t seed = 1;
-    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
     int found = 0;
     for (int a = 0; a < BODIES; a++)
         for (int b = 0; b < BODIES; b++)
             for (size_t f = 0; f < sizeof features / sizeof features[0]; f++) {
-                const int slot = slot_network_find(network, a, b, features[f]);
+                const int slot = scene_net_find(network, a, b, features[f]);
                 if (slot < 0) continue;
                 assert_true(five_slots[slot].a == a && five_slots[slot].b == b &&
                             five_slots[slot].feature == features[f]);
                 found++;
             }
     assert_int_equal(found, FIVE_SLOTS);
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 TEST(a_new_network_is_zero_and_has_its_own_slots) {
     Slot slots[FIVE_SLOTS];
     memcpy(slots, five_slots, sizeof slots);
-    SlotNetwork *network = slot_network_create(&five_shape, slots, &error);
+    SceneNet *network = scene_net_create(&five_shape, slots, &error);
     assert_ok(network != NULL, error);
     memset(slots, 0, sizeof slots);
     assert_memory_equal(network->slots, five_slots, sizeof five_slots);
-    assert_int_equal(slot_network_inputs(network), INPUTS);
-    assert_int_equal(slot_network_hidden(network), HIDDEN);
+    assert_int_equal(scene_net_inputs(network), INPUTS);
+    assert_int_equal(scene_net_hidden(network), HIDDEN);
     assert_int_equal(network->parameter_count,
                      (INPUTS + 1) * HIDDEN + (HIDDEN + 1) * HIDDEN + (HIDDEN + 1) * 2 * FIVE_SLOTS);
     for (size_t p = 0; p < network->parameter_count; p++) assert_true(network->parameters[p] == 0);
     for (int i = 0; i < FIVE_SLOTS; i++) assert_true(network->scale[i] == 0 && network->cap[i] == 0);
     for (int i = 0; i < INPUTS; i++) assert_true(network->low[i] == 0 && network->high[i] == 0);
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 /* Small whole numbers: every sum of them is exact. */
@@ -88,7 +89,7 @@ static void centre(Projection *projection, const int32_t *index, const float *nu
 TEST(what_lies_at_the_centre_projects_to_zero) {
     Scene scene;
     uint32_t seed = 3;
-    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
     make_scene(&scene, &seed);
     see(&scene, 3, few_slots);
     make_whole(scene.bomb, SLOT_BODY_NUMBERS);
@@ -99,15 +100,15 @@ TEST(what_lies_at_the_centre_projects_to_zero) {
     centre(&network->present, scene.slots, scene.ones, 3);
     centre(&network->warm, scene.impulses, scene.warm, 6);
     float inputs[INPUTS];
-    slot_network_look(network, &scene.view, inputs);
+    scene_net_look(network, &scene.view, inputs);
     for (int i = 0; i < INPUTS; i++) assert_true(inputs[i] == 0);
     scene.warm[5] += 1; /* and other slots do not */
-    slot_network_look(network, &scene.view, inputs);
+    scene_net_look(network, &scene.view, inputs);
     bool moved = false;
     for (int i = INPUTS - 48; i < INPUTS; i++) moved |= inputs[i] != 0;
     for (int i = 0; i < INPUTS - 48; i++) assert_true(inputs[i] == 0);
     assert_true(moved);
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 static double *project(const Projection *projection, const int32_t *index, const float *numbers, int count,
@@ -120,7 +121,7 @@ static double *project(const Projection *projection, const int32_t *index, const
     return out + projection->to;
 }
 
-static void run_layer(const SlotLayer *layer, const double *in, double *out) {
+static void run_layer(const SceneNetLayer *layer, const double *in, double *out) {
     for (int o = 0; o < layer->to; o++) {
         double sum = (double)layer->biases[o];
         for (int i = 0; i < layer->from; i++) sum += packed_number(&layer->packed, i, o) * in[i];
@@ -128,8 +129,8 @@ static void run_layer(const SlotLayer *layer, const double *in, double *out) {
     }
 }
 
-/* The formula at SlotNetwork, for every slot of the network. */
-static void predict(const SlotNetwork *network, const SlotView *view, double inputs[INPUTS],
+/* The formula at SceneNet, for every slot of the network. */
+static void predict(const SceneNet *network, const SceneNetView *view, double inputs[INPUTS],
                     double outputs[2 * FIVE_SLOTS]) {
     double first[HIDDEN], second[HIDDEN];
     double *next = project(&network->bomb_state, NULL, view->bomb, SLOT_BODY_NUMBERS, inputs);
@@ -150,83 +151,83 @@ static const double rounding = 1e-5;
 
 TEST(a_prediction_is_the_formula) {
     uint32_t seed = 4;
-    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
     for (int test = 0; test < 20; test++) {
         Scene scene;
         float inputs[INPUTS], first[HIDDEN], second[HIDDEN], outputs[2 * FIVE_SLOTS];
         double exact_inputs[INPUTS], exact[2 * FIVE_SLOTS];
         make_scene(&scene, &seed);
         if (test % 2 == 1) see(&scene, 3, few_slots);
-        slot_network_look(network, &scene.view, inputs);
-        slot_network_predict(network, inputs, &scene.view, first, second, outputs);
+        scene_net_look(network, &scene.view, inputs);
+        scene_net_predict(network, inputs, &scene.view, first, second, outputs);
         predict(network, &scene.view, exact_inputs, exact);
         for (int i = 0; i < INPUTS; i++) assert_near(inputs[i], exact_inputs[i], rounding);
         for (int i = 0; i < 2 * scene.view.slot_count; i++)
             assert_near(outputs[i], exact[2 * scene.slots[i / 2] + i % 2], rounding);
     }
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 /* For the same inputs, each alone and in any company. */
 TEST(a_slot_does_not_mind_the_others) {
     Scene scene;
     uint32_t seed = 5;
-    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
     float inputs[INPUTS], first[HIDDEN], second[HIDDEN], all[2 * FIVE_SLOTS], few[6], one[2];
     make_scene(&scene, &seed);
-    slot_network_look(network, &scene.view, inputs);
-    slot_network_predict(network, inputs, &scene.view, first, second, all);
+    scene_net_look(network, &scene.view, inputs);
+    scene_net_predict(network, inputs, &scene.view, first, second, all);
     see(&scene, 3, few_slots);
-    slot_network_predict(network, inputs, &scene.view, first, second, few);
+    scene_net_predict(network, inputs, &scene.view, first, second, few);
     for (int i = 0; i < 3; i++) assert_memory_equal(&few[2 * i], &all[2 * few_slots[i]], sizeof one);
     for (int32_t slot = 0; slot < FIVE_SLOTS; slot++) {
         see(&scene, 1, &slot);
-        slot_network_predict(network, inputs, &scene.view, first, second, one);
+        scene_net_predict(network, inputs, &scene.view, first, second, one);
         assert_memory_equal(one, &all[2 * slot], sizeof one);
         assert_true(one[0] != 0 && one[0] != one[1]);
     }
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 /* A step without contacts. */
 TEST(no_slots_are_none) {
     Scene scene;
     uint32_t seed = 6;
-    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
     float inputs[INPUTS], first[HIDDEN], second[HIDDEN], none = 5;
     make_scene(&scene, &seed);
     see(&scene, 0, NULL);
-    slot_network_look(network, &scene.view, inputs);
+    scene_net_look(network, &scene.view, inputs);
     for (int c = 0; c < network->present.to; c++)
         assert_true(inputs[ROW_LANES + network->state.to + c] == -network->present.centre[c]);
-    slot_network_predict(network, inputs, &scene.view, first, second, &none);
+    scene_net_predict(network, inputs, &scene.view, first, second, &none);
     assert_true(none == 5);
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
-static void refuse(SlotShape shape, const Slot *slots, const char *text) {
+static void refuse(SceneNetShape shape, const Slot *slots, const char *text) {
     Error error = {0};
-    assert_refused(slot_network_create(&shape, slots, &error), text);
+    assert_refused(scene_net_create(&shape, slots, &error), text);
 }
 
 TEST(shapes_out_of_bounds_are_refused) {
-    const SlotShape fine = {3, 2, 1, 16, 16, 16, 16};
+    const SceneNetShape fine = {3, 2, 1, 16, 16, 16, 16};
     const Slot slot = {0, 1, 0};
 #define REFUSE(member, value, text) \
     do {                            \
-        SlotShape shape = fine;     \
+        SceneNetShape shape = fine; \
         shape.member = (value);     \
         refuse(shape, &slot, text); \
     } while (0)
     REFUSE(body_count, 1, "1 bodies");
     REFUSE(body_count, -1, "-1 bodies");
-    REFUSE(body_count, SLOT_BODIES_MAX + 1, "257 bodies");
+    REFUSE(body_count, SCENE_NET_BODIES_MAX + 1, "257 bodies");
     REFUSE(bomb, -1, "of which -1 is the bomb");
     REFUSE(bomb, 3, "of which 3 is the bomb");
     REFUSE(slot_count, 0, "0 slots");
     REFUSE(slot_count, -5, "-5 slots");
     REFUSE(slot_count, SLOTS_MAX + 1, "20001 slots");
-    const int bad[] = {0, -16, 8, 17, SLOT_WIDTH_MAX + ROW_LANES};
+    const int bad[] = {0, -16, 8, 17, SCENE_NET_WIDTH_MAX + ROW_LANES};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         REFUSE(state, bad[i], "a width");
         REFUSE(present, bad[i], "a width");
@@ -237,7 +238,7 @@ TEST(shapes_out_of_bounds_are_refused) {
 }
 
 TEST(slots_that_do_not_rise_are_refused) {
-    const SlotShape three = {4, 0, 3, 16, 16, 16, 16};
+    const SceneNetShape three = {4, 0, 3, 16, 16, 16, 16};
     refuse(three, (const Slot[]){{1, 1, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");
     refuse(three, (const Slot[]){{1, 0, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");
     refuse(three, (const Slot[]){{-1, 2, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");

@@ -11,62 +11,62 @@
 static Scene *scene;
 
 static bool train(void *context, const char *path, const Progress *progress, Error *error) {
-    RelationNetworks *networks = context;
-    const RelationTraining training = {.scenes = &scene,
-                                       .scene_count = 1,
-                                       .launches = 2,
-                                       .rounds = 2,
-                                       .steps = 4,
-                                       .batch = 64,
-                                       .saved = 3,
-                                       .seed = 4,
-                                       .command = "test",
-                                       .state_path = path};
-    const bool ok = relation_training_run(&training, networks, progress, error);
-    if (!ok) relation_networks_destroy(networks);
+    SainNetworks *networks = context;
+    const SainTraining training = {.scenes = &scene,
+                                   .scene_count = 1,
+                                   .launches = 2,
+                                   .rounds = 2,
+                                   .steps = 4,
+                                   .batch = 64,
+                                   .saved = 3,
+                                   .seed = 4,
+                                   .command = "test",
+                                   .state_path = path};
+    const bool ok = sain_training_run(&training, networks, progress, error);
+    if (!ok) sain_networks_destroy(networks);
     return ok;
 }
 
-static void assert_same(const RelationNetworks *a, const RelationNetworks *b) {
-    for (int f = 0; f < RELATION_FORMS; f++) {
-        const RelationNetwork *x = &a->forms[f], *y = &b->forms[f];
+static void assert_same(const SainNetworks *a, const SainNetworks *b) {
+    for (int f = 0; f < SAIN_FORMS; f++) {
+        const SainNetwork *x = &a->forms[f], *y = &b->forms[f];
         assert_memory_equal(x->relation->weights[0], y->relation->weights[0],
                             (size_t)network_parameter_count(x->relation) * sizeof(float));
         assert_memory_equal(x->object->weights[0], y->object->weights[0],
                             (size_t)network_parameter_count(x->object) * sizeof(float));
-        assert_memory_equal(x->relation->input.offset, y->relation->input.offset, RELATION_PAIR_INPUTS * sizeof(float));
+        assert_memory_equal(x->relation->input.offset, y->relation->input.offset, SAIN_PAIR_INPUTS * sizeof(float));
         assert_memory_equal(x->pair_high, y->pair_high, sizeof x->pair_high);
         assert_memory_equal(x->limit, y->limit, sizeof x->limit);
     }
 }
 
 TEST(an_interrupted_training_has_the_same_bits) {
-    RelationNetworks whole, resumed;
+    SainNetworks whole, resumed;
     scene = scene_named("single");
     assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);
     assert_true(train_in_parts(train, &resumed, temporary_path("resumed.part"), 5, 4) > 2);
     assert_same(&whole, &resumed);
-    relation_networks_destroy(&whole);
-    relation_networks_destroy(&resumed);
+    sain_networks_destroy(&whole);
+    sain_networks_destroy(&resumed);
     scene_destroy(scene);
 }
 
 /* A box in a V that its friction holds apart from: what is trained on has a solution, what is left out is counted. */
 TEST(problems_without_a_solution_are_left_out_and_counted) {
     scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge_launches.yaml");
-    const RelationLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 3, .rounds = 1};
+    const SainLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 3, .rounds = 1};
     ImpactProblems problems = {.unconverged = 0};
-    RelationSamples samples = {.unconverged = 1};
+    SainSamples samples = {.unconverged = 1};
     Reference reference = {0};
-    assert_ok(relation_launches_record(&launches, &problems, NULL, &error), error);
+    assert_ok(sain_launches_record(&launches, &problems, NULL, &error), error);
     for (size_t i = 0; i < problems.count; i++) {
         assert_ok(reference_solve_to(&reference, &problems.items[i].problem, 1e-6, 120, &error), error);
         assert_true(reference.residual <= 1e-6);
     }
     assert_int_equal(problems.unconverged, 3 * 2); /* of each launch frames 30 and 60: the box wedges at frame 26 */
-    assert_ok(relation_samples_add(&samples, &problems, false, &error), error);
+    assert_ok(sain_samples_add(&samples, &problems, false, &error), error);
     assert_int_equal(samples.unconverged, 1 + 3 * 2);
-    relation_samples_free(&samples);
+    sain_samples_free(&samples);
     impact_problems_free(&problems);
     reference_free(&reference);
     scene_destroy(scene);
@@ -77,9 +77,9 @@ TEST(a_failed_step_of_the_engine_is_refused) {
     scene = scene_named("single");
     scene->gravity.y = -INFINITY;
     scene->overlaps_allowed = true; /* the launches are not tried before */
-    const RelationLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 1, .rounds = 1};
+    const SainLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 1, .rounds = 1};
     ImpactProblems problems = {.unconverged = 0};
-    assert_refused(relation_launches_record(&launches, &problems, NULL, &error), "NaN or infinite");
+    assert_refused(sain_launches_record(&launches, &problems, NULL, &error), "NaN or infinite");
     impact_problems_free(&problems);
     scene_destroy(scene);
 }

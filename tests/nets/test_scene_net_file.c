@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written is read; what holds no slot network, or one that cannot be, is refused with place and reason. */
 #include "net_files.h"
-#include "slot_networks.h"
+#include "scene_net_layers.h"
 
 #include "python.h"
 
-static SlotNetwork *example(void) {
+static SceneNet *example(void) {
     uint32_t seed = 1;
-    SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
+    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
     network->gate = 0.1f;
     network->bomb_inv_mass = 0.02f;
     network->sweeps = 3;
@@ -19,7 +19,7 @@ static SlotNetwork *example(void) {
 }
 
 /* The block holds all arrays, the packed ones too; its last is pair_slots. */
-static void assert_same(const SlotNetwork *a, const SlotNetwork *b) {
+static void assert_same(const SceneNet *a, const SceneNet *b) {
     const size_t pairs = (size_t)(a->body_count * a->body_count) + 1;
     const char *block = a->block, *other = b->block;
     assert_true(a->body_count == b->body_count && a->bomb == b->bomb && a->slot_count == b->slot_count);
@@ -35,38 +35,38 @@ static void assert_same(const SlotNetwork *a, const SlotNetwork *b) {
     assert_ptr_equal(a->kernels, b->kernels);
 }
 
-static SlotNetwork *written_and_read(const SlotNetwork *network) {
+static SceneNet *written_and_read(const SceneNet *network) {
     Error error = {0};
     const char *path = temporary_path("net.npz");
-    assert_ok(slot_network_write(network, path, &error), error);
-    SlotNetwork *read = slot_network_read(path, &error);
+    assert_ok(scene_net_write(network, path, &error), error);
+    SceneNet *read = scene_net_read(path, &error);
     assert_ok(read != NULL, error);
     return read;
 }
 
 TEST(files_keep_every_bit) {
-    const int sweeps[] = {3, 0, SLOT_SWEEPS_MAX};
-    SlotNetwork *network = example();
+    const int sweeps[] = {3, 0, SCENE_NET_SWEEPS_MAX};
+    SceneNet *network = example();
     for (int i = 0; i < 3; i++) {
         network->sweeps = sweeps[i];
-        for (int f = 3; f < SLOT_SWEEPS_MAX; f++) network->factors[f] = f < sweeps[i] ? 0.01f * (float)f : 0;
+        for (int f = 3; f < SCENE_NET_SWEEPS_MAX; f++) network->factors[f] = f < sweeps[i] ? 0.01f * (float)f : 0;
         for (int f = sweeps[i]; f < 3; f++) network->factors[f] = 0;
-        SlotNetwork *read = written_and_read(network);
+        SceneNet *read = written_and_read(network);
         assert_same(read, network);
-        slot_network_destroy(read);
+        scene_net_destroy(read);
     }
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 /* Numbers that rise through all of a matrix say where NumPy has each of them. */
 TEST(numpy_sees_the_shapes) {
-    SlotNetwork *network = example();
+    SceneNet *network = example();
     for (int i = 0; i < 2 * FIVE_SLOTS * 64; i++) network->rows[i] = (float)i;
     for (int i = 0; i < 24 * 16; i++) network->state.rows[i] = (float)i;
     for (int i = 0; i < 112 * 64; i++) network->first.rows[i] = (float)i;
     const char *path = temporary_path("numpy.npz");
-    assert_ok(slot_network_write(network, path, &error), error);
-    slot_network_destroy(network);
+    assert_ok(scene_net_write(network, path, &error), error);
+    scene_net_destroy(network);
     run_python("import sys, numpy as np\n"
                "f = np.load(sys.argv[1], allow_pickle=False)\n"
                "want = {'version': (), 'kind': (), 'scene': (), 'command': (), 'body_count': (), 'bomb': (),\n"
@@ -97,8 +97,8 @@ TEST(numpy_sees_the_shapes) {
 }
 
 static bool is_read(const char *path, Error *error) {
-    SlotNetwork *network = slot_network_read(path, error);
-    slot_network_destroy(network);
+    SceneNet *network = scene_net_read(path, error);
+    scene_net_destroy(network);
     return network != NULL;
 }
 
@@ -106,29 +106,29 @@ static bool is_read(const char *path, Error *error) {
 static NetArrays two_slots(void) {
     Error error = {0};
     uint32_t seed = 1;
-    SlotNetwork *network =
-        make_slot_network(&(SlotShape){2, 1, 2, 16, 16, 16, 32}, (const Slot[]){{0, 1, 4}, {0, 1, 6}}, &seed);
+    SceneNet *network =
+        make_scene_net(&(SceneNetShape){2, 1, 2, 16, 16, 16, 32}, (const Slot[]){{0, 1, 4}, {0, 1, 6}}, &seed);
     const char *path = temporary_path("two.npz");
-    assert_ok(slot_network_write(network, path, &error), error);
-    slot_network_destroy(network);
+    assert_ok(scene_net_write(network, path, &error), error);
+    scene_net_destroy(network);
     return read_arrays(path);
 }
 
 TEST(every_array_is_needed_and_checked) {
-    SlotNetwork *network = example();
+    SceneNet *network = example();
     const char *path = temporary_path("net.npz");
-    assert_ok(slot_network_write(network, path, &error), error);
-    slot_network_destroy(network);
+    assert_ok(scene_net_write(network, path, &error), error);
+    scene_net_destroy(network);
     size_t size;
     char *bytes = read_whole(path, &size);
-    assert_file_is_checked(is_read, path, "scene-net", SLOT_NETWORK_VERSION);
+    assert_file_is_checked(is_read, path, "scene-net", SCENE_NET_NETWORK_VERSION);
     bytes[size / 2] ^= 1; /* inside a matrix */
     refuse_file(is_read, write_bytes(temporary_path("flipped.npz"), bytes, size), "damaged");
     free(bytes);
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    SlotNetwork *network = example();
+    SceneNet *network = example();
     const char *path = temporary_path("bad.npz");
     struct {
         float *number, bad;
@@ -145,11 +145,11 @@ TEST(numbers_out_of_range_are_refused) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const float kept = *cases[i].number;
         *cases[i].number = cases[i].bad;
-        assert_ok(slot_network_write(network, path, &error), error);
+        assert_ok(scene_net_write(network, path, &error), error);
         *cases[i].number = kept;
         refuse_file(is_read, path, cases[i].text);
     }
-    slot_network_destroy(network);
+    scene_net_destroy(network);
 }
 
 TEST(sizes_and_slots_out_of_bounds_are_refused) {
@@ -210,7 +210,7 @@ static void refuse_shapes(const Change *changes, size_t count, const char *text)
 
 /* Sizes that agree with each other and are refused all the same, before room is made for what they would need. */
 TEST(absurd_sizes_are_refused) {
-    const int64_t many = SLOTS_MAX + 1, wide = SLOT_WIDTH_MAX + ROW_LANES;
+    const int64_t many = SLOTS_MAX + 1, wide = SCENE_NET_WIDTH_MAX + ROW_LANES;
     const Change no_slots[] = {{"slot_a", {0}},        {"slot_b", {0}},           {"slot_feature", {0}},
                                {"last_rows", {0, 32}}, {"present_rows", {0, 16}}, {"warm_rows", {0, 16}}},
                  endless[] = {{"slot_a", {0}}, {"present_rows", {0, INT64_C(1) << 31}}};

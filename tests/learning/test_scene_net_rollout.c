@@ -9,7 +9,7 @@
 
 enum { LAUNCHES = 6 };
 
-static void assert_same_samples(const SlotSamples *a, const SlotSamples *b) {
+static void assert_same_samples(const SceneNetSamples *a, const SceneNetSamples *b) {
     assert_int_equal(a->count, b->count);
     for (int i = 0; i < a->count; i++) {
         assert_int_equal(a->items[i].launch, b->items[i].launch);
@@ -19,7 +19,7 @@ static void assert_same_samples(const SlotSamples *a, const SlotSamples *b) {
 }
 
 TEST(same_bits_for_any_number_of_threads) {
-    SlotSamples samples[2] = {{0}};
+    SceneNetSamples samples[2] = {{0}};
     const int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
         omp_set_num_threads(1 + i);
@@ -27,18 +27,18 @@ TEST(same_bits_for_any_number_of_threads) {
     }
     omp_set_num_threads(threads);
     assert_same_samples(&samples[0], &samples[1]);
-    for (int i = 0; i < 2; i++) slot_samples_free(&samples[i]);
+    for (int i = 0; i < 2; i++) scene_net_samples_free(&samples[i]);
 }
 
 TEST(samples_are_appended_in_the_order_of_launch_and_step) {
-    SlotSamples samples = {0};
+    SceneNetSamples samples = {0};
     record_impacts(&samples, LAUNCHES, 0);
     const int count = samples.count;
     record_impacts(&samples, LAUNCHES, 100);
     assert_true(count > 2 * LAUNCHES);
     assert_int_equal(samples.count, 2 * count);
     for (int i = 0; i < samples.count; i++) {
-        const SlotSample *sample = &samples.items[i];
+        const SceneNetSample *sample = &samples.items[i];
         const int first = i < count ? 0 : 100;
         assert_in_range(sample->launch, first, first + LAUNCHES - 1);
         assert_in_range(sample->since, 0, IMPACT_STEPS - 1);
@@ -47,22 +47,21 @@ TEST(samples_are_appended_in_the_order_of_launch_and_step) {
         assert_true(sample[-1].launch < sample->launch ||
                     (sample[-1].launch == sample->launch && sample[-1].since < sample->since));
     }
-    slot_samples_free(&samples);
+    scene_net_samples_free(&samples);
 }
 
 static bool bomb_touches(const ContactProblem *problem) {
     bool touches = false;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
-        const int other = contact->a == problem->marked ? contact->b : contact->a;
-        touches |=
-            (contact->a == problem->marked || contact->b == problem->marked) && problem->bodies[other].inv_mass > 0;
+        const int other = contact->a == problem->bomb ? contact->b : contact->a;
+        touches |= (contact->a == problem->bomb || contact->b == problem->bomb) && problem->bodies[other].inv_mass > 0;
     }
     return touches;
 }
 
 /* A separate run: the samples must be exactly the steps from the first touch whose residual reaches the gate. */
-static int check_launch(const Scene *scene, const ContactSolver *solver, const SlotSample *samples) {
+static int check_launch(const Scene *scene, const ContactSolver *solver, const SceneNetSample *samples) {
     Error error = {0};
     Scene quiet = *scene;
     quiet.bomb.present = false;
@@ -72,7 +71,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
         if (frame == scene->bomb.frame) assert_ok(scene_add_bomb(scene, world, &error), error);
         assert_ok(world_step(world, solver->kind->solve, solver->state, scene->dt, &error), error);
         const ContactProblem *problem = world_problem(world);
-        if (since >= 0 || (problem->marked >= 0 && bomb_touches(problem))) since++;
+        if (since >= 0 || (problem->bomb >= 0 && bomb_touches(problem))) since++;
         if (since < 0 || residual_of(problem) < (double)impact_gate) continue;
         assert_int_equal(samples[found].since, since);
         assert_equal_problems(&samples[found++].problem, problem);
@@ -82,7 +81,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
 }
 
 TEST(samples_are_the_steps_with_a_large_residual) {
-    SlotSamples samples = {0};
+    SceneNetSamples samples = {0};
     ContactSolver solver;
     Scene *scene = scene_named("stack");
     Launch launches[LAUNCHES];
@@ -98,7 +97,7 @@ TEST(samples_are_the_steps_with_a_large_residual) {
     assert_true(done < LAUNCHES * IMPACT_STEPS);
     solver.kind->destroy(solver.state);
     scene_destroy(scene);
-    slot_samples_free(&samples);
+    scene_net_samples_free(&samples);
 }
 
 static bool no_solver(void *context, ContactSolver *solver, Error *error) {
@@ -109,10 +108,10 @@ static bool no_solver(void *context, ContactSolver *solver, Error *error) {
 TEST(a_solver_that_cannot_be_made_is_an_error) {
     Scene *scene = scene_named("stack");
     Launch launch = launch_of(scene);
-    SlotSamples samples = {0};
-    const SlotRollout rollout = {
+    SceneNetSamples samples = {0};
+    const SceneNetRollout rollout = {
         .scene = scene, .launches = &launch, .launch_count = 1, .steps = 1, .make_solver = no_solver};
-    assert_refused(slot_rollout(&rollout, &samples, NULL, &error), "not available");
+    assert_refused(scene_net_rollout(&rollout, &samples, NULL, &error), "not available");
     assert_int_equal(samples.count, 0);
     scene_destroy(scene);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What sain sees of a step: the touched bodies, and a row of inputs for each body that touches one. */
-#include "methods/relation_view.h"
+#include "methods/sain_view.h"
 
 #include "base/base.h"
 #include "engine/engine.h"
@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *const relation_form_names[RELATION_FORMS + 1] = {"on", "off", "shuffled", NULL};
+const char *const sain_form_names[SAIN_FORMS + 1] = {"on", "off", "shuffled", NULL};
 
 /* m/s, added to each pace: gravity makes 0.17 in a step. Slower motion counts less and less. */
 static const float slowest = 0.02f;
@@ -19,17 +19,17 @@ static const float fastest = 20.0f;   /* m/s: the scale stays below; few correct
 static const float usual_pace = 1.0f; /* m/s: tells the network a touch from a crash */
 
 /* Two touching bodies, seen from one of them. */
-typedef struct RelationRow {
+typedef struct SainViewRow {
     int receiver, sender; /* in the problem */
     int points;
     Vec2 normal, at;    /* from the sender to the receiver; mean of the contact points, from the receiver's centre */
     Vec2 before, after; /* m/s: velocity of the sender there relative to the receiver's, before and after the engine */
     float friction, bias;
-} RelationRow;
+} SainViewRow;
 
-void relation_view_free(RelationView *view) {
+void sain_view_free(SainView *view) {
     free(view->arrays.memory);
-    *view = (RelationView){0};
+    *view = (SainView){0};
 }
 
 static float limited(float x, float pace) { return x / (pace + fabsf(x)); }
@@ -51,20 +51,19 @@ static Vec2 upright_axis(float angle) {
 }
 
 /* Velocities after the engine, as far as the form shows them. */
-static void show_engine(RelationView *view, const ContactProblem *problem, const BodyVelocity *engine,
-                        RelationForm form) {
+static void show_engine(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form) {
     int moving = 0;
     for (int i = 0; i < problem->body_count; i++) {
         view->changed[i] = velocity_before(&problem->bodies[i]);
         if (problem_body_moves(&problem->bodies[i])) view->receivers[moving++] = i;
     }
-    if (form == RELATION_ALONE) return;
+    if (form == SAIN_ALONE) return;
     for (int m = 0; m < moving; m++) {
         const int to = view->receivers[m],
-                  from = view->receivers[form == RELATION_ENGINE ? m : (m + moving / 2) % moving];
+                  from = view->receivers[form == SAIN_WITH_ENGINE ? m : (m + moving / 2) % moving];
         const BodyVelocity before = velocity_before(&problem->bodies[from]);
         BodyVelocity *velocity = &view->changed[to];
-        if (form == RELATION_ENGINE) {
+        if (form == SAIN_WITH_ENGINE) {
             *velocity = engine[to];
             continue;
         }
@@ -73,7 +72,7 @@ static void show_engine(RelationView *view, const ContactProblem *problem, const
     }
 }
 
-static void warm_up(RelationView *view, const ContactProblem *problem) {
+static void warm_up(SainView *view, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) view->warmed[i] = velocity_before(&problem->bodies[i]);
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
@@ -83,7 +82,7 @@ static void warm_up(RelationView *view, const ContactProblem *problem) {
 }
 
 /* Receivers in the order of the problem, with the numbers of their rows. */
-static void find_receivers(RelationView *view, const ContactProblem *problem) {
+static void find_receivers(SainView *view, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) view->receivers[i] = 0;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
@@ -98,7 +97,7 @@ static void find_receivers(RelationView *view, const ContactProblem *problem) {
         view->receivers[i] = -1;
         if (rows == 0 || !problem_body_moves(body)) continue;
         view->receivers[i] = view->body_count;
-        view->bodies[view->body_count++] = (RelationBody){
+        view->bodies[view->body_count++] = (SainBody){
             .body = i,
             .first = view->row_count,
             .axis = upright_axis(body->angle),
@@ -114,12 +113,12 @@ static Vec2 velocity_at(const BodyVelocity *velocity, Vec2 arm) {
 }
 
 /* The row of the contacts from `first` on for the receiver, if it is one. */
-static void add_row(RelationView *view, const ContactProblem *problem, int first, int points, bool receiver_is_b) {
+static void add_row(SainView *view, const ContactProblem *problem, int first, int points, bool receiver_is_b) {
     const ContactPoint *contact = &problem->contacts[first];
-    RelationRow row = {receiver_is_b ? contact->b : contact->a, receiver_is_b ? contact->a : contact->b, points,
+    SainViewRow row = {receiver_is_b ? contact->b : contact->a, receiver_is_b ? contact->a : contact->b, points,
                        receiver_is_b ? contact->normal : vec2_negate(contact->normal), .friction = contact->friction};
     if (view->receivers[row.receiver] < 0) return;
-    RelationBody *body = &view->bodies[view->receivers[row.receiver]];
+    SainBody *body = &view->bodies[view->receivers[row.receiver]];
     Vec2 arm = {0, 0};
     for (int i = 0; i < points; i++) {
         row.at = vec2_add(row.at, receiver_is_b ? contact[i].arm_b : contact[i].arm_a);
@@ -135,7 +134,7 @@ static void add_row(RelationView *view, const ContactProblem *problem, int first
     view->rows[body->first + body->rows++] = row;
 }
 
-static void find_rows(RelationView *view, const ContactProblem *problem) {
+static void find_rows(SainView *view, const ContactProblem *problem) {
     for (int first = 0, points; first < problem->contact_count; first += points) {
         const ContactPoint *contact = &problem->contacts[first];
         points = 1;
@@ -155,12 +154,12 @@ typedef struct Change {
 
 static float square_of(Change change) { return square(change.linear) + change.spin * change.spin; }
 
-static Change change_since(const BodyVelocity *before, const BodyVelocity *after, const RelationBody *seen_by) {
-    return (Change){relation_into_frame(seen_by, vec2_sub(after->linear, before->linear)),
+static Change change_since(const BodyVelocity *before, const BodyVelocity *after, const SainBody *seen_by) {
+    return (Change){sain_into_frame(seen_by, vec2_sub(after->linear, before->linear)),
                     seen_by->radius * (after->angular - before->angular)};
 }
 
-static Change change_of(const RelationView *view, const ContactProblem *problem, int i, const RelationBody *seen_by) {
+static Change change_of(const SainView *view, const ContactProblem *problem, int i, const SainBody *seen_by) {
     const BodyVelocity before = velocity_before(&problem->bodies[i]);
     return change_since(&before, &view->changed[i], seen_by);
 }
@@ -168,12 +167,12 @@ static Change change_of(const RelationView *view, const ContactProblem *problem,
 /* Pace: of all velocities that the inputs divide by it. Scale: with an engine, only what moves between bodies that
    touch, and what the engine did beyond the impulses of the step before. At rest neither is left, so a stack at rest
    stays at rest. */
-static void find_pace(RelationView *view, const ContactProblem *problem, RelationForm form, RelationBody *body) {
+static void find_pace(SainView *view, const ContactProblem *problem, SainForm form, SainBody *body) {
     const float radius = body->radius;
     float motion = square_of(change_of(view, problem, body->body, body)),
           unrest = square_of(change_since(&view->warmed[body->body], &body->base, body));
     for (int r = body->first; r < body->first + body->rows; r++) {
-        const RelationRow *row = &view->rows[r];
+        const SainViewRow *row = &view->rows[r];
         const float spin = radius * (problem->bodies[row->sender].angular_velocity -
                                      problem->bodies[row->receiver].angular_velocity),
                     spin_after = radius * (view->changed[row->sender].angular - body->base.angular);
@@ -184,23 +183,22 @@ static void find_pace(RelationView *view, const ContactProblem *problem, Relatio
             unrest += square_of(change_since(&view->warmed[row->sender], &view->changed[row->sender], body));
     }
     body->pace = slowest + sqrtf(motion);
-    const float scale = form == RELATION_ENGINE ? sqrtf(unrest) : body->pace;
+    const float scale = form == SAIN_WITH_ENGINE ? sqrtf(unrest) : body->pace;
     body->scale = fastest * limited(scale, fastest);
 }
 
 static float limited_size(float size) { return size < size_max ? size : size_max; }
 
-static void fill_pair(const RelationView *view, const ContactProblem *problem, RelationForm form,
-                      const RelationBody *body, int r) {
-    const RelationRow *row = &view->rows[r];
+static void fill_pair(const SainView *view, const ContactProblem *problem, SainForm form, const SainBody *body, int r) {
+    const SainViewRow *row = &view->rows[r];
     const ProblemBody *receiver = &problem->bodies[row->receiver], *sender = &problem->bodies[row->sender];
     const float pace = body->pace, radius = body->radius;
-    const Vec2 at = relation_into_frame(body, row->at), normal = relation_into_frame(body, row->normal),
-               velocity = relation_into_frame(body, sender->velocity), before = relation_into_frame(body, row->before),
-               after = relation_into_frame(body, row->after);
+    const Vec2 at = sain_into_frame(body, row->at), normal = sain_into_frame(body, row->normal),
+               velocity = sain_into_frame(body, sender->velocity), before = sain_into_frame(body, row->before),
+               after = sain_into_frame(body, row->after);
     const Change own = change_of(view, problem, row->receiver, body), its = change_of(view, problem, row->sender, body);
-    const bool engine = form != RELATION_ALONE;
-    const float inputs[RELATION_PAIR_INPUTS] = {
+    const bool engine = form != SAIN_ALONE;
+    const float inputs[SAIN_PAIR_INPUTS] = {
         at.x,
         at.y,
         normal.x,
@@ -229,16 +227,16 @@ static void fill_pair(const RelationView *view, const ContactProblem *problem, R
         own.linear.y / pace,
         own.spin / pace,
     };
-    for (int i = 0; i < RELATION_PAIR_INPUTS; i++) view->pair_inputs[i * view->row_count + r] = inputs[i];
+    for (int i = 0; i < SAIN_PAIR_INPUTS; i++) view->pair_inputs[i * view->row_count + r] = inputs[i];
 }
 
-static void fill_body(const RelationView *view, const ContactProblem *problem, int b) {
-    const RelationBody *body = &view->bodies[b];
+static void fill_body(const SainView *view, const ContactProblem *problem, int b) {
+    const SainBody *body = &view->bodies[b];
     const ProblemBody *receiver = &problem->bodies[body->body];
     const float pace = body->pace;
-    const Vec2 velocity = relation_into_frame(body, receiver->velocity);
+    const Vec2 velocity = sain_into_frame(body, receiver->velocity);
     const Change own = change_of(view, problem, body->body, body);
-    const float inputs[RELATION_BODY_INPUTS] = {
+    const float inputs[SAIN_BODY_INPUTS] = {
         body->axis.y,
         limited(velocity.x, pace),
         limited(velocity.y, pace),
@@ -250,19 +248,18 @@ static void fill_body(const RelationView *view, const ContactProblem *problem, i
         limited(pace, usual_pace),
         body->scale / pace,
     };
-    for (int i = 0; i < RELATION_BODY_INPUTS; i++) view->body_inputs[i * view->body_count + b] = inputs[i];
+    for (int i = 0; i < SAIN_BODY_INPUTS; i++) view->body_inputs[i * view->body_count + b] = inputs[i];
 }
 
-static bool reserve(RelationView *view, const ContactProblem *problem) {
+static bool reserve(SainView *view, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1, rows = 2 * (size_t)problem->contact_count + 1;
     return ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->bodies, bodies), ARRAY_PART(view->changed, bodies),
                                ARRAY_PART(view->warmed, bodies), ARRAY_PART(view->receivers, bodies),
-                               ARRAY_PART(view->rows, rows), ARRAY_PART(view->pair_inputs, rows * RELATION_PAIR_INPUTS),
-                               ARRAY_PART(view->body_inputs, bodies * RELATION_BODY_INPUTS));
+                               ARRAY_PART(view->rows, rows), ARRAY_PART(view->pair_inputs, rows * SAIN_PAIR_INPUTS),
+                               ARRAY_PART(view->body_inputs, bodies * SAIN_BODY_INPUTS));
 }
 
-bool relation_view_make(RelationView *view, const ContactProblem *problem, const BodyVelocity *engine,
-                        RelationForm form) {
+bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form) {
     if (!reserve(view, problem)) return false;
     show_engine(view, problem, engine, form);
     warm_up(view, problem);
@@ -270,20 +267,20 @@ bool relation_view_make(RelationView *view, const ContactProblem *problem, const
     find_rows(view, problem);
     for (int b = 0; b < view->body_count; b++) find_pace(view, problem, form, &view->bodies[b]);
     for (int b = 0; b < view->body_count; b++) {
-        const RelationBody *body = &view->bodies[b];
+        const SainBody *body = &view->bodies[b];
         fill_body(view, problem, b);
         for (int r = body->first; r < body->first + body->rows; r++) fill_pair(view, problem, form, body, r);
     }
     return true;
 }
 
-BodyVelocity relation_corrected(const RelationBody *body, const float *outputs) {
-    const Vec2 change = vec2_scale(body->scale, relation_out_of_frame(body, vec2(outputs[0], outputs[1])));
+BodyVelocity sain_corrected(const SainBody *body, const float *outputs) {
+    const Vec2 change = vec2_scale(body->scale, sain_out_of_frame(body, vec2(outputs[0], outputs[1])));
     return (BodyVelocity){vec2_add(body->base.linear, change),
                           body->base.angular + body->scale * outputs[2] / body->radius};
 }
 
-void relation_target(const RelationBody *body, double x, double y, double spin, double target[RELATION_OUTPUTS]) {
+void sain_target(const SainBody *body, double x, double y, double spin, double target[SAIN_OUTPUTS]) {
     const double dx = x - (double)body->base.linear.x, dy = y - (double)body->base.linear.y, ax = (double)body->axis.x,
                  ay = (double)body->axis.y;
     target[0] = ax * dx + ay * dy;

@@ -26,7 +26,7 @@ static int compare_slots(const void *first, const void *second) {
 }
 
 /* The distinct contacts of the samples that occur often enough. The caller frees the array. */
-static Slot *find_slots(const SlotSamples *samples, int *count, Error *error) {
+static Slot *find_slots(const SceneNetSamples *samples, int *count, Error *error) {
     size_t contacts = 0;
     for (int i = 0; i < samples->count; i++) contacts += (size_t)samples->items[i].problem.contact_count;
     Slot *slots = malloc((contacts + 1) * sizeof *slots);
@@ -50,12 +50,12 @@ static Slot *find_slots(const SlotSamples *samples, int *count, Error *error) {
 
 /* Warm impulses are capped at the largest one seen at the first touch: what exceeds it is left over from the shock in
    the step before. */
-static void find_caps(SlotNetwork *network, const SlotSamples *samples) {
+static void find_caps(SceneNet *network, const SceneNetSamples *samples) {
     for (int i = 0; i < samples->count; i++) {
         const ContactProblem *problem = &samples->items[i].problem;
         for (int k = 0; samples->items[i].since == 0 && k < problem->contact_count; k++) {
             const ContactPoint *contact = &problem->contacts[k];
-            const int slot = slot_network_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
+            const int slot = scene_net_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
             if (slot >= 0 && network->cap[slot] < contact->warm_normal) network->cap[slot] = contact->warm_normal;
         }
     }
@@ -63,12 +63,12 @@ static void find_caps(SlotNetwork *network, const SlotSamples *samples) {
 
 /* The unit of a slot's outputs: mean(sqrt(|goal - base|))^2. Rare shocks are hundreds of times larger than the rest; in
    a unit such as the RMS the rest would be negligible. */
-static bool find_scales(SlotNetwork *network, const SlotSamples *samples) {
+static bool find_scales(SceneNet *network, const SceneNetSamples *samples) {
     double *sums = calloc(2 * (size_t)network->slot_count, sizeof *sums);
     if (sums == NULL) return false;
     double *counts = sums + network->slot_count;
     for (int i = 0; i < samples->count; i++) {
-        const SlotSample *sample = &samples->items[i];
+        const SceneNetSample *sample = &samples->items[i];
         for (int k = 0; k < sample->view.slots.slot_count; k++) {
             const int contact = sample->view.contacts[k], slot = sample->view.slots.slots[k];
             const double normal = (double)(sample->goal[contact].normal - sample->view.base[contact].normal);
@@ -94,7 +94,7 @@ typedef struct Numbers {
     int64_t count;
 } Numbers;
 
-static bool make_numbers(Numbers *numbers, const SlotSamples *samples, size_t each) {
+static bool make_numbers(Numbers *numbers, const SceneNetSamples *samples, size_t each) {
     const size_t rows = (size_t)samples->count;
     *numbers = (Numbers){malloc((rows + 1) * sizeof(int64_t)), malloc((rows * each + 1) * sizeof(int32_t)),
                          malloc((rows * each + 1) * sizeof(float)), 0};
@@ -106,11 +106,11 @@ static void append(Numbers *numbers, int column, float value) {
     numbers->value[numbers->count++] = value;
 }
 
-static bool touches_bomb(const SlotNetwork *network, int slot) {
+static bool touches_bomb(const SceneNet *network, int slot) {
     return network->slots[slot].a == network->bomb || network->slots[slot].b == network->bomb;
 }
 
-static bool fit(Numbers *numbers, const SlotSamples *samples, uint64_t seed, Projection *projection, Error *error) {
+static bool fit(Numbers *numbers, const SceneNetSamples *samples, uint64_t seed, Projection *projection, Error *error) {
     numbers->begin[samples->count] = numbers->count;
     const SparseRows rows = {samples->count, projection->from, numbers->begin, numbers->column, numbers->value};
     bool ok = principal_fit(&rows, seed, projection, error);
@@ -123,7 +123,7 @@ static void weigh_row(Projection *projection, int i, float weight) {
 }
 
 /* 1 / spread of each state variable; `least` keeps irrelevant variations small. */
-static void find_units(const SlotSamples *samples, bool bomb, int count, float *units) {
+static void find_units(const SceneNetSamples *samples, bool bomb, int count, float *units) {
     static const double least[SLOT_BODY_NUMBERS] = {0.01, 0.01, 0.01, 0.1, 0.1, 0.1}; /* m, rad, m/s, rad/s */
     for (int k = 0; k < count; k++) {
         double sum = 0, squares = 0;
@@ -139,7 +139,7 @@ static void find_units(const SlotSamples *samples, bool bomb, int count, float *
     }
 }
 
-static bool fit_body_projections(SlotNetwork *network, const SlotSamples *samples, Numbers *numbers, uint64_t seed,
+static bool fit_body_projections(SceneNet *network, const SceneNetSamples *samples, Numbers *numbers, uint64_t seed,
                                  Error *error) {
     Projection *projections[] = {&network->bomb_state, &network->state};
     for (int p = 0; p < 2; p++) {
@@ -160,10 +160,10 @@ static bool fit_body_projections(SlotNetwork *network, const SlotSamples *sample
     return true;
 }
 
-static bool fit_contact_projections(SlotNetwork *network, const SlotSamples *samples, Numbers *numbers, uint64_t seed,
+static bool fit_contact_projections(SceneNet *network, const SceneNetSamples *samples, Numbers *numbers, uint64_t seed,
                                     Error *error) {
     for (int i = 0; i < samples->count; i++) {
-        const SlotView *slots = &samples->items[i].view.slots;
+        const SceneNetView *slots = &samples->items[i].view.slots;
         numbers->begin[i] = numbers->count;
         for (int k = 0; k < slots->slot_count; k++)
             append(numbers, slots->slots[k], touches_bomb(network, slots->slots[k]) ? bomb_weight : 1);
@@ -172,14 +172,14 @@ static bool fit_contact_projections(SlotNetwork *network, const SlotSamples *sam
     for (int slot = 0; slot < network->slot_count; slot++)
         if (touches_bomb(network, slot)) weigh_row(&network->present, slot, bomb_weight);
     for (int i = 0; i < samples->count; i++) {
-        const SlotView *slots = &samples->items[i].view.slots;
+        const SceneNetView *slots = &samples->items[i].view.slots;
         numbers->begin[i] = numbers->count;
         for (int k = 0; k < 2 * slots->slot_count; k++) append(numbers, slots->impulses[k], slots->warm[k]);
     }
     return fit(numbers, samples, seed, &network->warm, error);
 }
 
-static bool find_projections(SlotNetwork *network, const SlotSamples *samples, uint64_t seed, Error *error) {
+static bool find_projections(SceneNet *network, const SceneNetSamples *samples, uint64_t seed, Error *error) {
     size_t each = (size_t)network->state.from;
     for (int i = 0; i < samples->count; i++) {
         const size_t impulses = 2 * (size_t)samples->items[i].view.slots.slot_count;
@@ -201,12 +201,12 @@ static void draw(float *numbers, size_t count, double spread, gsl_rng *generator
 
 /* Hidden layers preserve the variance of their inputs (Glorot, Bengio 2010); the last layer starts with outputs near
    0. */
-static bool draw_weights(SlotNetwork *network, uint64_t seed) {
+static bool draw_weights(SceneNet *network, uint64_t seed) {
     gsl_set_error_handler_off(); /* its default aborts */
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return false;
     gsl_rng_set(generator, (unsigned long)seed);
-    const size_t inputs = (size_t)slot_network_inputs(network), hidden = (size_t)slot_network_hidden(network);
+    const size_t inputs = (size_t)scene_net_inputs(network), hidden = (size_t)scene_net_hidden(network);
     draw(network->first.rows, inputs * hidden, 1 / sqrt((double)inputs), generator);
     draw(network->second.rows, hidden * hidden, 1 / sqrt((double)hidden), generator);
     draw(network->rows, 2 * (size_t)network->slot_count * hidden, 0.1 / sqrt((double)hidden), generator);
@@ -215,7 +215,7 @@ static bool draw_weights(SlotNetwork *network, uint64_t seed) {
 }
 
 /* Packing the projections to bytes shifted the means of the inputs; moves them back to 0. */
-static void recentre(SlotNetwork *network, const SlotSamples *samples) {
+static void recentre(SceneNet *network, const SceneNetSamples *samples) {
     Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
     for (int p = 0, input = 0; p < 4; p++)
         for (int k = 0; k < projections[p]->to; k++, input++) {
@@ -225,25 +225,25 @@ static void recentre(SlotNetwork *network, const SlotSamples *samples) {
         }
 }
 
-SlotNetwork *slot_network_from_samples(SlotSamples *samples, const SlotWidths *widths, uint64_t seed, Error *error) {
+SceneNet *scene_net_from_samples(SceneNetSamples *samples, const SceneNetWidths *widths, uint64_t seed, Error *error) {
     if (samples->count == 0)
         return error_input(error, "scene-net", "no launch has an impact whose residual reaches the gate"), NULL;
     const ContactProblem *problem = &samples->items[0].problem;
-    SlotShape shape = {problem->body_count, problem->marked, 0, widths->state, widths->present,
-                       widths->warm,        widths->hidden};
+    SceneNetShape shape = {problem->body_count, problem->bomb, 0, widths->state, widths->present,
+                           widths->warm,        widths->hidden};
     Slot *slots = find_slots(samples, &shape.slot_count, error);
-    SlotNetwork *network = slots != NULL ? slot_network_create(&shape, slots, error) : NULL;
+    SceneNet *network = slots != NULL ? scene_net_create(&shape, slots, error) : NULL;
     free(slots);
     if (network == NULL) return NULL;
     find_caps(network, samples);
-    bool ok = slot_samples_compute_inputs(samples, 0, network, error) &&
+    bool ok = scene_net_samples_compute_inputs(samples, 0, network, error) &&
               (find_scales(network, samples) || error_memory(error, "scene-net")) &&
               find_projections(network, samples, seed, error) &&
               (draw_weights(network, seed) || error_memory(error, "scene-net"));
-    if (ok) slot_network_pack(network);
-    ok = ok && slot_samples_compute_inputs(samples, 0, network, error);
+    if (ok) scene_net_pack(network);
+    ok = ok && scene_net_samples_compute_inputs(samples, 0, network, error);
     if (ok) recentre(network, samples);
-    if (ok && slot_samples_compute_inputs(samples, 0, network, error)) return network;
-    slot_network_destroy(network);
+    if (ok && scene_net_samples_compute_inputs(samples, 0, network, error)) return network;
+    scene_net_destroy(network);
     return NULL;
 }

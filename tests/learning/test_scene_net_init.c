@@ -8,8 +8,8 @@
 
 enum { LAUNCHES = 20 };
 
-static SlotSamples samples;
-static SlotNetwork *network;
+static SceneNetSamples samples;
+static SceneNet *network;
 
 FIXTURE(begin) {
     samples = labelled_impacts(LAUNCHES);
@@ -17,11 +17,11 @@ FIXTURE(begin) {
 }
 
 FIXTURE(end) {
-    slot_network_destroy(network);
-    slot_samples_free(&samples);
+    scene_net_destroy(network);
+    scene_net_samples_free(&samples);
 }
 
-static const ContactPoint *contact_in(const SlotSample *sample, int a, int b, uint32_t feature) {
+static const ContactPoint *contact_in(const SceneNetSample *sample, int a, int b, uint32_t feature) {
     for (int k = 0; k < sample->problem.contact_count; k++) {
         const ContactPoint *contact = &sample->problem.contacts[k];
         if (contact->a == a && contact->b == b && scene_view_feature(&sample->problem, contact) == feature)
@@ -47,7 +47,7 @@ TEST(slots_are_contacts_of_at_least_three_samples) {
         for (int k = 0; k < samples.items[i].problem.contact_count; k++) {
             const ContactPoint *contact = &samples.items[i].problem.contacts[k];
             const uint32_t feature = scene_view_feature(&samples.items[i].problem, contact);
-            const bool slot = slot_network_find(network, contact->a, contact->b, feature) >= 0;
+            const bool slot = scene_net_find(network, contact->a, contact->b, feature) >= 0;
             assert_int_equal(slot, samples_with(contact->a, contact->b, feature) >= 3);
             left_out += !slot;
             known += slot;
@@ -59,7 +59,7 @@ TEST(slots_are_contacts_of_at_least_three_samples) {
         assert_true(samples_with(slot->a, slot->b, slot->feature) >= 3);
     }
     assert_int_equal(network->body_count, samples.items[0].problem.body_count);
-    assert_int_equal(network->bomb, samples.items[0].problem.marked);
+    assert_int_equal(network->bomb, samples.items[0].problem.bomb);
 }
 
 TEST(caps_are_the_largest_warm_impulses_at_the_touch) {
@@ -87,7 +87,7 @@ TEST(scales_are_how_far_the_goal_is) {
         double sum = 0;
         int count = 0;
         for (int k = 0; k < samples.count; k++) {
-            const SlotSample *sample = &samples.items[k];
+            const SceneNetSample *sample = &samples.items[k];
             const ContactPoint *contact = contact_in(sample, slot->a, slot->b, slot->feature);
             if (contact == NULL) continue;
             const long at = contact - sample->problem.contacts;
@@ -103,7 +103,7 @@ TEST(scales_are_how_far_the_goal_is) {
 /* Components of each projection are white up to the rounding of its packed rows; those beyond its rank are 0. */
 TEST(inputs_have_mean_0_and_variance_1_or_0) {
     int moving = 0;
-    for (int c = 0; c < slot_network_inputs(network); c++) {
+    for (int c = 0; c < scene_net_inputs(network); c++) {
         double sum = 0, squares = 0;
         for (int i = 0; i < samples.count; i++) {
             const double x = (double)samples.items[i].inputs[c];
@@ -116,7 +116,7 @@ TEST(inputs_have_mean_0_and_variance_1_or_0) {
         moving += variance > 0.5;
         if (c >= SLOT_BODY_NUMBERS && c < ROW_LANES) assert_true(squares == 0);
     }
-    assert_true(moving > slot_network_inputs(network) / 2);
+    assert_true(moving > scene_net_inputs(network) / 2);
 }
 
 /* Otherwise the network could not know where the bomb struck. */
@@ -124,17 +124,17 @@ TEST(every_launch_has_different_inputs) {
     for (int i = 0; i < samples.count; i++)
         for (int k = 0; k < i; k++)
             assert_memory_not_equal(samples.items[i].inputs, samples.items[k].inputs,
-                                    (size_t)slot_network_inputs(network) * sizeof(float));
+                                    (size_t)scene_net_inputs(network) * sizeof(float));
 }
 
 TEST(initial_outputs_are_near_0) {
-    float first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX], outputs[200];
+    float first[SCENE_NET_WIDTH_MAX], second[SCENE_NET_WIDTH_MAX], outputs[200];
     double sum = 0;
     int count = 0;
     for (int i = 0; i < samples.count; i++) {
-        const SlotView *slots = &samples.items[i].view.slots;
+        const SceneNetView *slots = &samples.items[i].view.slots;
         assert_in_range(slots->slot_count, 1, 100);
-        slot_network_predict(network, samples.items[i].inputs, slots, first, second, outputs);
+        scene_net_predict(network, samples.items[i].inputs, slots, first, second, outputs);
         for (int k = 0; k < 2 * slots->slot_count; k++)
             sum += fabs((double)(outputs[k] / network->scale[slots->slots[k / 2]]));
         count += 2 * slots->slot_count;
@@ -142,9 +142,9 @@ TEST(initial_outputs_are_near_0) {
     assert_true(sum / count > 0.001 && sum / count < 0.2);
 }
 
-static SlotNetwork *make_again(uint64_t seed) {
+static SceneNet *make_again(uint64_t seed) {
     Error error = {0};
-    SlotNetwork *made = slot_network_from_samples(&samples, &small_widths, seed, &error);
+    SceneNet *made = scene_net_from_samples(&samples, &small_widths, seed, &error);
     assert_ok(made != NULL, error);
     return made;
 }
@@ -154,32 +154,32 @@ static bool same_rows(const Projection *a, const Projection *b) {
            memcmp(a->centre, b->centre, (size_t)a->to * sizeof(float)) == 0;
 }
 
-static bool same_parameters(const SlotNetwork *a, const SlotNetwork *b) {
+static bool same_parameters(const SceneNet *a, const SceneNet *b) {
     return memcmp(a->parameters, b->parameters, a->parameter_count * sizeof(float)) == 0;
 }
 
 TEST(same_seed_same_bits) {
     const int threads = omp_get_max_threads();
     omp_set_num_threads(threads == 1 ? 2 : 1);
-    SlotNetwork *same = make_again(1), *other = make_again(2);
+    SceneNet *same = make_again(1), *other = make_again(2);
     omp_set_num_threads(threads);
     assert_true(same_parameters(network, same));
     assert_false(same_parameters(network, other));
     assert_true(same_rows(&network->bomb_state, &same->bomb_state) && same_rows(&network->state, &same->state));
     assert_true(same_rows(&network->present, &same->present) && same_rows(&network->warm, &same->warm));
-    slot_network_destroy(same);
-    slot_network_destroy(other);
+    scene_net_destroy(same);
+    scene_net_destroy(other);
 }
 
 TEST(samples_without_slots_are_refused) {
-    SlotSamples few = {0};
-    assert_refused(slot_network_from_samples(&few, &small_widths, 1, &error),
+    SceneNetSamples few = {0};
+    assert_refused(scene_net_from_samples(&few, &small_widths, 1, &error),
                    "no launch has an impact whose residual reaches the gate");
     error = (Error){0};
-    for (int i = 0; i < 2; i++) assert_true(slot_samples_add(&few, &samples.items[0].problem, i, 0));
-    assert_ok(slot_samples_label(&few, 0, NULL, &error), error);
-    assert_refused(slot_network_from_samples(&few, &small_widths, 1, &error), "0 slots");
-    slot_samples_free(&few);
+    for (int i = 0; i < 2; i++) assert_true(scene_net_samples_add(&few, &samples.items[0].problem, i, 0));
+    assert_ok(scene_net_samples_label(&few, 0, NULL, &error), error);
+    assert_refused(scene_net_from_samples(&few, &small_widths, 1, &error), "0 slots");
+    scene_net_samples_free(&few);
 }
 
 RUN_TESTS(begin, end)

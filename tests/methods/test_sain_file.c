@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of sain. */
 #include "made.h"
-#include "relation_networks.h"
+#include "sain_networks.h"
 
 #include <math.h>
 
 TEST(a_file_keeps_every_bit) {
     uint32_t seed = 8;
-    RelationNetworks written, read;
-    make_relation_networks(&written, &seed, 2);
+    SainNetworks written, read;
+    make_sain_networks(&written, &seed, 2);
     const char *path = temporary_path("sain.npz");
-    assert_ok(relation_networks_write(&written, path, &error), error);
-    assert_ok(relation_networks_read(&read, path, &error), error);
+    assert_ok(sain_networks_write(&written, path, &error), error);
+    assert_ok(sain_networks_read(&read, path, &error), error);
     assert_string_equal(read.command, "test");
-    for (int f = 0; f < RELATION_FORMS; f++) {
-        const RelationNetwork *a = &written.forms[f], *b = &read.forms[f];
+    for (int f = 0; f < SAIN_FORMS; f++) {
+        const SainNetwork *a = &written.forms[f], *b = &read.forms[f];
         const size_t relation = (size_t)network_parameter_count(a->relation) * sizeof(float),
                      object = (size_t)network_parameter_count(a->object) * sizeof(float);
         assert_memory_equal(a->relation->weights[0], b->relation->weights[0], relation);
@@ -23,14 +23,14 @@ TEST(a_file_keeps_every_bit) {
         assert_memory_equal(a->body_high, b->body_high, sizeof a->body_high);
         assert_memory_equal(a->limit, b->limit, sizeof a->limit);
     }
-    relation_networks_destroy(&written);
-    relation_networks_destroy(&read);
+    sain_networks_destroy(&written);
+    sain_networks_destroy(&read);
 }
 
 static void refuse(const char *path, const char *reason) {
     Error error = {0};
-    RelationNetworks networks;
-    assert_refused(relation_networks_read(&networks, path, &error), reason);
+    SainNetworks networks;
+    assert_refused(sain_networks_read(&networks, path, &error), reason);
     assert_non_null(strstr(error.message, path));
 }
 
@@ -45,9 +45,9 @@ TEST(other_files_are_refused) {
 
 TEST(numbers_out_of_range_are_refused) {
     uint32_t seed = 8;
-    RelationNetworks networks;
+    SainNetworks networks;
     const char *path = temporary_path("bad.npz");
-    make_relation_networks(&networks, &seed, 1);
+    make_sain_networks(&networks, &seed, 1);
     float *const bad[] = {networks.forms[0].relation->weights[0] + 5, networks.forms[2].object->input.scale + 1,
                           networks.forms[1].limit, networks.forms[1].pair_high};
     static const float values[] = {NAN, 0, -1, INFINITY};
@@ -55,11 +55,11 @@ TEST(numbers_out_of_range_are_refused) {
     for (int i = 0; i < 4; i++) {
         const float kept = *bad[i];
         *bad[i] = values[i];
-        assert_ok(relation_networks_write(&networks, path, &error), error);
+        assert_ok(sain_networks_write(&networks, path, &error), error);
         refuse(path, names[i]);
         *bad[i] = kept;
     }
-    relation_networks_destroy(&networks);
+    sain_networks_destroy(&networks);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The memory of hybrid: sets of contacts, their entries, and the search among them. */
-#include "methods/tabulation.h"
+#include "methods/hybrid_memory.h"
 
 #include "base/base.h"
 #include "engine/engine.h"
@@ -12,14 +12,14 @@
 
 enum { LEAST_TABLE = 64 };
 
-static void put(Tabulation *memory, int set) {
+static void put(HybridMemory *memory, int set) {
     size_t at = (size_t)memory->set_hash[set] & (memory->table_size - 1);
     while (memory->table[at] >= 0) at = (at + 1) & (memory->table_size - 1);
     memory->table[at] = set;
 }
 
 /* Keeps the table at most half full, so that searches are short. */
-static bool grow_table(Tabulation *memory) {
+static bool grow_table(HybridMemory *memory) {
     if (2 * ((size_t)memory->set_count + 1) <= memory->table_size) return true;
     const size_t size = memory->table_size > 0 ? 2 * memory->table_size : LEAST_TABLE;
     int32_t *table = malloc(size * sizeof *table);
@@ -40,7 +40,7 @@ static bool resize(void **items, size_t count, size_t size) {
     return true;
 }
 
-int tabulation_set(const Tabulation *memory, uint64_t hash, int contacts) {
+int hybrid_memory_set(const HybridMemory *memory, uint64_t hash, int contacts) {
     if (memory->table_size == 0) return -1;
     size_t at = (size_t)hash & (memory->table_size - 1);
     for (int set; (set = memory->table[at]) >= 0; at = (at + 1) & (memory->table_size - 1))
@@ -48,7 +48,7 @@ int tabulation_set(const Tabulation *memory, uint64_t hash, int contacts) {
     return -1;
 }
 
-int tabulation_add_set(Tabulation *memory, uint64_t hash, int contacts) {
+int hybrid_memory_add_set(HybridMemory *memory, uint64_t hash, int contacts) {
     if ((size_t)memory->set_count >= memory->set_capacity) {
         const size_t count = 2 * memory->set_capacity + 16;
         if (!resize((void **)&memory->set_hash, count, sizeof *memory->set_hash) ||
@@ -61,17 +61,17 @@ int tabulation_add_set(Tabulation *memory, uint64_t hash, int contacts) {
     const int set = memory->set_count++;
     memory->set_hash[set] = hash;
     memory->set_contacts[set] = contacts;
-    memory->set_lists[set] = (TabulationList){0};
+    memory->set_lists[set] = (HybridList){0};
     put(memory, set);
     return set;
 }
 
-static float first_number(const Tabulation *memory, int entry) {
+static float first_number(const HybridMemory *memory, int entry) {
     return memory->keys[(size_t)entry * (size_t)memory->key_size];
 }
 
 /* The place of the first entry with a number of at least `x`. */
-static int place_of(const Tabulation *memory, const TabulationList *list, float x) {
+static int place_of(const HybridMemory *memory, const HybridList *list, float x) {
     int low = 0, high = list->count;
     while (low < high) {
         const int middle = (low + high) / 2;
@@ -84,24 +84,24 @@ static int place_of(const Tabulation *memory, const TabulationList *list, float 
 }
 
 /* Room for one more entry in a set's list; false when memory is short. Then the entry, added last, goes to its place. */
-static bool reserve_list(Tabulation *memory, int set) {
-    TabulationList *list = &memory->set_lists[set];
+static bool reserve_list(HybridMemory *memory, int set) {
+    HybridList *list = &memory->set_lists[set];
     return array_reserve((void **)&list->entries, &list->capacity, (size_t)list->count + 1, sizeof *list->entries);
 }
 
-static void insert_listed(Tabulation *memory, int entry) {
-    TabulationList *list = &memory->set_lists[memory->entry_set[entry]];
+static void insert_listed(HybridMemory *memory, int entry) {
+    HybridList *list = &memory->set_lists[memory->entry_set[entry]];
     int at = place_of(memory, list, first_number(memory, entry));
     for (int i = list->count++; i > at; i--) list->entries[i] = list->entries[i - 1];
     list->entries[at] = entry;
     if (memory->reach[entry] > list->reach) list->reach = memory->reach[entry];
 }
 
-const int32_t *tabulation_about(const Tabulation *memory, const TabulationQuery *query, float radius, int *count) {
-    const int set = tabulation_set(memory, query->hash, query->contacts);
+const int32_t *hybrid_memory_about(const HybridMemory *memory, const HybridQuery *query, float radius, int *count) {
+    const int set = hybrid_memory_set(memory, query->hash, query->contacts);
     *count = 0;
     if (set < 0) return NULL;
-    const TabulationList *list = &memory->set_lists[set];
+    const HybridList *list = &memory->set_lists[set];
     const int first = place_of(memory, list, query->key[0] - radius);
     int end = first;
     while (end < list->count && first_number(memory, list->entries[end]) <= query->key[0] + radius) end++;
@@ -109,12 +109,12 @@ const int32_t *tabulation_about(const Tabulation *memory, const TabulationQuery 
     return list->entries + first;
 }
 
-/* Keys, ellipsoids and answers of a memory (tabulation.h). Sums run in a fixed order. */
+/* Keys, ellipsoids and answers of a memory (hybrid_memory.h). Sums run in a fixed order. */
 
 /* A step of position correction removes this share of an overlap (engine/contact_problem.c). */
 static const float push_out = 0.2f;
 
-void tabulation_numbers(const ProblemBody *body, float angle, float dt, float numbers[TABULATION_NUMBERS]) {
+void hybrid_memory_numbers(const ProblemBody *body, float angle, float dt, float numbers[HYBRID_NUMBERS]) {
     const float rate = push_out / dt, arm = 0.25f * (body->size.x + body->size.y);
     numbers[0] = rate * body->position.x;
     numbers[1] = rate * body->position.y;
@@ -124,9 +124,9 @@ void tabulation_numbers(const ProblemBody *body, float angle, float dt, float nu
     numbers[5] = arm * body->angular_velocity;
 }
 
-void tabulation_key(const Tabulation *memory, const float *bomb, const float *others, float *key) {
-    float away = 0, inside = 0, sums[TABULATION_COMPONENTS_MAX] = {0};
-    for (int i = 0; i < TABULATION_NUMBERS; i++) key[i] = bomb[i];
+void hybrid_memory_key(const HybridMemory *memory, const float *bomb, const float *others, float *key) {
+    float away = 0, inside = 0, sums[HYBRID_COMPONENTS_MAX] = {0};
+    for (int i = 0; i < HYBRID_NUMBERS; i++) key[i] = bomb[i];
     for (int i = 0; i < memory->numbers; i++) {
         const float from = others[i] - memory->centre[i],
                     *column = memory->rows + (size_t)i * (size_t)memory->components;
@@ -134,14 +134,14 @@ void tabulation_key(const Tabulation *memory, const float *bomb, const float *ot
         for (int c = 0; c < memory->components; c++) sums[c] += from * column[c];
     }
     for (int c = 0; c < memory->components; c++) {
-        key[TABULATION_NUMBERS + c] = sums[c];
+        key[HYBRID_NUMBERS + c] = sums[c];
         inside += sums[c] * sums[c];
     }
-    key[TABULATION_NUMBERS + memory->components] = sqrtf(away > inside ? away - inside : 0);
+    key[HYBRID_NUMBERS + memory->components] = sqrtf(away > inside ? away - inside : 0);
 }
 
 /* product[i] = row i of M times `from`; returns from^T M from. */
-static float apply(const Tabulation *memory, int entry, const float *from, float *product) {
+static float apply(const HybridMemory *memory, int entry, const float *from, float *product) {
     const float *metric = memory->metrics + (size_t)entry * (size_t)memory->metric_size;
     float sum = 0;
     for (int i = 0; i < memory->key_size; i++) product[i] = 0;
@@ -158,7 +158,7 @@ static float apply(const Tabulation *memory, int entry, const float *from, float
 }
 
 /* key - x0; returns its squared length. */
-static float take_away(const Tabulation *memory, int entry, const float *key, float *from) {
+static float take_away(const HybridMemory *memory, int entry, const float *key, float *from) {
     const float *centre = memory->keys + (size_t)entry * (size_t)memory->key_size;
     float sum = 0;
     for (int i = 0; i < memory->key_size; i++) {
@@ -168,17 +168,17 @@ static float take_away(const Tabulation *memory, int entry, const float *key, fl
     return sum;
 }
 
-float tabulation_distance(const Tabulation *memory, int entry, const float *key) {
-    float from[TABULATION_KEY_MAX] = {0}, product[TABULATION_KEY_MAX];
+float hybrid_memory_distance(const HybridMemory *memory, int entry, const float *key) {
+    float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
     take_away(memory, entry, key, from);
     return apply(memory, entry, from, product);
 }
 
 /* The most central of the entries, at most `least` from the query. */
-static int search(const Tabulation *memory, const TabulationQuery *query, float radius, float least) {
+static int search(const HybridMemory *memory, const HybridQuery *query, float radius, float least) {
     int count, best = -1;
-    const int32_t *entries = tabulation_about(memory, query, radius, &count);
-    float from[TABULATION_KEY_MAX] = {0}, product[TABULATION_KEY_MAX];
+    const int32_t *entries = hybrid_memory_about(memory, query, radius, &count);
+    float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
     const bool inside = least <= 1;
     for (int i = 0; i < count; i++) {
         if (take_away(memory, entries[i], query->key, from) > memory->reach[entries[i]] && inside) continue;
@@ -190,24 +190,24 @@ static int search(const Tabulation *memory, const TabulationQuery *query, float 
     return best;
 }
 
-int tabulation_find(const Tabulation *memory, const TabulationQuery *query) {
-    const int set = tabulation_set(memory, query->hash, query->contacts);
+int hybrid_memory_find(const HybridMemory *memory, const HybridQuery *query) {
+    const int set = hybrid_memory_set(memory, query->hash, query->contacts);
     return set < 0 ? -1 : search(memory, query, sqrtf(memory->set_lists[set].reach), 1);
 }
 
-int tabulation_nearest(const Tabulation *memory, const TabulationQuery *query, float radius) {
+int hybrid_memory_nearest(const HybridMemory *memory, const HybridQuery *query, float radius) {
     return search(memory, query, radius, FLT_MAX);
 }
 
-void tabulation_answer(const Tabulation *memory, int entry, const float *key, ContactImpulse *impulses) {
+void hybrid_memory_answer(const HybridMemory *memory, int entry, const float *key, ContactImpulse *impulses) {
     const size_t size = (size_t)memory->key_size;
     const int contacts = memory->set_contacts[memory->entry_set[entry]];
     const ContactImpulse *own = memory->impulses + memory->entry_begin[entry];
-    float from[TABULATION_KEY_MAX] = {0};
+    float from[HYBRID_KEY_MAX] = {0};
     take_away(memory, entry, key, from);
     for (int i = 0; i < contacts; i++) impulses[i] = own[i];
-    for (int n = 0; n < TABULATION_NEAR; n++) {
-        const size_t row = (size_t)entry * TABULATION_NEAR + (size_t)n;
+    for (int n = 0; n < HYBRID_NEAR; n++) {
+        const size_t row = (size_t)entry * HYBRID_NEAR + (size_t)n;
         const int32_t near = memory->near[row];
         if (near < 0) continue;
         const ContactImpulse *other = memory->impulses + memory->entry_begin[near];
@@ -222,8 +222,8 @@ void tabulation_answer(const Tabulation *memory, int entry, const float *key, Co
 
 /* With y = M d and s = d^T M d: M' = M + (1 - s) / s^2 y y^T has d^T M' d = 1 and changes no direction that M-orthogonal to d
    has. For s > 1 this is the smallest ellipsoid that contains the old one and d (Pope 1997, 3.4). */
-void tabulation_stretch(Tabulation *memory, int entry, const float *key) {
-    float from[TABULATION_KEY_MAX] = {0}, product[TABULATION_KEY_MAX];
+void hybrid_memory_stretch(HybridMemory *memory, int entry, const float *key) {
+    float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
     const float length = take_away(memory, entry, key, from), distance = apply(memory, entry, from, product);
     if (!(distance > FLT_MIN)) return;
     const float factor = (1 - distance) / (distance * distance);
@@ -232,11 +232,11 @@ void tabulation_stretch(Tabulation *memory, int entry, const float *key) {
         for (int j = 0; j <= i; j++) *metric++ += factor * product[i] * product[j];
     /* The inverse of M' is that of M plus (1 - 1 / s) d d^T. */
     if (distance > 1) memory->reach[entry] += (1 - 1 / distance) * length;
-    TabulationList *list = &memory->set_lists[memory->entry_set[entry]];
+    HybridList *list = &memory->set_lists[memory->entry_set[entry]];
     if (memory->reach[entry] > list->reach) list->reach = memory->reach[entry];
 }
 
-void tabulation_destroy(Tabulation *memory) {
+void hybrid_memory_destroy(HybridMemory *memory) {
     if (memory == NULL) return;
     free(memory->centre);
     free(memory->rows);
@@ -256,17 +256,17 @@ void tabulation_destroy(Tabulation *memory) {
     free(memory);
 }
 
-Tabulation *tabulation_create(int body_count, int bomb, int components, Error *error) {
-    if (body_count < 2 || body_count > TABULATION_BODIES_MAX || bomb < 0 || bomb >= body_count) {
+HybridMemory *hybrid_memory_create(int body_count, int bomb, int components, Error *error) {
+    if (body_count < 2 || body_count > HYBRID_BODIES_MAX || bomb < 0 || bomb >= body_count) {
         error_input(error, "hybrid", "%d bodies, of which %d is the bomb; expected 2 to %d", body_count, bomb,
-                    TABULATION_BODIES_MAX);
+                    HYBRID_BODIES_MAX);
         return NULL;
     }
-    if (components < 1 || components > TABULATION_COMPONENTS_MAX) {
-        error_input(error, "hybrid", "%d components; expected 1 to %d", components, TABULATION_COMPONENTS_MAX);
+    if (components < 1 || components > HYBRID_COMPONENTS_MAX) {
+        error_input(error, "hybrid", "%d components; expected 1 to %d", components, HYBRID_COMPONENTS_MAX);
         return NULL;
     }
-    Tabulation *memory = calloc(1, sizeof *memory);
+    HybridMemory *memory = calloc(1, sizeof *memory);
     if (memory == NULL) {
         error_memory(error, "hybrid");
         return NULL;
@@ -274,35 +274,35 @@ Tabulation *tabulation_create(int body_count, int bomb, int components, Error *e
     memory->body_count = body_count;
     memory->bomb = bomb;
     memory->components = components;
-    memory->numbers = TABULATION_NUMBERS * (body_count - 1);
-    memory->key_size = TABULATION_NUMBERS + components + 1;
+    memory->numbers = HYBRID_NUMBERS * (body_count - 1);
+    memory->key_size = HYBRID_NUMBERS + components + 1;
     memory->metric_size = memory->key_size * (memory->key_size + 1) / 2;
     memory->centre = calloc((size_t)memory->numbers, sizeof *memory->centre);
     memory->rows = calloc((size_t)components * (size_t)memory->numbers, sizeof *memory->rows);
     if (memory->centre != NULL && memory->rows != NULL) return memory;
-    tabulation_destroy(memory);
+    hybrid_memory_destroy(memory);
     error_memory(error, "hybrid");
     return NULL;
 }
 
-static size_t entry_size(const Tabulation *memory) {
+static size_t entry_size(const HybridMemory *memory) {
     const size_t key = (size_t)memory->key_size;
-    return sizeof(float) * (key + (size_t)memory->metric_size + 1 + TABULATION_NEAR * key) +
-           sizeof(int32_t) * (2 + TABULATION_NEAR) + sizeof(size_t);
+    return sizeof(float) * (key + (size_t)memory->metric_size + 1 + HYBRID_NEAR * key) +
+           sizeof(int32_t) * (2 + HYBRID_NEAR) + sizeof(size_t);
 }
 
-size_t tabulation_bytes(const Tabulation *memory) {
+size_t hybrid_memory_bytes(const HybridMemory *memory) {
     const size_t set = sizeof *memory->set_hash + sizeof(int32_t) + sizeof *memory->set_lists;
     return sizeof *memory + sizeof(float) * (size_t)memory->numbers * (size_t)(memory->components + 1) +
            set * (size_t)memory->set_count + sizeof(int32_t) * memory->table_size +
            entry_size(memory) * (size_t)memory->entry_count + sizeof *memory->impulses * memory->impulse_count;
 }
 
-size_t tabulation_entry_bytes(const Tabulation *memory, int contacts) {
+size_t hybrid_memory_entry_bytes(const HybridMemory *memory, int contacts) {
     return entry_size(memory) + sizeof *memory->impulses * (size_t)contacts;
 }
 
-static bool reserve_entry(Tabulation *memory, int contacts) {
+static bool reserve_entry(HybridMemory *memory, int contacts) {
     const size_t key = (size_t)memory->key_size, impulses = memory->impulse_count + (size_t)contacts;
     if (impulses > memory->impulse_capacity) {
         if (!resize((void **)&memory->impulses, 2 * impulses, sizeof *memory->impulses)) return false;
@@ -315,27 +315,27 @@ static bool reserve_entry(Tabulation *memory, int contacts) {
         !resize((void **)&memory->keys, count * key, sizeof *memory->keys) ||
         !resize((void **)&memory->metrics, count * (size_t)memory->metric_size, sizeof *memory->metrics) ||
         !resize((void **)&memory->reach, count, sizeof *memory->reach) ||
-        !resize((void **)&memory->near, count * TABULATION_NEAR, sizeof *memory->near) ||
-        !resize((void **)&memory->weights, count * TABULATION_NEAR * key, sizeof *memory->weights))
+        !resize((void **)&memory->near, count * HYBRID_NEAR, sizeof *memory->near) ||
+        !resize((void **)&memory->weights, count * HYBRID_NEAR * key, sizeof *memory->weights))
         return false;
     memory->entry_capacity = count;
     return true;
 }
 
-bool tabulation_add(Tabulation *memory, const TabulationQuery *query, const TabulationEntry *entry, Error *error) {
+bool hybrid_memory_add(HybridMemory *memory, const HybridQuery *query, const HybridEntry *entry, Error *error) {
     const size_t key = (size_t)memory->key_size, metric = (size_t)memory->metric_size, e = (size_t)memory->entry_count;
-    if (memory->entry_count >= TABULATION_ENTRIES_MAX || !reserve_entry(memory, query->contacts))
+    if (memory->entry_count >= HYBRID_ENTRIES_MAX || !reserve_entry(memory, query->contacts))
         return error_memory(error, "hybrid");
-    int set = tabulation_set(memory, query->hash, query->contacts);
-    if (set < 0) set = tabulation_add_set(memory, query->hash, query->contacts);
+    int set = hybrid_memory_set(memory, query->hash, query->contacts);
+    if (set < 0) set = hybrid_memory_add_set(memory, query->hash, query->contacts);
     if (set < 0 || !reserve_list(memory, set)) return error_memory(error, "hybrid");
     memory->entry_set[e] = set;
     memory->entry_begin[e] = memory->impulse_count;
     memory->reach[e] = entry->reach;
     memcpy(memory->keys + e * key, query->key, key * sizeof *query->key);
     memcpy(memory->metrics + e * metric, entry->metric, metric * sizeof *entry->metric);
-    memcpy(memory->near + e * TABULATION_NEAR, entry->near, TABULATION_NEAR * sizeof *entry->near);
-    memcpy(memory->weights + e * TABULATION_NEAR * key, entry->weights, TABULATION_NEAR * key * sizeof(float));
+    memcpy(memory->near + e * HYBRID_NEAR, entry->near, HYBRID_NEAR * sizeof *entry->near);
+    memcpy(memory->weights + e * HYBRID_NEAR * key, entry->weights, HYBRID_NEAR * key * sizeof(float));
     if (query->contacts > 0)
         memcpy(memory->impulses + memory->impulse_count, entry->impulses,
                (size_t)query->contacts * sizeof *entry->impulses);

@@ -8,18 +8,18 @@
 
 #include <stdlib.h>
 
-static bool widths_are_whole(int width) { return width > 0 && width <= SLOT_WIDTH_MAX && width % ROW_LANES == 0; }
+static bool widths_are_whole(int width) { return width > 0 && width <= SCENE_NET_WIDTH_MAX && width % ROW_LANES == 0; }
 
 /* ERROR_INPUT, naming `where`, if the shape is out of bounds or the slots are not sorted. */
-static bool slot_shape_check(const SlotShape *shape, const Slot *slots, const char *where, Error *error) {
-    if (shape->body_count < 2 || shape->body_count > SLOT_BODIES_MAX || shape->bomb < 0 ||
+static bool scene_net_shape_check(const SceneNetShape *shape, const Slot *slots, const char *where, Error *error) {
+    if (shape->body_count < 2 || shape->body_count > SCENE_NET_BODIES_MAX || shape->bomb < 0 ||
         shape->bomb >= shape->body_count)
         return error_input(error, where, "%d bodies, of which %d is the bomb", shape->body_count, shape->bomb);
     if (shape->slot_count < 1 || shape->slot_count > SLOTS_MAX)
         return error_input(error, where, "%d slots; expected 1 to %d", shape->slot_count, SLOTS_MAX);
     if (!widths_are_whole(shape->state) || !widths_are_whole(shape->present) || !widths_are_whole(shape->warm) ||
         !widths_are_whole(shape->hidden))
-        return error_input(error, where, "a width is not a multiple of %d up to %d", ROW_LANES, SLOT_WIDTH_MAX);
+        return error_input(error, where, "a width is not a multiple of %d up to %d", ROW_LANES, SCENE_NET_WIDTH_MAX);
     for (int i = 0; i < shape->slot_count; i++) {
         const Slot *slot = &slots[i];
         bool known = slot->a >= 0 && slot->a < slot->b && slot->b < shape->body_count;
@@ -34,31 +34,31 @@ static bool slot_shape_check(const SlotShape *shape, const Slot *slots, const ch
 }
 
 /* Takes an array from the block, from a line of the cache on; before there is a block, only counts the bytes. */
-static void *take(const SlotNetwork *network, size_t *used, size_t bytes) {
+static void *take(const SceneNet *network, size_t *used, size_t bytes) {
     char *at = network->block != NULL ? (char *)network->block + *used : NULL;
     *used += (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
     return at;
 }
 
-static PackedRows take_packed(const SlotNetwork *network, size_t *used, int count, int width) {
+static PackedRows take_packed(const SceneNet *network, size_t *used, int count, int width) {
     return packed_rows_in(take(network, used, packed_rows_bytes(count, width)), count, width);
 }
 
-static void take_projection(const SlotNetwork *network, size_t *used, Projection *projection) {
+static void take_projection(const SceneNet *network, size_t *used, Projection *projection) {
     const size_t from = (size_t)projection->from, to = (size_t)projection->to;
     projection->rows = take(network, used, from * to * sizeof(float));
     projection->centre = take(network, used, to * sizeof(float));
     projection->packed = take_packed(network, used, projection->from, projection->to);
 }
 
-static float *place_layer(SlotLayer *layer, float *at) {
+static float *place_layer(SceneNetLayer *layer, float *at) {
     layer->rows = at;
     layer->biases = at != NULL ? at + layer->from * layer->to : NULL;
     return at != NULL ? layer->biases + layer->to : NULL;
 }
 
 /* Places all arrays; returns the bytes that they take. */
-static size_t lay_out(SlotNetwork *network) {
+static size_t lay_out(SceneNet *network) {
     const int inputs = network->first.from, hidden = network->second.to, outputs = 2 * network->slot_count;
     const size_t slots = (size_t)network->slot_count, bodies = (size_t)network->body_count;
     size_t used = 0;
@@ -84,7 +84,7 @@ static size_t lay_out(SlotNetwork *network) {
 }
 
 /* The first slot of each pair. */
-static void index_pairs(SlotNetwork *network) {
+static void index_pairs(SceneNet *network) {
     const int pairs = network->body_count * network->body_count;
     for (int pair = 0, slot = 0; pair <= pairs; pair++) {
         while (slot < network->slot_count &&
@@ -95,61 +95,61 @@ static void index_pairs(SlotNetwork *network) {
 }
 
 /* A network of the shape's sizes without arrays. */
-static SlotNetwork sizes_of(const SlotShape *shape) {
+static SceneNet sizes_of(const SceneNetShape *shape) {
     const int slots = shape->slot_count, inputs = ROW_LANES + shape->state + shape->present + shape->warm;
-    return (SlotNetwork){.body_count = shape->body_count,
-                         .bomb = shape->bomb,
-                         .slot_count = slots,
-                         .bomb_state = {.from = SLOT_BODY_NUMBERS, .to = ROW_LANES},
-                         .state = {.from = SLOT_BODY_NUMBERS * (shape->body_count - 1), .to = shape->state},
-                         .present = {.from = slots, .to = shape->present},
-                         .warm = {.from = 2 * slots, .to = shape->warm},
-                         .first = {.from = inputs, .to = shape->hidden},
-                         .second = {.from = shape->hidden, .to = shape->hidden},
-                         .kernels = &kernels_best()->rows};
+    return (SceneNet){.body_count = shape->body_count,
+                      .bomb = shape->bomb,
+                      .slot_count = slots,
+                      .bomb_state = {.from = SLOT_BODY_NUMBERS, .to = ROW_LANES},
+                      .state = {.from = SLOT_BODY_NUMBERS * (shape->body_count - 1), .to = shape->state},
+                      .present = {.from = slots, .to = shape->present},
+                      .warm = {.from = 2 * slots, .to = shape->warm},
+                      .first = {.from = inputs, .to = shape->hidden},
+                      .second = {.from = shape->hidden, .to = shape->hidden},
+                      .kernels = &kernels_best()->rows};
 }
 
-static bool allocate(SlotNetwork *network, const Slot *slots, Error *error) {
+static bool allocate(SceneNet *network, const Slot *slots, Error *error) {
     network->block = calloc(1, lay_out(network));
-    if (network->block == NULL) return error_memory(error, "slot network");
+    if (network->block == NULL) return error_memory(error, "scene-net");
     lay_out(network);
     memcpy(network->slots, slots, (size_t)network->slot_count * sizeof *slots);
     index_pairs(network);
     return true;
 }
 
-SlotNetwork *slot_network_create(const SlotShape *shape, const Slot *slots, Error *error) {
-    if (!slot_shape_check(shape, slots, "slot network", error)) return NULL;
-    SlotNetwork *network = malloc(sizeof *network);
-    if (network == NULL) return error_memory(error, "slot network"), NULL;
+SceneNet *scene_net_create(const SceneNetShape *shape, const Slot *slots, Error *error) {
+    if (!scene_net_shape_check(shape, slots, "scene-net", error)) return NULL;
+    SceneNet *network = malloc(sizeof *network);
+    if (network == NULL) return error_memory(error, "scene-net"), NULL;
     *network = sizes_of(shape);
     if (!allocate(network, slots, error)) return free(network), NULL;
     return network;
 }
 
-void slot_network_destroy(SlotNetwork *network) {
+void scene_net_destroy(SceneNet *network) {
     if (network == NULL) return;
     free(network->block);
     free(network);
 }
 
-int slot_network_find(const SlotNetwork *network, int a, int b, uint32_t feature) {
+int scene_net_find(const SceneNet *network, int a, int b, uint32_t feature) {
     const int32_t *pair = &network->pair_slots[a * network->body_count + b];
     for (int slot = pair[0]; slot < pair[1]; slot++)
         if (network->slots[slot].feature == feature) return slot;
     return -1;
 }
 
-void slot_network_pack_layers(SlotNetwork *network) {
+void scene_net_pack_layers(SceneNet *network) {
     packed_rows_fill(&network->first.packed, network->first.rows);
     packed_rows_fill(&network->second.packed, network->second.rows);
     packed_rows_fill(&network->packed, network->rows);
 }
 
-void slot_network_pack(SlotNetwork *network) {
+void scene_net_pack(SceneNet *network) {
     Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
     for (int i = 0; i < 4; i++) packed_rows_fill(&projections[i]->packed, projections[i]->rows);
-    slot_network_pack_layers(network);
+    scene_net_pack_layers(network);
 }
 
 static float *project(const RowKernels *kernels, const Projection *projection, const int32_t *index,
@@ -159,21 +159,21 @@ static float *project(const RowKernels *kernels, const Projection *projection, c
     return out + projection->to;
 }
 
-void slot_network_look(const SlotNetwork *network, const SlotView *view, float *inputs) {
+void scene_net_look(const SceneNet *network, const SceneNetView *view, float *inputs) {
     inputs = project(network->kernels, &network->bomb_state, NULL, view->bomb, SLOT_BODY_NUMBERS, inputs);
     inputs = project(network->kernels, &network->state, NULL, view->state, network->state.from, inputs);
     inputs = project(network->kernels, &network->present, view->slots, view->ones, view->slot_count, inputs);
     project(network->kernels, &network->warm, view->impulses, view->warm, 2 * view->slot_count, inputs);
 }
 
-static void run_layer(const RowKernels *kernels, const SlotLayer *layer, const float *in, float *out) {
+static void run_layer(const RowKernels *kernels, const SceneNetLayer *layer, const float *in, float *out) {
     memcpy(out, layer->biases, (size_t)layer->to * sizeof *out);
     kernels->add(out, &layer->packed, NULL, in, layer->from);
     kernels->apply_tanh(out, layer->to);
 }
 
-void slot_network_predict(const SlotNetwork *network, const float *inputs, const SlotView *view, float *first,
-                          float *second, float *outputs) {
+void scene_net_predict(const SceneNet *network, const float *inputs, const SceneNetView *view, float *first,
+                       float *second, float *outputs) {
     run_layer(network->kernels, &network->first, inputs, first);
     run_layer(network->kernels, &network->second, first, second);
     network->kernels->multiply(outputs, &network->packed, view->slots, second, view->slot_count);
@@ -186,18 +186,18 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
 
 /* Slot network files: kind "scene-net". */
 
-typedef struct SlotFile {
-    SlotNetwork *network;
+typedef struct SceneNetFile {
+    SceneNet *network;
     Slot *slots;      /* of a reader, before the network has them */
     int32_t *columns; /* of a writer: a of all slots, then b, then feature */
-} SlotFile;
+} SceneNetFile;
 
 static int list_fields(void *of, NetField *fields) {
-    const SlotFile *file = of;
-    SlotNetwork *network = file->network;
+    const SceneNetFile *file = of;
+    SceneNet *network = file->network;
     const Projection *bomb = &network->bomb_state, *state = &network->state, *present = &network->present,
                      *warm = &network->warm;
-    const SlotLayer *first = &network->first, *second = &network->second;
+    const SceneNetLayer *first = &network->first, *second = &network->second;
     const int slots = network->slot_count;
     int32_t *columns = file->columns;
     const NetField all[] = {
@@ -238,14 +238,14 @@ static int list_fields(void *of, NetField *fields) {
 static bool read_width(NpzFile *file, const char *name, int64_t rows, int *width, Error *error) {
     int64_t shape[2];
     if (!npz_shape(file, name, NPZ_FLOAT32, 2, shape, error)) return false;
-    if (shape[0] != rows || shape[1] > SLOT_WIDTH_MAX)
+    if (shape[0] != rows || shape[1] > SCENE_NET_WIDTH_MAX)
         return error_input(error, npz_path(file), "array '%s' has shape (%lld, %lld); expected (%lld, up to %d)", name,
-                           (long long)shape[0], (long long)shape[1], (long long)rows, SLOT_WIDTH_MAX);
+                           (long long)shape[0], (long long)shape[1], (long long)rows, SCENE_NET_WIDTH_MAX);
     *width = (int)shape[1];
     return true;
 }
 
-static bool read_shape(NpzFile *file, SlotShape *shape, Error *error) {
+static bool read_shape(NpzFile *file, SceneNetShape *shape, Error *error) {
     int64_t slots;
     if (!net_file_integer(file, "body_count", &shape->body_count, error) ||
         !net_file_integer(file, "bomb", &shape->bomb, error) || !npz_shape(file, "slot_a", NPZ_INT32, 1, &slots, error))
@@ -274,35 +274,36 @@ static Slot *read_slots(NpzFile *file, int64_t count, Error *error) {
 }
 
 static bool read_sizes(void *of, NpzFile *file, Error *error) {
-    SlotFile *slot_file = of;
-    SlotShape shape = {0};
+    SceneNetFile *slot_file = of;
+    SceneNetShape shape = {0};
     int sweeps;
     if (!read_shape(file, &shape, error) || !net_file_integer(file, "sweeps", &sweeps, error)) return false;
-    if (sweeps < 0 || sweeps > SLOT_SWEEPS_MAX)
-        return error_input(error, npz_path(file), "sweeps is %d; expected 0 to %d", sweeps, SLOT_SWEEPS_MAX);
+    if (sweeps < 0 || sweeps > SCENE_NET_SWEEPS_MAX)
+        return error_input(error, npz_path(file), "sweeps is %d; expected 0 to %d", sweeps, SCENE_NET_SWEEPS_MAX);
     slot_file->slots = read_slots(file, shape.slot_count, error);
-    if (slot_file->slots == NULL || !slot_shape_check(&shape, slot_file->slots, npz_path(file), error)) return false;
+    if (slot_file->slots == NULL || !scene_net_shape_check(&shape, slot_file->slots, npz_path(file), error))
+        return false;
     *slot_file->network = sizes_of(&shape);
     slot_file->network->sweeps = sweeps;
     return true;
 }
 
 static bool create(void *of, Error *error) {
-    const SlotFile *file = of;
+    const SceneNetFile *file = of;
     return allocate(file->network, file->slots, error);
 }
 
 static bool pack(void *of, const char *path, Error *error) {
     (void)path, (void)error;
-    slot_network_pack(((SlotFile *)of)->network);
+    scene_net_pack(((SceneNetFile *)of)->network);
     return true;
 }
 
-static const NetFileKind kind = {"scene-net", SLOT_NETWORK_VERSION, list_fields, read_sizes, create, pack};
+static const NetFileKind kind = {"scene-net", SCENE_NET_NETWORK_VERSION, list_fields, read_sizes, create, pack};
 
-bool slot_network_write(const SlotNetwork *network, const char *path, Error *error) {
+bool scene_net_write(const SceneNet *network, const char *path, Error *error) {
     const size_t count = (size_t)network->slot_count;
-    SlotFile file = {(SlotNetwork *)network, NULL, malloc(3 * count * sizeof *file.columns)};
+    SceneNetFile file = {(SceneNet *)network, NULL, malloc(3 * count * sizeof *file.columns)};
     if (file.columns == NULL) return error_memory(error, path);
     for (size_t i = 0; i < count; i++) {
         file.columns[i] = network->slots[i].a;
@@ -314,12 +315,12 @@ bool slot_network_write(const SlotNetwork *network, const char *path, Error *err
     return ok;
 }
 
-SlotNetwork *slot_network_read(const char *path, Error *error) {
-    SlotFile file = {calloc(1, sizeof *file.network), NULL, NULL};
+SceneNet *scene_net_read(const char *path, Error *error) {
+    SceneNetFile file = {calloc(1, sizeof *file.network), NULL, NULL};
     if (file.network == NULL) return error_memory(error, path), NULL;
     const bool ok = net_file_read(&kind, &file, path, error);
     free(file.slots);
     if (ok) return file.network;
-    slot_network_destroy(file.network);
+    scene_net_destroy(file.network);
     return NULL;
 }

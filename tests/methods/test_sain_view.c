@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a relation network sees does not depend on the numbers of the bodies, or on the tilt of the scene. */
-#include "relation_networks.h"
+#include "sain_networks.h"
 
 enum { BODIES = 12, PAIRS = 16 };
 
@@ -18,7 +18,7 @@ static Vec2 any(uint32_t *seed, float size) {
 
 /* Body 0 is the ground; each other body touches the one before, and some the ground. */
 static void fill(Problem *p, uint32_t seed) {
-    *p = (Problem){.problem = {.body_count = BODIES, .marked = -1, .bodies = p->bodies, .contacts = p->contacts}};
+    *p = (Problem){.problem = {.body_count = BODIES, .bomb = -1, .bodies = p->bodies, .contacts = p->contacts}};
     for (int i = 0; i < BODIES; i++) {
         const float inverse = i == 0 ? 0 : uniform(&seed, 0.1f, 1);
         p->bodies[i] = (ProblemBody){.position = any(&seed, 1),
@@ -83,28 +83,28 @@ static void renumber(Problem *to, const Problem *from) {
 }
 
 /* Velocities of all bodies, the answers added. */
-static void answer(const Problem *p, const RelationNetwork *network, RelationForm form, BodyVelocity *velocities) {
-    RelationView view = {0};
-    RelationAnswers answers = {0};
+static void answer(const Problem *p, const SainNetwork *network, SainForm form, BodyVelocity *velocities) {
+    SainView view = {0};
+    SainAnswers answers = {0};
     for (int i = 0; i < BODIES; i++) velocities[i] = p->engine[i];
-    assert_true(relation_view_make(&view, &p->problem, form == RELATION_ALONE ? NULL : p->engine, form));
+    assert_true(sain_view_make(&view, &p->problem, form == SAIN_ALONE ? NULL : p->engine, form));
     assert_int_equal(view.body_count, BODIES - 1);
-    assert_true(relation_answer(&answers, network, &view, false));
+    assert_true(sain_answer(&answers, network, &view, false));
     for (int b = 0; b < view.body_count; b++) {
         assert_true(answers.known[b]);
-        velocities[view.bodies[b].body] = relation_corrected(&view.bodies[b], answers.outputs + b * RELATION_OUTPUTS);
+        velocities[view.bodies[b].body] = sain_corrected(&view.bodies[b], answers.outputs + b * SAIN_OUTPUTS);
     }
-    relation_view_free(&view);
-    relation_answers_free(&answers);
+    sain_view_free(&view);
+    sain_answers_free(&answers);
 }
 
 TEST(numbers_of_bodies_do_not_matter) {
     static Problem problem, other;
     uint32_t seed = 3;
-    RelationNetwork network;
-    make_relation_network(&network, &seed, 0.4f);
+    SainNetwork network;
+    make_sain_network(&network, &seed, 0.4f);
     /* Not shuffled: whose change a body is shown depends on the numbers. */
-    for (RelationForm form = RELATION_ENGINE; form <= RELATION_ALONE; form++) {
+    for (SainForm form = SAIN_WITH_ENGINE; form <= SAIN_ALONE; form++) {
         BodyVelocity first[BODIES], second[BODIES];
         fill(&problem, 7);
         renumber(&other, &problem);
@@ -116,7 +116,7 @@ TEST(numbers_of_bodies_do_not_matter) {
             assert_near(first[i].angular, second[BODIES - 1 - i].angular, 3e-4);
         }
     }
-    relation_network_destroy(&network);
+    sain_network_destroy(&network);
 }
 
 /* Quarter turns of the world leave each box's frame where it was, so a box must be seen from a frame that turns with
@@ -125,12 +125,12 @@ TEST(answers_turn_with_the_scene) {
     static Problem problem;
     uint32_t seed = 4;
     const float angle = 0.4f;
-    RelationNetwork network;
-    make_relation_network(&network, &seed, 0.4f);
+    SainNetwork network;
+    make_sain_network(&network, &seed, 0.4f);
     network.body_low[0] = -FLT_MAX;
-    for (int h = 0; h < RELATION_HIDDEN; h++) /* the tilt itself is an input */
-        network.object->weights[0][h * RELATION_OBJECT_INPUTS] = 0;
-    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+    for (int h = 0; h < SAIN_HIDDEN; h++) /* the tilt itself is an input */
+        network.object->weights[0][h * SAIN_OBJECT_INPUTS] = 0;
+    for (SainForm form = 0; form < SAIN_FORMS; form++) {
         BodyVelocity before[BODIES], after[BODIES];
         fill(&problem, 9);
         answer(&problem, &network, form, before);
@@ -143,37 +143,37 @@ TEST(answers_turn_with_the_scene) {
             assert_near(after[i].angular, before[i].angular, 5e-4);
         }
     }
-    relation_network_destroy(&network);
+    sain_network_destroy(&network);
 }
 
 TEST(answers_reach_their_target) {
     static Problem problem;
-    RelationView view = {0};
+    SainView view = {0};
     fill(&problem, 1);
-    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
-        assert_true(relation_view_make(&view, &problem.problem, problem.engine, form));
+    for (SainForm form = 0; form < SAIN_FORMS; form++) {
+        assert_true(sain_view_make(&view, &problem.problem, problem.engine, form));
         for (int b = 0; b < view.body_count; b++) {
-            const RelationBody *body = &view.bodies[b];
-            double target[RELATION_OUTPUTS];
-            float outputs[RELATION_OUTPUTS];
-            relation_target(body, 1, -2, 3, target);
-            for (int o = 0; o < RELATION_OUTPUTS; o++) outputs[o] = (float)(target[o] / (double)body->scale);
-            const BodyVelocity velocity = relation_corrected(body, outputs);
+            const SainBody *body = &view.bodies[b];
+            double target[SAIN_OUTPUTS];
+            float outputs[SAIN_OUTPUTS];
+            sain_target(body, 1, -2, 3, target);
+            for (int o = 0; o < SAIN_OUTPUTS; o++) outputs[o] = (float)(target[o] / (double)body->scale);
+            const BodyVelocity velocity = sain_corrected(body, outputs);
             assert_near(velocity.linear.x, 1, 1e-5);
             assert_near(velocity.linear.y, -2, 1e-5);
             assert_near(velocity.angular, 3, 1e-4);
         }
     }
-    relation_view_free(&view);
+    sain_view_free(&view);
 }
 
 /* Each moving body is shown the change of another one, and all changes are shown. */
 TEST(shuffling_permutes_changes) {
     static Problem problem;
-    RelationView view = {0};
+    SainView view = {0};
     int same = 0, found = 0;
     fill(&problem, 2);
-    assert_true(relation_view_make(&view, &problem.problem, problem.engine, RELATION_SHUFFLED));
+    assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_SHUFFLED));
     for (int b = 0; b < view.body_count; b++) {
         const int to = view.bodies[b].body;
         const Vec2 change = vec2_sub(view.bodies[b].base.linear, problem.bodies[to].velocity);
@@ -186,25 +186,25 @@ TEST(shuffling_permutes_changes) {
     }
     assert_int_equal(found, BODIES - 1);
     assert_int_equal(same, 0);
-    relation_view_free(&view);
+    sain_view_free(&view);
 }
 
 /* What touches nothing is not seen; a problem without contacts has no receivers. */
 TEST(an_empty_problem_is_seen) {
     static Problem problem;
-    RelationView view = {0};
-    RelationAnswers answers = {0};
-    RelationNetwork network;
+    SainView view = {0};
+    SainAnswers answers = {0};
+    SainNetwork network;
     uint32_t seed = 1;
     fill(&problem, 2);
-    make_relation_network(&network, &seed, 1);
+    make_sain_network(&network, &seed, 1);
     problem.problem.contact_count = 0;
-    assert_true(relation_view_make(&view, &problem.problem, problem.engine, RELATION_ENGINE));
+    assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_WITH_ENGINE));
     assert_int_equal(view.body_count, 0);
-    assert_true(relation_answer(&answers, &network, &view, true));
-    relation_view_free(&view);
-    relation_answers_free(&answers);
-    relation_network_destroy(&network);
+    assert_true(sain_answer(&answers, &network, &view, true));
+    sain_view_free(&view);
+    sain_answers_free(&answers);
+    sain_network_destroy(&network);
 }
 
 RUN_TESTS(NULL, NULL)

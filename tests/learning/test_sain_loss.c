@@ -11,11 +11,11 @@ enum { SAMPLES = 40, ROWS = 3 * SAMPLES };
 
 /* Any samples: body i has 1 to 5 rows. */
 typedef struct Any {
-    RelationSample items[SAMPLES];
-    RelationRowInputs rows[5 * SAMPLES];
+    SainSample items[SAMPLES];
+    SainRowInputs rows[5 * SAMPLES];
     int order[SAMPLES];
-    RelationSamples samples;
-    RelationNetwork network;
+    SainSamples samples;
+    SainNetwork network;
     double *weights;
     int weight_count;
 } Any;
@@ -23,61 +23,61 @@ typedef struct Any {
 static void fill(Any *any) {
     Error error = {0};
     uint64_t state = 5;
-    any->samples = (RelationSamples){.items = any->items, .rows = any->rows};
+    any->samples = (SainSamples){.items = any->items, .rows = any->rows};
     for (int i = 0; i < SAMPLES; i++) {
-        RelationSample *sample = &any->items[i];
+        SainSample *sample = &any->items[i];
         sample->first = (int)any->samples.row_count;
         sample->rows = 1 + i % 5;
         sample->scale = (float)(1.5 + random_signed(&state));
-        for (int k = 0; k < RELATION_BODY_INPUTS; k++) sample->body[k] = (float)random_signed(&state);
-        for (int k = 0; k < RELATION_OUTPUTS; k++) sample->target[k] = (float)random_signed(&state);
+        for (int k = 0; k < SAIN_BODY_INPUTS; k++) sample->body[k] = (float)random_signed(&state);
+        for (int k = 0; k < SAIN_OUTPUTS; k++) sample->target[k] = (float)random_signed(&state);
         for (int r = 0; r < sample->rows; r++)
-            for (int k = 0; k < RELATION_PAIR_INPUTS; k++)
+            for (int k = 0; k < SAIN_PAIR_INPUTS; k++)
                 any->rows[any->samples.row_count + (size_t)r].numbers[k] = (float)random_signed(&state);
         any->samples.row_count += (size_t)sample->rows;
         any->order[i] = SAMPLES - 1 - i;
     }
     any->samples.count = SAMPLES;
     any->samples.problems = 1;
-    assert_ok(relation_network_create(&any->network, &error), error);
-    relation_normalise(&any->network, &any->samples);
-    any->weight_count = relation_weight_count(&any->network);
+    assert_ok(sain_network_create(&any->network, &error), error);
+    sain_normalise(&any->network, &any->samples);
+    any->weight_count = sain_weight_count(&any->network);
     any->weights = calloc((size_t)any->weight_count, sizeof *any->weights);
     assert_non_null(any->weights);
-    relation_first_weights(&any->network, 3, any->weights);
+    sain_first_weights(&any->network, 3, any->weights);
     for (int i = 0; i < any->weight_count; i++) any->weights[i] += 0.1 * random_signed(&state);
 }
 
 static void clear(Any *any) {
-    relation_network_destroy(&any->network);
+    sain_network_destroy(&any->network);
     free(any->weights);
 }
 
 TEST(slopes_are_finite_differences) {
     static Any any;
-    RelationLoss loss = {0};
+    SainLoss loss = {0};
     fill(&any);
-    assert_ok(relation_loss_begin(&loss, &any.network, &error), error);
-    const RelationPart part = {&any.samples, any.order, SAMPLES};
+    assert_ok(sain_loss_begin(&loss, &any.network, &error), error);
+    const SainPart part = {&any.samples, any.order, SAMPLES};
     double *slopes = calloc((size_t)any.weight_count, sizeof *slopes),
            *unused = calloc((size_t)any.weight_count, sizeof *unused);
     assert_true(slopes != NULL && unused != NULL);
     double sum = 0;
-    assert_true(relation_loss_add(&loss, &part, any.weights, &sum, slopes));
+    assert_true(sain_loss_add(&loss, &part, any.weights, &sum, slopes));
     const double step = 1e-6;
     for (int i = 0; i < any.weight_count; i += 37) {
         double more = 0, less = 0;
         const double kept = any.weights[i];
         any.weights[i] = kept + step;
-        assert_true(relation_loss_add(&loss, &part, any.weights, &more, unused));
+        assert_true(sain_loss_add(&loss, &part, any.weights, &more, unused));
         any.weights[i] = kept - step;
-        assert_true(relation_loss_add(&loss, &part, any.weights, &less, unused));
+        assert_true(sain_loss_add(&loss, &part, any.weights, &less, unused));
         any.weights[i] = kept;
         assert_near(slopes[i], (more - less) / (2 * step), 1e-6 + 1e-5 * fabs(slopes[i]));
     }
     free(slopes);
     free(unused);
-    relation_loss_free(&loss);
+    sain_loss_free(&loss);
     clear(&any);
 }
 

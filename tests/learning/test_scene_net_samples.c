@@ -10,37 +10,37 @@ TEST(a_sample_is_a_copy) {
     ProblemBody bodies[2] = {{.inv_mass = 1}, {.inv_mass = 2}};
     ContactPoint contact = {.a = 0, .b = 1, .feature = 5};
     const ContactProblem problem = {
-        .body_count = 2, .contact_count = 1, .marked = 1, .bodies = bodies, .contacts = &contact};
-    SlotSamples samples = {0}, more = {0};
-    for (int i = 0; i < 20; i++) assert_true(slot_samples_add(&samples, &problem, i, 2 * i));
+        .body_count = 2, .contact_count = 1, .bomb = 1, .bodies = bodies, .contacts = &contact};
+    SceneNetSamples samples = {0}, more = {0};
+    for (int i = 0; i < 20; i++) assert_true(scene_net_samples_add(&samples, &problem, i, 2 * i));
     bodies[1].inv_mass = 9;
     contact.feature = 9;
-    for (int i = 20; i < 22; i++) assert_true(slot_samples_add(&more, &problem, i, 2 * i));
-    assert_true(slot_samples_move(&samples, &more));
+    for (int i = 20; i < 22; i++) assert_true(scene_net_samples_add(&more, &problem, i, 2 * i));
+    assert_true(scene_net_samples_move(&samples, &more));
     assert_int_equal(more.count, 0);
-    assert_true(slot_samples_move(&samples, &more));
+    assert_true(scene_net_samples_move(&samples, &more));
     assert_int_equal(samples.count, 22);
     for (int i = 0; i < 22; i++) {
-        const SlotSample *sample = &samples.items[i];
+        const SceneNetSample *sample = &samples.items[i];
         assert_int_equal(sample->launch, i);
         assert_int_equal(sample->since, 2 * i);
         assert_int_equal(sample->problem.contacts[0].feature, i < 20 ? 5 : 9);
         assert_true(sample->problem.bodies[1].inv_mass == (i < 20 ? 2 : 9));
     }
-    slot_samples_free(&more);
-    slot_samples_free(&samples);
+    scene_net_samples_free(&more);
+    scene_net_samples_free(&samples);
 }
 
 /* A launch without impacts has no samples; an impact may have no contacts. */
 TEST(empty_samples_can_be_moved) {
-    SlotSamples samples = {0}, none = {0};
+    SceneNetSamples samples = {0}, none = {0};
     const ProblemBody body = {.inv_mass = 1};
-    assert_true(slot_samples_move(&samples, &none));
+    assert_true(scene_net_samples_move(&samples, &none));
     assert_int_equal(samples.count, 0);
-    assert_true(slot_samples_add(&samples, &(ContactProblem){.body_count = 1, .bodies = &body}, 0, 0));
+    assert_true(scene_net_samples_add(&samples, &(ContactProblem){.body_count = 1, .bodies = &body}, 0, 0));
     assert_int_equal(samples.items[0].problem.contact_count, 0);
-    slot_samples_free(&samples);
-    slot_samples_free(&none);
+    scene_net_samples_free(&samples);
+    scene_net_samples_free(&none);
 }
 
 TEST(labels_are_the_references) {
@@ -48,9 +48,9 @@ TEST(labels_are_the_references) {
     Reference reference = {0};
     for (int t = 1; t <= 2; t++) {
         omp_set_num_threads(t);
-        SlotSamples samples = labelled_impacts(LAUNCHES);
+        SceneNetSamples samples = labelled_impacts(LAUNCHES);
         for (int i = 0; i < samples.count; i++) {
-            const SlotSample *sample = &samples.items[i];
+            const SceneNetSample *sample = &samples.items[i];
             const ContactProblem *problem = &sample->problem;
             assert_ok(reference_solve(&reference, problem, NULL, &error), error);
             assert_memory_equal(sample->reference, reference.velocities,
@@ -61,7 +61,7 @@ TEST(labels_are_the_references) {
             }
             assert_int_equal(sample->unrolled.contact_count, problem->contact_count);
         }
-        slot_samples_free(&samples);
+        scene_net_samples_free(&samples);
     }
     omp_set_num_threads(threads);
     reference_free(&reference);
@@ -73,21 +73,21 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(only_samples_from_the_given_index_are_labelled) {
-    SlotSamples samples = {0};
+    SceneNetSamples samples = {0};
     record_impacts(&samples, LAUNCHES, 0);
     const int half = samples.count / 2;
     const Progress stopping = {stop, NULL};
-    assert_ok(slot_samples_label(&samples, half, NULL, &error), error);
+    assert_ok(scene_net_samples_label(&samples, half, NULL, &error), error);
     for (int i = 0; i < samples.count; i++) assert_int_equal(samples.items[i].goal != NULL, i >= half);
-    slot_samples_free(&samples);
+    scene_net_samples_free(&samples);
     record_impacts(&samples, LAUNCHES, 0);
-    assert_false(slot_samples_label(&samples, 0, &stopping, &error));
+    assert_false(scene_net_samples_label(&samples, 0, &stopping, &error));
     assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
-    slot_samples_free(&samples);
+    scene_net_samples_free(&samples);
 }
 
 typedef struct Wedge {
-    SlotSamples samples;
+    SceneNetSamples samples;
     Reference reference;
     int solved;
 } Wedge;
@@ -97,7 +97,7 @@ static bool keep_step(void *context, int frame, const World *world, Error *error
     const ContactProblem *problem = world_problem(world);
     if (!reference_solve(&wedge->reference, problem, NULL, error)) return false;
     wedge->solved += wedge->reference.residual <= 1e-9;
-    return slot_samples_add(&wedge->samples, problem, frame, 0);
+    return scene_net_samples_add(&wedge->samples, problem, frame, 0);
 }
 
 /* A box in a V that its friction holds apart from: steps with a solution and without. */
@@ -109,40 +109,40 @@ TEST(samples_without_a_solution_are_left_out_and_counted) {
     const int all = wedge.samples.count;
     assert_int_equal(all, scene->frames);
     assert_in_range(wedge.solved, 10, all - 10);
-    assert_ok(slot_samples_label(&wedge.samples, 0, NULL, &error), error);
+    assert_ok(scene_net_samples_label(&wedge.samples, 0, NULL, &error), error);
     assert_int_equal(wedge.samples.count, wedge.solved);
     assert_int_equal(wedge.samples.unconverged, all - wedge.solved);
     for (int i = 0; i < wedge.samples.count; i++) {
-        const SlotSample *sample = &wedge.samples.items[i];
+        const SceneNetSample *sample = &wedge.samples.items[i];
         assert_ok(reference_solve(&wedge.reference, &sample->problem, NULL, &error), error);
         assert_true(wedge.reference.residual <= 1e-9);
         assert_memory_equal(sample->reference, wedge.reference.velocities,
                             (size_t)sample->problem.body_count * sizeof *sample->reference);
         assert_true(i == 0 || sample->launch > sample[-1].launch);
     }
-    SlotSamples moved = {.unconverged = 2};
-    assert_true(slot_samples_move(&moved, &wedge.samples));
+    SceneNetSamples moved = {.unconverged = 2};
+    assert_true(scene_net_samples_move(&moved, &wedge.samples));
     assert_int_equal(moved.unconverged, 2 + all - wedge.solved);
-    slot_samples_free(&moved);
+    scene_net_samples_free(&moved);
     reference_free(&wedge.reference);
     scene_destroy(scene);
 }
 
 TEST(inputs_are_those_of_the_network) {
-    SlotSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
-    SlotNetwork *network = network_for(&shaped);
+    SceneNetSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
+    SceneNet *network = network_for(&shaped);
     record_impacts(&samples, LAUNCHES, 0);
     assert_int_equal(samples.count, shaped.count);
-    assert_ok(slot_samples_compute_inputs(&samples, 3, network, &error), error);
+    assert_ok(scene_net_samples_compute_inputs(&samples, 3, network, &error), error);
     for (int i = 0; i < samples.count; i++) {
         assert_int_equal(samples.items[i].inputs != NULL, i >= 3);
         if (i < 3) continue;
         assert_memory_equal(samples.items[i].inputs, shaped.items[i].inputs,
-                            (size_t)slot_network_inputs(network) * sizeof(float));
+                            (size_t)scene_net_inputs(network) * sizeof(float));
     }
-    slot_network_destroy(network);
-    slot_samples_free(&samples);
-    slot_samples_free(&shaped);
+    scene_net_destroy(network);
+    scene_net_samples_free(&samples);
+    scene_net_samples_free(&shaped);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -5,11 +5,11 @@
 #include <math.h>
 
 /* Two sets, three entries; the last has a neighbour. */
-static Tabulation *make_three(void) {
-    Tabulation *memory = make_memory();
+static HybridMemory *make_three(void) {
+    HybridMemory *memory = make_memory();
     const float keys[3][KEY] = {{1, 2}, {3, 4}, {1, 2.5f}};
-    const int32_t near[TABULATION_NEAR] = {0, -1, -1};
-    const float weights[TABULATION_NEAR * KEY] = {0, 2};
+    const int32_t near[HYBRID_NEAR] = {0, -1, -1};
+    const float weights[HYBRID_NEAR * KEY] = {0, 2};
     add_entry(memory, 2, keys[0], 3, 0.5f, NULL, NULL);
     add_entry(memory, 4, keys[1], 4, 0.5f, NULL, NULL);
     add_entry(memory, 2, keys[2], 5, 0.5f, near, weights);
@@ -19,10 +19,10 @@ static Tabulation *make_three(void) {
 }
 
 TEST(what_is_written_is_read_again) {
-    Tabulation *memory = make_three();
+    HybridMemory *memory = make_three();
     const char *path = temporary_path("memory.npz");
-    assert_ok(tabulation_write(memory, path, &error), error);
-    Tabulation *read = tabulation_read(path, &error);
+    assert_ok(hybrid_memory_write(memory, path, &error), error);
+    HybridMemory *read = hybrid_memory_read(path, &error);
     assert_ok(read != NULL, error);
     assert_int_equal(read->entry_count, 3);
     assert_int_equal(read->set_count, 2);
@@ -32,26 +32,26 @@ TEST(what_is_written_is_read_again) {
     assert_memory_equal(read->rows, memory->rows, sizeof(float) * COMPONENTS * (size_t)memory->numbers);
     assert_memory_equal(read->metrics, memory->metrics, sizeof(float) * 3 * METRIC);
     const float key[KEY] = {1, 2.4f};
-    const TabulationQuery query = {7 + 2, 2, key};
-    assert_int_equal(tabulation_find(read, &query), 2);
+    const HybridQuery query = {7 + 2, 2, key};
+    assert_int_equal(hybrid_memory_find(read, &query), 2);
     ContactImpulse one[2], two[2];
-    tabulation_answer(memory, 2, key, one);
-    tabulation_answer(read, 2, key, two);
+    hybrid_memory_answer(memory, 2, key, one);
+    hybrid_memory_answer(read, 2, key, two);
     assert_memory_equal(one, two, sizeof one);
-    tabulation_destroy(read);
-    tabulation_destroy(memory);
+    hybrid_memory_destroy(read);
+    hybrid_memory_destroy(memory);
 }
 
-static void refuse(Tabulation *memory, const char *text) {
+static void refuse(HybridMemory *memory, const char *text) {
     Error error = {0};
     const char *path = temporary_path("hostile.npz");
-    assert_ok(tabulation_write(memory, path, &error), error);
-    assert_refused(tabulation_read(path, &error), text, "hostile.npz");
-    tabulation_destroy(memory);
+    assert_ok(hybrid_memory_write(memory, path, &error), error);
+    assert_refused(hybrid_memory_read(path, &error), text, "hostile.npz");
+    hybrid_memory_destroy(memory);
 }
 
 TEST(hostile_files_are_refused) {
-    Tabulation *memory;
+    HybridMemory *memory;
 #define REFUSED(change, text) \
     memory = make_three();    \
     change;                   \
@@ -78,9 +78,9 @@ TEST(hostile_files_are_refused) {
 }
 
 TEST(an_empty_memory_is_not_written) {
-    Tabulation *memory = make_memory();
-    assert_refused(tabulation_write(memory, temporary_path("empty.npz"), &error), "is empty");
-    tabulation_destroy(memory);
+    HybridMemory *memory = make_memory();
+    assert_refused(hybrid_memory_write(memory, temporary_path("empty.npz"), &error), "is empty");
+    hybrid_memory_destroy(memory);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -3,14 +3,14 @@
    before the step), the converged impulses P0, a linear map A, and an ellipsoid of accuracy
    { x : (x - x0)^T M (x - x0) <= 1 }. Inside it the answer is
 
-       P = P0 + A (x - x0),   A (x - x0) = sum over up to TABULATION_NEAR entries j of (w_j . (x - x0)) (P_j - P0)
+       P = P0 + A (x - x0),   A (x - x0) = sum over up to HYBRID_NEAR entries j of (w_j . (x - x0)) (P_j - P0)
 
    The rows w_j are a least-squares fit over the neighbours when the entry is added: a map of that rank needs no more
    memory than the rows, and an answer is an affine combination of solutions. An ellipsoid grows to the smallest one of the same
    centre that holds a new point, too, and shrinks to the largest one that it contains with the point on its border.
 
    The key: the bomb's state, the components of the other bodies' states along principal directions, and their distance
-   from the space of these directions. All in m/s (tabulation_numbers). Which contacts exist, with the bodies' sizes
+   from the space of these directions. All in m/s (hybrid_memory_numbers). Which contacts exist, with the bodies' sizes
    and masses, is a 64-bit hash: entries with another one never answer; their number of contacts is compared, too.
 
    Sources: Pope, "Computationally efficient implementation of combustion chemistry using in situ adaptive tabulation"
@@ -24,38 +24,38 @@
 #include <stddef.h>
 
 enum {
-    TABULATION_VERSION = 1,
-    TABULATION_BODIES_MAX = 256,
-    TABULATION_NUMBERS = 6, /* of a body: x, y, angle, velocity x, y, spin */
-    TABULATION_COMPONENTS_MAX = 32,
-    TABULATION_KEY_MAX = TABULATION_NUMBERS + TABULATION_COMPONENTS_MAX + 1,
-    TABULATION_NEAR = 3,
-    TABULATION_ENTRIES_MAX = 1000000,
-    TABULATION_CONTACTS_MAX = 20000,
-    TABULATION_TEXT_SIZE = 512
+    HYBRID_VERSION = 1,
+    HYBRID_BODIES_MAX = 256,
+    HYBRID_NUMBERS = 6, /* of a body: x, y, angle, velocity x, y, spin */
+    HYBRID_COMPONENTS_MAX = 32,
+    HYBRID_KEY_MAX = HYBRID_NUMBERS + HYBRID_COMPONENTS_MAX + 1,
+    HYBRID_NEAR = 3,
+    HYBRID_ENTRIES_MAX = 1000000,
+    HYBRID_CONTACTS_MAX = 20000,
+    HYBRID_TEXT_SIZE = 512
 };
 
 /* The entries of a set, by rising first number of their keys: a launch family moves the bomb's x most. */
-typedef struct TabulationList {
+typedef struct HybridList {
     int32_t *entries; /* [count] */
     int count;
     size_t capacity;
     float reach; /* (m/s)^2: the largest of its entries */
-} TabulationList;
+} HybridList;
 
-typedef struct Tabulation {
+typedef struct HybridMemory {
     int body_count, bomb, components;
     int numbers, key_size, metric_size; /* of the other bodies; of a key; of the lower triangle of M, row after row */
     float gate;                         /* m/s: RMS residual of the warm start from which on a step asks the memory */
     float tolerance;                    /* m/s: RMS error of the bodies' velocities that the ellipsoids keep */
     int launches;                       /* learned so far */
-    char scene[TABULATION_TEXT_SIZE], command[TABULATION_TEXT_SIZE];
+    char scene[HYBRID_TEXT_SIZE], command[HYBRID_TEXT_SIZE];
     float *centre, *rows; /* [numbers], [numbers, components] principal directions: orthonormal columns, or 0 */
 
-    int set_count;             /* sets of contacts */
-    uint64_t *set_hash;        /* [set_count] */
-    int32_t *set_contacts;     /* [set_count] number of contacts */
-    TabulationList *set_lists; /* [set_count] */
+    int set_count;         /* sets of contacts */
+    uint64_t *set_hash;    /* [set_count] */
+    int32_t *set_contacts; /* [set_count] number of contacts */
+    HybridList *set_lists; /* [set_count] */
 
     int entry_count;
     int32_t *entry_set;       /* [entry_count] its set */
@@ -63,77 +63,77 @@ typedef struct Tabulation {
     float *keys;              /* [entry_count, key_size] x0 */
     float *metrics;           /* [entry_count, metric_size] M */
     float *reach;             /* [entry_count] (m/s)^2: no point of the ellipsoid is farther from x0 */
-    int32_t *near;            /* [entry_count, TABULATION_NEAR] entries j of the same set, or -1 */
-    float *weights;           /* [entry_count, TABULATION_NEAR, key_size] w_j */
+    int32_t *near;            /* [entry_count, HYBRID_NEAR] entries j of the same set, or -1 */
+    float *weights;           /* [entry_count, HYBRID_NEAR, key_size] w_j */
     ContactImpulse *impulses; /* [impulse_count] P0 of all entries */
     size_t impulse_count, set_capacity, entry_capacity, impulse_capacity;
 
     int32_t *table; /* [table_size] open addressing by hash: a set, or -1; table_size is a power of two */
     size_t table_size;
-} Tabulation;
+} HybridMemory;
 
 /* An empty memory with directions of 0. ERROR_INPUT if a number is out of bounds. */
-Tabulation *tabulation_create(int body_count, int bomb, int components, Error *error);
-void tabulation_destroy(Tabulation *memory);
+HybridMemory *hybrid_memory_create(int body_count, int bomb, int components, Error *error);
+void hybrid_memory_destroy(HybridMemory *memory);
 
 /* The memory's size, and what an entry of so many contacts would add, bytes. */
-size_t tabulation_bytes(const Tabulation *memory);
-size_t tabulation_entry_bytes(const Tabulation *memory, int contacts);
+size_t hybrid_memory_bytes(const HybridMemory *memory);
+size_t hybrid_memory_entry_bytes(const HybridMemory *memory, int contacts);
 
 /* The state of a body in m/s: metres times the rate at which position correction pushes overlaps apart, angles and spins
    times half the size. `angle` replaces the body's. */
-void tabulation_numbers(const ProblemBody *body, float angle, float dt, float numbers[TABULATION_NUMBERS]);
+void hybrid_memory_numbers(const ProblemBody *body, float angle, float dt, float numbers[HYBRID_NUMBERS]);
 
 /* key[key_size] from the numbers of the bomb and of the other bodies in order [numbers]. */
-void tabulation_key(const Tabulation *memory, const float *bomb, const float *others, float *key);
+void hybrid_memory_key(const HybridMemory *memory, const float *bomb, const float *others, float *key);
 
-typedef struct TabulationQuery {
+typedef struct HybridQuery {
     uint64_t hash; /* of the contacts and what is constant */
     int contacts;
     const float *key; /* [key_size] finite */
-} TabulationQuery;
+} HybridQuery;
 
 /* The entry whose ellipsoid contains the query, the most central one if there are several; or -1. */
-int tabulation_find(const Tabulation *memory, const TabulationQuery *query);
+int hybrid_memory_find(const HybridMemory *memory, const HybridQuery *query);
 
 /* The entries with these contacts whose first number is within `radius` (m/s) of the query's: [*count], or NULL. */
-const int32_t *tabulation_about(const Tabulation *memory, const TabulationQuery *query, float radius, int *count);
+const int32_t *hybrid_memory_about(const HybridMemory *memory, const HybridQuery *query, float radius, int *count);
 
 /* The most central of them, inside its ellipsoid or not, or -1. */
-int tabulation_nearest(const Tabulation *memory, const TabulationQuery *query, float radius);
+int hybrid_memory_nearest(const HybridMemory *memory, const HybridQuery *query, float radius);
 
 /* (x - x0)^T M (x - x0) of an entry */
-float tabulation_distance(const Tabulation *memory, int entry, const float *key);
+float hybrid_memory_distance(const HybridMemory *memory, int entry, const float *key);
 
 /* impulses[contacts of the entry]; they may leave their friction cones. */
-void tabulation_answer(const Tabulation *memory, int entry, const float *key, ContactImpulse *impulses);
+void hybrid_memory_answer(const HybridMemory *memory, int entry, const float *key, ContactImpulse *impulses);
 
 /* What an entry has besides the query. */
-typedef struct TabulationEntry {
+typedef struct HybridEntry {
     const ContactImpulse *impulses; /* [contacts] */
-    const int32_t *near;            /* [TABULATION_NEAR] */
-    const float *weights;           /* [TABULATION_NEAR, key_size] */
+    const int32_t *near;            /* [HYBRID_NEAR] */
+    const float *weights;           /* [HYBRID_NEAR, key_size] */
     const float *metric;            /* [metric_size] */
     float reach;                    /* (m/s)^2 */
-} TabulationEntry;
+} HybridEntry;
 
 /* False with error set when memory is short. */
-bool tabulation_add(Tabulation *memory, const TabulationQuery *query, const TabulationEntry *entry, Error *error);
+bool hybrid_memory_add(HybridMemory *memory, const HybridQuery *query, const HybridEntry *entry, Error *error);
 
 /* Puts the key on the border of the entry's ellipsoid: the smallest growth, or the smallest cut that does so. Nothing
    happens if the key is the entry's own. */
-void tabulation_stretch(Tabulation *memory, int entry, const float *key);
+void hybrid_memory_stretch(HybridMemory *memory, int entry, const float *key);
 
-bool tabulation_write(const Tabulation *memory, const char *path, Error *error);
+bool hybrid_memory_write(const HybridMemory *memory, const char *path, Error *error);
 
 /* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, a NaN or infinite
    number, a set that is there twice or an entry of an unknown set. */
-Tabulation *tabulation_read(const char *path, Error *error);
+HybridMemory *hybrid_memory_read(const char *path, Error *error);
 
-/* The sets of contacts of a memory (tabulation.h), found by their hashes. */
+/* The sets of contacts of a memory (hybrid_memory.h), found by their hashes. */
 
 /* The set with this hash and number of contacts, or -1. */
-int tabulation_set(const Tabulation *memory, uint64_t hash, int contacts);
+int hybrid_memory_set(const HybridMemory *memory, uint64_t hash, int contacts);
 
 /* A new set without entries; -1 when memory is short. */
-int tabulation_add_set(Tabulation *memory, uint64_t hash, int contacts);
+int hybrid_memory_add_set(HybridMemory *memory, uint64_t hash, int contacts);

@@ -13,7 +13,7 @@ typedef struct Counts {
     double worst; /* mean error of a launch's answers */
 } Counts;
 
-static bool count(void *context, const TabulationLaunch *launch, Error *error) {
+static bool count(void *context, const HybridLaunch *launch, Error *error) {
     (void)error;
     Counts *counts = context;
     assert_int_equal(launch->number, ++counts->launches);
@@ -31,42 +31,42 @@ static bool count(void *context, const TabulationLaunch *launch, Error *error) {
     return true;
 }
 
-static TabulationTraining training_of(Counts *counts) {
+static HybridTraining training_of(Counts *counts) {
     *counts = (Counts){0};
-    return (TabulationTraining){.launches = LAUNCHES,
-                                .turned_from = -1,
-                                .steps = 6,
-                                .components = TABULATION_STANDARD_COMPONENTS,
-                                .tolerance = 0.1f,
-                                .limit = 1 << 20,
-                                .seed = 1,
-                                .command = "train",
-                                .on_launch = count,
-                                .context = counts};
+    return (HybridTraining){.launches = LAUNCHES,
+                            .turned_from = -1,
+                            .steps = 6,
+                            .components = HYBRID_STANDARD_COMPONENTS,
+                            .tolerance = 0.1f,
+                            .limit = 1 << 20,
+                            .seed = 1,
+                            .command = "train",
+                            .on_launch = count,
+                            .context = counts};
 }
 
-static Tabulation *learn(const Scene *scene, const TabulationTraining *training, const Progress *progress) {
+static HybridMemory *learn(const Scene *scene, const HybridTraining *training, const Progress *progress) {
     Error error = {0};
-    Tabulation *memory = tabulation_training_run(scene, training, progress, &error);
+    HybridMemory *memory = hybrid_training_run(scene, training, progress, &error);
     assert_ok(memory != NULL, error);
     return memory;
 }
 
-static void assert_same_memory(const Tabulation *a, const Tabulation *b) {
+static void assert_same_memory(const HybridMemory *a, const HybridMemory *b) {
     assert_int_equal(a->entry_count, b->entry_count);
     assert_int_equal(a->impulse_count, b->impulse_count);
     const size_t entries = (size_t)a->entry_count, key = (size_t)a->key_size;
     assert_memory_equal(a->keys, b->keys, entries * key * sizeof(float));
     assert_memory_equal(a->metrics, b->metrics, entries * (size_t)a->metric_size * sizeof(float));
-    assert_memory_equal(a->weights, b->weights, entries * TABULATION_NEAR * key * sizeof(float));
+    assert_memory_equal(a->weights, b->weights, entries * HYBRID_NEAR * key * sizeof(float));
     assert_memory_equal(a->impulses, b->impulses, a->impulse_count * sizeof *a->impulses);
 }
 
 TEST(familiar_impacts_are_answered_within_the_tolerance) {
     Scene *scene = scene_named("single");
     Counts counts;
-    const TabulationTraining training = training_of(&counts);
-    Tabulation *memory = learn(scene, &training, NULL);
+    const HybridTraining training = training_of(&counts);
+    HybridMemory *memory = learn(scene, &training, NULL);
     assert_int_equal(counts.launches, LAUNCHES);
     assert_int_equal(memory->launches, LAUNCHES);
     assert_int_equal(counts.added, memory->entry_count);
@@ -74,7 +74,7 @@ TEST(familiar_impacts_are_answered_within_the_tolerance) {
     assert_true(counts.grown > 20);
     assert_true(4 * counts.late_answered > counts.late);
     assert_true(counts.checked > 0 && counts.worst < 0.1);
-    tabulation_destroy(memory);
+    hybrid_memory_destroy(memory);
     scene_destroy(scene);
 }
 
@@ -82,39 +82,39 @@ TEST(familiar_impacts_are_answered_within_the_tolerance) {
 TEST(the_limit_holds_and_is_reported) {
     Scene *scene = scene_named("single");
     Counts counts;
-    TabulationTraining training = training_of(&counts);
+    HybridTraining training = training_of(&counts);
     training.limit = 40000;
-    Tabulation *memory = learn(scene, &training, NULL);
+    HybridMemory *memory = learn(scene, &training, NULL);
     assert_true(counts.full > 0);
-    assert_true(tabulation_bytes(memory) <= training.limit);
-    assert_true(tabulation_bytes(memory) + tabulation_entry_bytes(memory, 4) + 4096 > training.limit);
-    tabulation_destroy(memory);
+    assert_true(hybrid_memory_bytes(memory) <= training.limit);
+    assert_true(hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, 4) + 4096 > training.limit);
+    hybrid_memory_destroy(memory);
     scene_destroy(scene);
 }
 
 TEST(an_interrupted_learning_is_continued_with_the_same_bits) {
     Scene *scene = scene_named("single");
     Counts counts;
-    TabulationTraining training = training_of(&counts);
-    Tabulation *whole = learn(scene, &training, NULL);
+    HybridTraining training = training_of(&counts);
+    HybridMemory *whole = learn(scene, &training, NULL);
     training.state_path = temporary_path("state.npz");
     counts.launches = 0;
     int left = 77;
     const Progress progress = {stop_at, &left};
-    Tabulation *part = learn(scene, &training, &progress);
+    HybridMemory *part = learn(scene, &training, &progress);
     assert_int_equal(part->launches, 77);
     counts.launches = 77;
-    Tabulation *rest = learn(scene, &training, NULL);
+    HybridMemory *rest = learn(scene, &training, NULL);
     assert_same_memory(whole, rest);
     counts.launches = 0; /* another command begins again */
     training.command = "other";
     training.launches = 10;
-    tabulation_destroy(part);
+    hybrid_memory_destroy(part);
     part = learn(scene, &training, NULL);
     assert_int_equal(counts.launches, 10);
-    tabulation_destroy(whole);
-    tabulation_destroy(part);
-    tabulation_destroy(rest);
+    hybrid_memory_destroy(whole);
+    hybrid_memory_destroy(part);
+    hybrid_memory_destroy(rest);
     scene_destroy(scene);
 }
 
@@ -136,10 +136,10 @@ static void assert_same_end(Trajectory *a, Trajectory *b) {
 TEST(the_method_without_its_memory_is_its_twin) {
     Scene *scene = scene_named("single");
     Counts counts;
-    const TabulationTraining training = training_of(&counts);
-    Tabulation *memory = learn(scene, &training, NULL);
+    const HybridTraining training = training_of(&counts);
+    HybridMemory *memory = learn(scene, &training, NULL);
     const char *path = temporary_path("memory.npz");
-    assert_ok(tabulation_write(memory, path, &error), error);
+    assert_ok(hybrid_memory_write(memory, path, &error), error);
     scene->frames = 120;
     Scene bare = *scene;
     bare.network_count = 0;
@@ -158,7 +158,7 @@ TEST(the_method_without_its_memory_is_its_twin) {
         trajectory_destroy(without);
     }
     assert_true(answered > 0);
-    tabulation_destroy(memory);
+    hybrid_memory_destroy(memory);
     scene_destroy(scene);
 }
 

@@ -16,9 +16,9 @@ static inline void fill_projection(Projection *projection, uint32_t *seed) {
 }
 
 /* Random numbers everywhere; weights so small that no sum of inputs leaves tanh without a slope. */
-static inline SlotNetwork *make_slot_network(const SlotShape *shape, const Slot *slots, uint32_t *seed) {
+static inline SceneNet *make_scene_net(const SceneNetShape *shape, const Slot *slots, uint32_t *seed) {
     Error error = {0};
-    SlotNetwork *network = slot_network_create(shape, slots, &error);
+    SceneNet *network = scene_net_create(shape, slots, &error);
     assert_ok(network != NULL, error);
     fill_projection(&network->bomb_state, seed);
     fill_projection(&network->state, seed);
@@ -27,15 +27,15 @@ static inline SlotNetwork *make_slot_network(const SlotShape *shape, const Slot 
     fill(network->parameters, network->parameter_count, -0.1f, 0.1f, seed);
     fill(network->scale, (size_t)shape->slot_count, 0, 2, seed);
     fill(network->cap, (size_t)shape->slot_count, 0, 2, seed);
-    fill(network->low, (size_t)slot_network_inputs(network), -2, -1, seed);
-    fill(network->high, (size_t)slot_network_inputs(network), 1, 2, seed);
-    slot_network_pack(network);
+    fill(network->low, (size_t)scene_net_inputs(network), -2, -1, seed);
+    fill(network->high, (size_t)scene_net_inputs(network), 1, 2, seed);
+    scene_net_pack(network);
     return network;
 }
 
 /* No step is unlike its training. */
-static inline void let_know_all(SlotNetwork *network) {
-    for (int i = 0; i < slot_network_inputs(network); i++) {
+static inline void let_know_all(SceneNet *network) {
+    for (int i = 0; i < scene_net_inputs(network); i++) {
         network->low[i] = -1e30f;
         network->high[i] = 1e30f;
     }
@@ -45,4 +45,4 @@ static inline void let_know_all(SlotNetwork *network) {
 static const Slot five_slots[] = {{0, 2, 7}, {0, 2, 9},          {0, 4, 0}, {1, 2, 3}, {1, 2, 4},
                                   {1, 2, 5}, {1, 2, UINT32_MAX}, {2, 3, 1}, {2, 4, 7}};
 enum { FIVE_SLOTS = sizeof five_slots / sizeof five_slots[0] };
-static const SlotShape five_shape = {5, 3, FIVE_SLOTS, 16, 32, 48, 64};
+static const SceneNetShape five_shape = {5, 3, FIVE_SLOTS, 16, 32, 48, 64};

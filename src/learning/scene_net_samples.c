@@ -33,7 +33,7 @@ bool problem_copy(ContactProblem *copy, const ContactProblem *problem) {
 
 void problem_copy_free(ContactProblem *copy) { free((void *)copy->bodies); }
 
-static void free_sample(SlotSample *sample) {
+static void free_sample(SceneNetSample *sample) {
     problem_copy_free(&sample->problem);
     free(sample->reference);
     free(sample->goal);
@@ -42,40 +42,40 @@ static void free_sample(SlotSample *sample) {
     free(sample->inputs);
 }
 
-void slot_samples_free(SlotSamples *samples) {
+void scene_net_samples_free(SceneNetSamples *samples) {
     for (int i = 0; i < samples->count; i++) free_sample(&samples->items[i]);
     free(samples->items);
-    *samples = (SlotSamples){0};
+    *samples = (SceneNetSamples){0};
 }
 
-static bool reserve(SlotSamples *samples, int count) {
+static bool reserve(SceneNetSamples *samples, int count) {
     return array_reserve((void **)&samples->items, &samples->capacity, (size_t)samples->count + (size_t)count,
                          sizeof *samples->items);
 }
 
-bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int launch, int since) {
+bool scene_net_samples_add(SceneNetSamples *samples, const ContactProblem *problem, int launch, int since) {
     if (!reserve(samples, 1)) return false;
-    SlotSample *sample = &samples->items[samples->count++];
-    *sample = (SlotSample){.launch = launch, .since = since};
+    SceneNetSample *sample = &samples->items[samples->count++];
+    *sample = (SceneNetSample){.launch = launch, .since = since};
     return problem_copy(&sample->problem, problem);
 }
 
-bool slot_samples_move(SlotSamples *samples, SlotSamples *from) {
+bool scene_net_samples_move(SceneNetSamples *samples, SceneNetSamples *from) {
     if (!reserve(samples, from->count + 1)) return false;
     for (int i = 0; i < from->count; i++) samples->items[samples->count++] = from->items[i];
     samples->unconverged += from->unconverged;
     free(from->items);
-    *from = (SlotSamples){0};
+    *from = (SceneNetSamples){0};
     return true;
 }
 
 typedef struct Labels {
-    SlotSample *items;
+    SceneNetSample *items;
     Reference *references; /* [threads] */
 } Labels;
 
 /* Everything of a label but the goal's impulses. */
-static bool begin_label(SlotSample *sample, const ReferenceVelocity *velocities) {
+static bool begin_label(SceneNetSample *sample, const ReferenceVelocity *velocities) {
     const size_t bodies = (size_t)sample->problem.body_count, contacts = (size_t)sample->problem.contact_count;
     sample->reference = malloc(bodies * sizeof *sample->reference + 1);
     sample->goal = malloc(contacts * sizeof *sample->goal + 1);
@@ -88,7 +88,7 @@ static bool begin_label(SlotSample *sample, const ReferenceVelocity *velocities)
 
 static bool label(void *context, int i, Error *error) {
     const Labels *labels = context;
-    SlotSample *sample = &labels->items[i];
+    SceneNetSample *sample = &labels->items[i];
     Reference *reference = &labels->references[omp_get_thread_num()];
     if (!reference_solve(reference, &sample->problem, NULL, error)) return false;
     if (!reference_converged(reference)) return true; /* no label */
@@ -98,7 +98,7 @@ static bool label(void *context, int i, Error *error) {
     return true;
 }
 
-static void leave_out_unlabelled(SlotSamples *samples, int first) {
+static void leave_out_unlabelled(SceneNetSamples *samples, int first) {
     int kept = first;
     for (int i = first; i < samples->count; i++) {
         if (samples->items[i].goal != NULL)
@@ -110,7 +110,7 @@ static void leave_out_unlabelled(SlotSamples *samples, int first) {
     samples->count = kept;
 }
 
-bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error) {
+bool scene_net_samples_label(SceneNetSamples *samples, int first, const Progress *progress, Error *error) {
     const int threads = omp_get_max_threads();
     Reference *references = calloc((size_t)threads, sizeof *references);
     if (references == NULL) return error_memory(error, "labels");
@@ -123,16 +123,16 @@ bool slot_samples_label(SlotSamples *samples, int first, const Progress *progres
     return ok;
 }
 
-bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error) {
+bool scene_net_samples_compute_inputs(SceneNetSamples *samples, int first, const SceneNet *network, Error *error) {
     bool ok = true;
 #pragma omp parallel for schedule(dynamic, 64) reduction(&& : ok)
     for (int i = first; i < samples->count; i++) {
-        SlotSample *sample = &samples->items[i];
+        SceneNetSample *sample = &samples->items[i];
         bool fine = scene_view_take(&sample->view, network, &sample->problem);
         if (fine && sample->inputs == NULL)
-            sample->inputs = malloc((size_t)slot_network_inputs(network) * sizeof *sample->inputs);
+            sample->inputs = malloc((size_t)scene_net_inputs(network) * sizeof *sample->inputs);
         fine = fine && sample->inputs != NULL;
-        if (fine) slot_network_look(network, &sample->view.slots, sample->inputs);
+        if (fine) scene_net_look(network, &sample->view.slots, sample->inputs);
         ok = ok && fine;
     }
     return ok || error_memory(error, "samples");
@@ -188,16 +188,16 @@ bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, c
 }
 
 typedef struct Runs {
-    const SlotRollout *rollout;
+    const SceneNetRollout *rollout;
     World *prefix;
-    SlotSamples *samples; /* [launches] */
+    SceneNetSamples *samples; /* [launches] */
 } Runs;
 
 /* One launch. */
 typedef struct Run {
-    const SlotRollout *rollout;
+    const SceneNetRollout *rollout;
     int launch;
-    SlotSamples *samples;
+    SceneNetSamples *samples;
     Sweeps sweeps;
 } Run;
 
@@ -206,13 +206,13 @@ static bool keep_impact(void *context, const ContactProblem *problem, Phase phas
     if (phase != PHASE_IMPACT) return true;
     return (sweeps_begin_coloured(&run->sweeps, sweeps_best_kernel(), problem) &&
             (!residual_reaches(&run->sweeps, problem->contact_count, run->rollout->gate) ||
-             slot_samples_add(run->samples, problem, run->launch, since))) ||
+             scene_net_samples_add(run->samples, problem, run->launch, since))) ||
            error_memory(error, "samples");
 }
 
 static bool run_launch(void *context, int i, Error *error) {
     const Runs *runs = context;
-    const SlotRollout *rollout = runs->rollout;
+    const SceneNetRollout *rollout = runs->rollout;
     ContactSolver solver = {0};
     Run run = {.rollout = rollout, .launch = rollout->first_launch + i, .samples = &runs->samples[i]};
     const bool ok = rollout->make_solver(rollout->context, &solver, error) &&
@@ -223,7 +223,8 @@ static bool run_launch(void *context, int i, Error *error) {
     return ok;
 }
 
-bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progress *progress, Error *error) {
+bool scene_net_rollout(const SceneNetRollout *rollout, SceneNetSamples *samples, const Progress *progress,
+                       Error *error) {
     const size_t count = (size_t)rollout->launch_count;
     Runs runs = {.rollout = rollout, .samples = calloc(count, sizeof *runs.samples)};
     ContactSolver solver = {0};
@@ -234,8 +235,8 @@ bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progre
     ok = ok && runs.prefix != NULL &&
          parallel_for(&(ParallelWork){run_launch, &runs}, rollout->launch_count, "launches", progress, error);
     for (size_t i = 0; runs.samples != NULL && i < count; i++) {
-        if (ok) ok = slot_samples_move(samples, &runs.samples[i]) || error_memory(error, "samples");
-        slot_samples_free(&runs.samples[i]);
+        if (ok) ok = scene_net_samples_move(samples, &runs.samples[i]) || error_memory(error, "samples");
+        scene_net_samples_free(&runs.samples[i]);
     }
     world_destroy(runs.prefix);
     free(runs.samples);

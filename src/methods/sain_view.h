@@ -21,62 +21,61 @@
 #include <stddef.h>
 
 /* What a network knows of the engine. */
-typedef enum RelationForm {
-    RELATION_ENGINE,   /* its change of each body's velocity */
-    RELATION_ALONE,    /* nothing: an interaction network; the inputs on the engine are 0 */
-    RELATION_SHUFFLED, /* its change of another body's velocity: that of the moving body half a list further on */
-    RELATION_FORMS
-} RelationForm;
+typedef enum SainForm {
+    SAIN_WITH_ENGINE, /* its change of each body's velocity */
+    SAIN_ALONE,       /* nothing: an interaction network; the inputs on the engine are 0 */
+    SAIN_SHUFFLED,    /* its change of another body's velocity: that of the moving body half a list further on */
+    SAIN_FORMS
+} SainForm;
 
-#define RELATION_ENGINE_SETTINGS "k=10" /* of the method engine: as Box2D's own standard */
+#define SAIN_ENGINE_SETTINGS "k=10" /* of the method engine: as Box2D's own standard */
 
-extern const char *const relation_form_names[RELATION_FORMS + 1]; /* "on", "off", "shuffled"; ends in NULL */
+extern const char *const sain_form_names[SAIN_FORMS + 1]; /* "on", "off", "shuffled"; ends in NULL */
 
-enum { RELATION_PAIR_INPUTS = 27, RELATION_BODY_INPUTS = 10, RELATION_OUTPUTS = 3 };
+enum { SAIN_PAIR_INPUTS = 27, SAIN_BODY_INPUTS = 10, SAIN_OUTPUTS = 3 };
 
 /* A receiver. */
-typedef struct RelationBody {
+typedef struct SainBody {
     int body;          /* in the problem */
     int first, rows;   /* of its senders */
     Vec2 axis;         /* first axis of its frame, in the world */
     float radius;      /* m, of gyration: spins are multiplied by it */
     float pace, scale; /* m/s: of the inputs, of the outputs */
     BodyVelocity base; /* to which outputs are added */
-} RelationBody;
+} SainBody;
 
-/* Work space; zero-initialise, free with relation_view_free. */
-typedef struct RelationView {
+/* Work space; zero-initialise, free with sain_view_free. */
+typedef struct SainView {
     int body_count, row_count;
-    RelationBody *bodies; /* [body_count] by rising index in the problem */
-    float *pair_inputs;   /* [RELATION_PAIR_INPUTS, row_count] */
-    float *body_inputs;   /* [RELATION_BODY_INPUTS, body_count] */
+    SainBody *bodies;   /* [body_count] by rising index in the problem */
+    float *pair_inputs; /* [SAIN_PAIR_INPUTS, row_count] */
+    float *body_inputs; /* [SAIN_BODY_INPUTS, body_count] */
     /* while it is made: */
     BodyVelocity
         *changed; /* [bodies of the problem] velocities after what the engine did, as far as the form shows it */
     BodyVelocity *warmed; /* [bodies of the problem] velocities after the impulses of the step before */
     int *receivers;       /* [bodies of the problem] index in bodies, or -1 */
-    struct RelationRow *rows;
+    struct SainViewRow *rows;
     ArrayBlock arrays;
-} RelationView;
+} SainView;
 
-void relation_view_free(RelationView *view);
+void sain_view_free(SainView *view);
 
-/* Looks at a problem. engine: its velocities [problem->body_count] after the step; not used by RELATION_ALONE. False
+/* Looks at a problem. engine: its velocities [problem->body_count] after the step; not used by SAIN_ALONE. False
    when memory is short. Allocates nothing for a problem that is not larger than one before. */
-bool relation_view_make(RelationView *view, const ContactProblem *problem, const BodyVelocity *engine,
-                        RelationForm form);
+bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form);
 
 /* A vector of the world in the receiver's frame, and back. */
-static inline Vec2 relation_into_frame(const RelationBody *body, Vec2 v) {
+static inline Vec2 sain_into_frame(const SainBody *body, Vec2 v) {
     return vec2(vec2_dot(body->axis, v), vec2_cross(body->axis, v));
 }
 
-static inline Vec2 relation_out_of_frame(const RelationBody *body, Vec2 v) {
+static inline Vec2 sain_out_of_frame(const SainBody *body, Vec2 v) {
     return mat22_multiply((Mat22){body->axis, vec2(-body->axis.y, body->axis.x)}, v);
 }
 
-/* The velocity of a receiver for these outputs[RELATION_OUTPUTS]: base + scale * outputs, turned back. */
-BodyVelocity relation_corrected(const RelationBody *body, const float *outputs);
+/* The velocity of a receiver for these outputs[SAIN_OUTPUTS]: base + scale * outputs, turned back. */
+BodyVelocity sain_corrected(const SainBody *body, const float *outputs);
 
 /* The outputs that would give this velocity (double: a converged one), times the scale, m/s. */
-void relation_target(const RelationBody *body, double x, double y, double spin, double target[RELATION_OUTPUTS]);
+void sain_target(const SainBody *body, double x, double y, double spin, double target[SAIN_OUTPUTS]);

@@ -3,12 +3,12 @@
 #pragma once
 #include "random_problem.h"
 
-#include "nets/slot_networks.h"
+#include "nets/scene_net_layers.h"
 
 /* The network knows so large a share of the contacts, and a slot behind each that the problem lacks. Some warm impulses
    are below 0, as a problem's file may have them. */
-static inline SlotNetwork *make_slot_problem(RandomProblem *random, uint32_t *seed, int bodies, float density,
-                                             float share) {
+static inline SceneNet *make_scene_net_problem(RandomProblem *random, uint32_t *seed, int bodies, float density,
+                                               float share) {
     static Slot slots[2 * CONTACTS_MAX + 1];
     make_random(random, seed, bodies, density, 2);
     int count = 0;
@@ -24,6 +24,6 @@ static inline SlotNetwork *make_slot_problem(RandomProblem *random, uint32_t *se
         slots[count++] = (Slot){contact->a, contact->b, contact->feature + 1};
     }
     if (count == 0) slots[count++] = (Slot){0, 1, 0};
-    const SlotShape shape = {bodies, (int)uniform(seed, 0, (float)bodies - 0.01f), count, 16, 16, 16, 16};
-    return make_slot_network(&shape, slots, seed);
+    const SceneNetShape shape = {bodies, (int)uniform(seed, 0, (float)bodies - 0.01f), count, 16, 16, 16, 16};
+    return make_scene_net(&shape, slots, seed);
 }
