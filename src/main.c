@@ -82,7 +82,7 @@ static void limit_threads(void) {
 static bool ended; /* the command */
 
 /* The words begin with the one of the command. */
-static int run(const Command *command, int argc, char **argv) {
+static int main_run(const Command *command, int argc, char **argv) {
     char name[64];
     Error error = {0};
     snprintf(name, sizeof name, "twinbox %s", command->name);
@@ -127,5 +127,5 @@ int main(int argc, char **argv) {
     }
     if (command == NULL) return refuse_command(wanted);
     if (help) argv[2] = "--help";
-    return run(command, argc - 1, argv + 1);
+    return main_run(command, argc - 1, argv + 1);
 }

@@ -35,7 +35,7 @@ PRINTF_LIKE(2, 0) static void append(Error *error, const char *format, va_list a
 }
 
 PRINTF_LIKE(4, 0)
-static void set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
+static void base_set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
     if (error->kind != ERROR_NONE) return;
     error->kind = kind;
     const size_t length = visible_text(error->message, WHERE_SIZE, where, VISIBLE_ONE_LINE);
@@ -47,7 +47,7 @@ static void set(Error *error, ErrorKind kind, const char *where, const char *for
     bool name(Error *error, const char *where, const char *format, ...) { \
         va_list arguments;                                                \
         va_start(arguments, format);                                      \
-        set(error, kind, where, format, arguments);                       \
+        base_set(error, kind, where, format, arguments);                  \
         va_end(arguments);                                                \
         return false;                                                     \
     }
@@ -60,7 +60,7 @@ bool error_failure(Error *error, MethodFailure failure, const char *where, const
     va_list arguments;
     if (error->kind == ERROR_NONE) error->failure = failure;
     va_start(arguments, format);
-    set(error, ERROR_INPUT, where, format, arguments);
+    base_set(error, ERROR_INPUT, where, format, arguments);
     va_end(arguments);
     return false;
 }
@@ -130,7 +130,7 @@ static bool is_obeyed(uint32_t c) {
            (c >= 0x2066 && c <= 0x2069);
 }
 
-static Shown show(const char *text, VisibleLines lines) {
+static Shown base_show(const char *text, VisibleLines lines) {
     uint32_t c = 0;
     const unsigned byte = (unsigned char)text[0];
     const size_t read = utf8_decode(text, strnlen(text, 4), &c);
@@ -150,10 +150,10 @@ static Shown show(const char *text, VisibleLines lines) {
 }
 
 /* Shows text from *at while it is at most `most` bytes; moves *at behind it. */
-static size_t put(char *out, const char **at, size_t most, VisibleLines lines) {
+static size_t base_put(char *out, const char **at, size_t most, VisibleLines lines) {
     size_t length = 0;
     while (**at != '\0') {
-        const Shown shown = show(*at, lines);
+        const Shown shown = base_show(*at, lines);
         if (length + shown.length > most) break;
         if (out != NULL) memcpy(out + length, shown.text, shown.length);
         length += shown.length;
@@ -165,16 +165,16 @@ static size_t put(char *out, const char **at, size_t most, VisibleLines lines) {
 size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines) {
     static const char gap[] = "...";
     const char *at = text;
-    size_t left = put(NULL, &at, SIZE_MAX, lines), length = 0;
+    size_t left = base_put(NULL, &at, SIZE_MAX, lines), length = 0;
     at = text;
     if (left >= size) {
         const size_t half = (size - sizeof gap) / 2;
-        length = put(out, &at, half, lines);
-        for (left -= length; left > half; at += show(at, lines).read) left -= show(at, lines).length;
+        length = base_put(out, &at, half, lines);
+        for (left -= length; left > half; at += base_show(at, lines).read) left -= base_show(at, lines).length;
         memcpy(out + length, gap, sizeof gap - 1);
         length += sizeof gap - 1;
     }
-    length += put(out + length, &at, SIZE_MAX, lines);
+    length += base_put(out + length, &at, SIZE_MAX, lines);
     out[length] = '\0';
     return length;
 }
@@ -226,7 +226,7 @@ const char *nearest_word(const char *word, const char *const *words, int count) 
     return nearest;
 }
 
-static bool has(const NameList *list, const char *name, size_t length) {
+static bool base_has(const NameList *list, const char *name, size_t length) {
     for (const char *at = list->text; (at = strstr(at, name)) != NULL; at++) {
         bool begins = at == list->text || at[-1] == ' ', ends = at[length] == '\0' || at[length] == ',';
         if (begins && ends) return true;
@@ -236,7 +236,7 @@ static bool has(const NameList *list, const char *name, size_t length) {
 
 void name_list_add(NameList *list, const char *name) {
     size_t length = strlen(name);
-    if (length == 0 || list->used + length + 3 > sizeof list->text || has(list, name, length)) return;
+    if (length == 0 || list->used + length + 3 > sizeof list->text || base_has(list, name, length)) return;
     list->used += (size_t)snprintf(list->text + list->used, sizeof list->text - list->used, "%s%s",
                                    list->used > 0 ? ", " : "", name);
 }

@@ -53,11 +53,11 @@ typedef struct Reader {
     int max_rows;
 } Reader;
 
-static bool fail(const Reader *reader, int column, Error *error, const char *what) {
+static bool fail_csv(const Reader *reader, int column, Error *error, const char *what) {
     return csv_fail(reader->csv->path, reader->csv->rows + 1, column, error, "%s", what);
 }
 
-static char step(Reader *reader) {
+static char csv_step(Reader *reader) {
     reader->column += begins_character(*reader->at);
     return *reader->at++;
 }
@@ -66,25 +66,26 @@ static bool ends_field(const char *at) { return *at == ',' || *at == '\n' || *at
 
 static char *take_plain(Reader *reader, Error *error) {
     while (!ends_field(reader->at))
-        if (step(reader) == '"')
-            return fail(reader, reader->column - 1, error, "a quote inside a field that does not begin with one"), NULL;
+        if (csv_step(reader) == '"')
+            return fail_csv(reader, reader->column - 1, error, "a quote inside a field that does not begin with one"),
+                   NULL;
     return reader->at;
 }
 
 static char *take_quoted(Reader *reader, Error *error) {
     int start = reader->column;
     char *write = reader->at;
-    step(reader);
+    csv_step(reader);
     for (;;) {
         if (*reader->at == '\0' || *reader->at == '\n' || *reader->at == '\r')
-            return fail(reader, start, error, "this quote is not closed on its line"), NULL;
-        char c = step(reader);
+            return fail_csv(reader, start, error, "this quote is not closed on its line"), NULL;
+        char c = csv_step(reader);
         if (c == '"' && *reader->at != '"') break;
-        if (c == '"') step(reader);
+        if (c == '"') csv_step(reader);
         *write++ = c;
     }
     if (ends_field(reader->at)) return write;
-    return fail(reader, reader->column, error, "expected a comma after the closing quote"), NULL;
+    return fail_csv(reader, reader->column, error, "expected a comma after the closing quote"), NULL;
 }
 
 /* *separator is what ended the field: a comma, or the line. */
@@ -101,7 +102,7 @@ static bool take_field(Reader *reader, char *separator, Error *error) {
     if (*reader->at == '\r') reader->at++;
     /* The text's NUL may take the place of what ended it. */
     *separator = *reader->at;
-    if (*separator != '\0') step(reader);
+    if (*separator != '\0') csv_step(reader);
     *end = '\0';
     return true;
 }
@@ -111,7 +112,7 @@ static bool take_row(Reader *reader, Error *error) {
     reader->column = 1;
     if (csv->rows > reader->max_rows)
         return csv_fail(csv->path, csv->rows + 1, 1, error, "the table has more than %d rows", reader->max_rows);
-    if (*reader->at == '\n' || *reader->at == '\r') return fail(reader, 1, error, "the line is empty");
+    if (*reader->at == '\n' || *reader->at == '\r') return fail_csv(reader, 1, error, "the line is empty");
     size_t first = reader->count;
     char separator = ',';
     while (separator == ',')
@@ -127,7 +128,7 @@ static bool take_rows(Csv *csv, int min_rows, int max_rows, Error *error) {
     while (*reader.at != '\0')
         if (!take_row(&reader, error)) return false;
     return csv->rows > min_rows ||
-           fail(&reader, 1, error, csv->rows == 0 ? "the file is empty" : "the table has no rows");
+           fail_csv(&reader, 1, error, csv->rows == 0 ? "the file is empty" : "the table has no rows");
 }
 
 bool csv_read(Csv *csv, const char *path, size_t max_size, int min_rows, int max_rows, Error *error) {

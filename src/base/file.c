@@ -229,7 +229,7 @@ typedef struct Walk {
 } Walk;
 
 /* Adds `folder` + `name` + `ending`. */
-static bool add(FolderList *list, const char *folder, const char *name, const char *ending, Error *error) {
+static bool file_add(FolderList *list, const char *folder, const char *name, const char *ending, Error *error) {
     size_t size = strlen(folder) + strlen(name) + strlen(ending) + 1;
     char *whole = malloc(size);
     if (whole == NULL || !array_reserve((void **)&list->names, &list->capacity, list->count + 1, sizeof *list->names)) {
@@ -242,7 +242,7 @@ static bool add(FolderList *list, const char *folder, const char *name, const ch
 }
 
 static bool add_file(Walk *walk, const char *folder, const char *name, Error *error) {
-    if (walk->recursive || folder[0] == '\0') return add(walk->list, folder, name, "", error);
+    if (walk->recursive || folder[0] == '\0') return file_add(walk->list, folder, name, "", error);
     walk->list->skipped++;
     return true;
 }
@@ -278,7 +278,7 @@ static bool add_entry(Walk *walk, int at, const char *folder, const char *name, 
     if (fstatat(at, name, &status, AT_SYMLINK_NOFOLLOW) != 0)
         return error_system(error, name, "in %s/%s: cannot be read: %s", walk->root, folder, strerror(errno));
     if (S_ISLNK(status.st_mode)) return add_link(walk, at, folder, name, error);
-    if (S_ISDIR(status.st_mode)) return add(&walk->folders, folder, name, "/", error);
+    if (S_ISDIR(status.st_mode)) return file_add(&walk->folders, folder, name, "/", error);
     return !walk->wanted(name) || add_file(walk, folder, name, error);
 }
 

@@ -81,7 +81,7 @@ static bool close_after(int file, bool done) {
 }
 
 /* What close() would report, while the lock lasts. */
-static bool flush(int file, bool wait) {
+static bool file_write_flush(int file, bool wait) {
     if (wait && fsync(file) != 0) return false;
     const int copy = dup(file);
     return copy >= 0 && close(copy) == 0;
@@ -100,14 +100,14 @@ static bool place_new(int at, const char *path, const Contents *contents, bool w
     TemporaryFile new;
     temporary_sweep(at, path);
     if (!temporary_open(&new, at, path)) return false;
-    const bool done = write_contents(new.file, contents) && flush(new.file, wait) && place(&new, path);
+    const bool done = write_contents(new.file, contents) && file_write_flush(new.file, wait) && place(&new, path);
     temporary_close(&new);
     return done;
 }
 
-static bool replace(int at, const char *path, const Contents *contents, bool wait) {
+static bool file_write_replace(int at, const char *path, const Contents *contents, bool wait) {
     if (contents->draft >= 0 && at == AT_FDCWD) {
-        if (!flush(contents->draft, wait)) return false;
+        if (!file_write_flush(contents->draft, wait)) return false;
         temporary_sweep(at, path);
         if (place_draft(contents->draft, path)) return !wait || sync_folder(at, path);
     }
@@ -124,20 +124,20 @@ static bool write_into(int file, const Contents *contents) {
     return file >= 0 && close_after(file, write_contents(file, contents));
 }
 
-static bool put(const char *path, const Contents *contents, bool wait) {
+static bool file_write_put(const char *path, const Contents *contents, bool wait) {
     struct stat status;
     if (path_is_standard(path)) return write_into(dup(standard_output()), contents);
-    if (lstat(path, &status) != 0) return errno == ENOENT && replace(AT_FDCWD, path, contents, wait);
+    if (lstat(path, &status) != 0) return errno == ENOENT && file_write_replace(AT_FDCWD, path, contents, wait);
     bool is_link = S_ISLNK(status.st_mode);
     if (is_link && stat(path, &status) != 0) return false;
     if (is_standard_output(&status)) return write_into(dup(STDOUT_FILENO), contents);
     if (!S_ISREG(status.st_mode)) return write_into(open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC), contents);
-    if (!is_link) return replace(AT_FDCWD, path, contents, wait);
+    if (!is_link) return file_write_replace(AT_FDCWD, path, contents, wait);
     char target[PATH_MAX];
-    return realpath(path, target) != NULL && replace(AT_FDCWD, target, contents, wait);
+    return realpath(path, target) != NULL && file_write_replace(AT_FDCWD, target, contents, wait);
 }
 
-static bool finish(bool written, const char *path, size_t size, Error *error) {
+static bool file_write_finish(bool written, const char *path, size_t size, Error *error) {
     if (!written) return error_system(error, path, "cannot write: %s", file_make_cause(path, errno));
     trace_line("wrote %s, %zu bytes", path, size);
     return true;
@@ -145,11 +145,11 @@ static bool finish(bool written, const char *path, size_t size, Error *error) {
 
 bool file_append(const char *path, const void *data, size_t size, Error *error) {
     const int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666);
-    return finish(write_into(file, &(Contents){data, size, -1}), path, size, error);
+    return file_write_finish(write_into(file, &(Contents){data, size, -1}), path, size, error);
 }
 
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
-    return finish(put(path, &(Contents){data, size, -1}, true), path, size, error);
+    return file_write_finish(file_write_put(path, &(Contents){data, size, -1}, true), path, size, error);
 }
 
 bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
@@ -164,15 +164,15 @@ bool file_write_text(const char *path, void (*print)(FILE *out, const void *cont
 bool file_create(const char *path, const void *data, size_t size, Error *error) {
     const bool done = place_new(AT_FDCWD, path, &(Contents){data, size, -1}, true, temporary_link);
     if (!done && errno == EEXIST) return error_input(error, path, "exists already, and is not overwritten");
-    return finish(done && sync_folder(AT_FDCWD, path), path, size, error);
+    return file_write_finish(done && sync_folder(AT_FDCWD, path), path, size, error);
 }
 
 bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error) {
-    return finish(replace(folder, name, &(Contents){data, size, -1}, true), path, size, error);
+    return file_write_finish(file_write_replace(folder, name, &(Contents){data, size, -1}, true), path, size, error);
 }
 
 bool file_write_soon(const char *path, const void *data, size_t size, Error *error) {
-    return finish(put(path, &(Contents){data, size, -1}, false), path, size, error);
+    return file_write_finish(file_write_put(path, &(Contents){data, size, -1}, false), path, size, error);
 }
 
 bool file_remove(const char *path, Error *error) {
@@ -206,5 +206,5 @@ bool file_draft_write(int draft, const char *path, const void *data, size_t size
 
 bool file_draft_publish(int draft, const char *path, Error *error) {
     const off_t size = lseek(draft, 0, SEEK_END);
-    return finish(put(path, &(Contents){.draft = draft}, true), path, (size_t)size, error);
+    return file_write_finish(file_write_put(path, &(Contents){.draft = draft}, true), path, (size_t)size, error);
 }

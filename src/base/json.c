@@ -36,7 +36,7 @@ static void *memory_take(size_t size) {
 static void memory_keep(void *block) { (void)block; }
 
 /* json_loadb(); false when the memory is full. */
-static bool load(JsonMemory *memory, const char *text, size_t size, json_t **value, json_error_t *failure) {
+static bool json_load(JsonMemory *memory, const char *text, size_t size, json_t **value, json_error_t *failure) {
     json_malloc_t allocate;
     json_free_t release;
     json_get_alloc_funcs(&allocate, &release);
@@ -62,7 +62,7 @@ bool json_read_error(const JsonReader *reader, Error *error, const char *format,
     return error_input(error, where, "%s", text);
 }
 
-static void advance(JsonReader *reader, size_t size) {
+static void json_advance(JsonReader *reader, size_t size) {
     for (const char *to = reader->at + size; reader->at < to; reader->at++) {
         if (*reader->at == '\n') {
             reader->line++;
@@ -76,7 +76,7 @@ static void advance(JsonReader *reader, size_t size) {
 /* Errors refer to the place after the white space. */
 static void skip_space(JsonReader *reader) {
     while (reader->at < reader->end && *reader->at != '\0' && strchr(" \t\r\n", *reader->at) != NULL)
-        advance(reader, 1);
+        json_advance(reader, 1);
     reader->value_line = reader->line;
     reader->value_column = reader->column;
 }
@@ -97,12 +97,12 @@ const json_t *json_read_value(JsonReader *reader, Error *error) {
     json_error_t failure;
     skip_space(reader);
     size_t left = (size_t)(reader->end - reader->at), size = left < reader->most ? left : reader->most;
-    if (!load(reader->memory, reader->at, size, &value, &failure))
+    if (!json_load(reader->memory, reader->at, size, &value, &failure))
         return json_read_error(reader, error, "a value must take at most %zu bytes of memory",
                                reader->memory->room * sizeof *reader->memory->blocks),
                NULL;
     if (value != NULL)
-        advance(reader, (size_t)failure.position);
+        json_advance(reader, (size_t)failure.position);
     else if (size < left && (size_t)failure.position + 4 > size) /* or in the middle of a character of 4 bytes */
         json_read_error(reader, error, "a value must have at most %zu bytes", reader->most);
     else
@@ -113,7 +113,7 @@ const json_t *json_read_value(JsonReader *reader, Error *error) {
 bool json_read_char(JsonReader *reader, char c) {
     skip_space(reader);
     if (reader->at == reader->end || *reader->at != c) return false;
-    advance(reader, 1);
+    json_advance(reader, 1);
     return true;
 }
 
@@ -127,8 +127,8 @@ bool json_read_end(JsonReader *reader, Error *error) {
     return reader->at == reader->end || json_read_error(reader, error, "end of file expected");
 }
 
-static bool begin(JsonReader *reader, const char *name, const char *text, size_t size, size_t most, size_t memory,
-                  Error *error) {
+static bool json_begin(JsonReader *reader, const char *name, const char *text, size_t size, size_t most, size_t memory,
+                       Error *error) {
     *reader = (JsonReader){.path = name, .at = text, .end = text + size, .most = most};
     reader->line = reader->column = reader->value_line = reader->value_column = 1;
     reader->memory = malloc(sizeof *reader->memory + memory);
@@ -138,14 +138,15 @@ static bool begin(JsonReader *reader, const char *name, const char *text, size_t
 }
 
 bool json_read_text(JsonReader *reader, const char *name, const char *text, size_t size, Error *error) {
-    return begin(reader, name, text, size, size, JSON_VALUE_MEMORY + JSON_TEXT_TIMES * size, error);
+    return json_begin(reader, name, text, size, size, JSON_VALUE_MEMORY + JSON_TEXT_TIMES * size, error);
 }
 
 bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error) {
     size_t size;
     char *text = file_read(path, max_size, &size, error);
     if (text == NULL) return false;
-    if (begin(reader, path, text, size, JSON_VALUE_SIZE, JSON_VALUE_MEMORY, error)) return reader->text = text, true;
+    if (json_begin(reader, path, text, size, JSON_VALUE_SIZE, JSON_VALUE_MEMORY, error))
+        return reader->text = text, true;
     free(text);
     return false;
 }

@@ -121,7 +121,7 @@ static void wait_until(Background *background, bool idle) {
         pthread_cond_wait(&background->changed, &background->mutex);
 }
 
-static void *run(void *argument) {
+static void *machine_run(void *argument) {
     Background *background = argument;
     pthread_mutex_lock(&background->mutex);
     for (wait_until(background, false); background->item != NULL; wait_until(background, false)) {
@@ -144,7 +144,7 @@ Background *background_start(BackgroundWork *work, void *context, Error *error) 
     background->context = context;
     pthread_mutex_init(&background->mutex, NULL);
     pthread_cond_init(&background->changed, NULL);
-    const int cause = pthread_create(&background->thread, NULL, run, background);
+    const int cause = pthread_create(&background->thread, NULL, machine_run, background);
     if (cause == 0) return background;
     error_system(error, "second thread", "cannot be started: %s", strerror(cause));
     pthread_cond_destroy(&background->changed);
@@ -217,7 +217,7 @@ static int spawn(pid_t *pid, const char *const *argv, const int streams[3], cons
     return code;
 }
 
-static bool start(Process *process, const char *const *argv, int child_input, Error *error) {
+static bool machine_start(Process *process, const char *const *argv, int child_input, Error *error) {
     const int output = fileno(process->output);
     const int code = spawn(&process->pid, argv, (const int[]){child_input, output, output}, NULL);
     if (code == 0) return true;
@@ -245,7 +245,7 @@ bool process_start(Process *process, const char *const *argv, Error *error) {
     fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(ends[1], F_SETFD, FD_CLOEXEC);
     *process = (Process){.name = argv[0], .input = ends[0], .output = open_output()};
-    bool ok = process->output != NULL ? start(process, argv, ends[1], error)
+    bool ok = process->output != NULL ? machine_start(process, argv, ends[1], error)
                                       : error_system(error, argv[0], "no temporary file in %s: %s",
                                                      temporary_files_folder(), strerror(errno));
     close(ends[1]);
@@ -316,7 +316,7 @@ enum { TALKS_MAX = 4096 };
 static atomic_int talking[TALKS_MAX]; /* process ids; 0: free */
 static atomic_int starting;
 
-static bool remember(pid_t pid) {
+static bool machine_remember(pid_t pid) {
     for (int i = 0; i < TALKS_MAX; i++) {
         int none = 0;
         if (atomic_compare_exchange_strong(&talking[i], &none, (int)pid)) return true;
@@ -361,7 +361,7 @@ static int spawn_talk(pid_t *pid, const char *const *argv, const int streams[3])
     pthread_sigmask(SIG_BLOCK, &all, &before);
     atomic_fetch_add(&starting, 1);
     int code = spawn(pid, argv, streams, &before);
-    if (code == 0 && !remember(*pid)) {
+    if (code == 0 && !machine_remember(*pid)) {
         kill_program(*pid);
         wait_briefly(*pid);
         code = EAGAIN;

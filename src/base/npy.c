@@ -85,7 +85,7 @@ PRINTF_LIKE(2, 3) static bool refuse(char reason[NPY_REASON_SIZE], const char *f
 }
 
 /* Skips `word` if the text continues with it. */
-static bool take(const char **text, const char *word) {
+static bool npy_take(const char **text, const char *word) {
     size_t length = strlen(word);
     if (strncmp(*text, word, length) != 0) return false;
     *text += length;
@@ -105,7 +105,7 @@ static bool take_type(const char **text, NpyHead *head) {
     head->big_endian = **text == '>';
     for (head->type = NPZ_FLOAT32; head->type <= NPZ_TEXT; head->type++) {
         const char *code = types[head->type].code, *rest = *text + 1;
-        if ((**text != code[0] && (!head->big_endian || code[0] != '<')) || !take(&rest, code + 1)) continue;
+        if ((**text != code[0] && (!head->big_endian || code[0] != '<')) || !npy_take(&rest, code + 1)) continue;
         *text = rest;
         return head->type != NPZ_TEXT || take_number(text, &head->characters);
     }
@@ -114,32 +114,32 @@ static bool take_type(const char **text, NpyHead *head) {
 
 /* "()", "(3,)", "(3, 2)". Counts all dimensions; head->shape has the first ones. */
 static bool take_shape(const char **text, NpyHead *head) {
-    if (take(text, "()")) return true;
-    if (!take(text, "(")) return false;
+    if (npy_take(text, "()")) return true;
+    if (!npy_take(text, "(")) return false;
     do {
         int64_t size;
         if (!take_number(text, &size)) return false;
         if (head->rank < NPZ_MAX_RANK) head->shape[head->rank] = size;
         head->rank++;
-    } while (take(text, ", "));
-    return (head->rank > 1 || take(text, ",")) && take(text, ")");
+    } while (npy_take(text, ", "));
+    return (head->rank > 1 || npy_take(text, ",")) && npy_take(text, ")");
 }
 
 /* Reads the dictionary and the blanks up to the line feed. */
 static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_REASON_SIZE]) {
-    head->is_foreign = take(&text, "{'descr': [");
+    head->is_foreign = npy_take(&text, "{'descr': [");
     if (head->is_foreign) return refuse(reason, "not a plain array");
-    if (!take(&text, "{'descr': '")) return refuse(reason, "with a damaged header");
+    if (!npy_take(&text, "{'descr': '")) return refuse(reason, "with a damaged header");
     const char *type = text;
     if (!take_type(&text, head) || *text != '\'') {
         head->is_foreign = true;
         int length = (int)strspn(type, "<>|=?abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789[]");
         return refuse(reason, "of the unsupported type '%.*s'", length < 32 ? length : 32, type);
     }
-    if (!take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged header");
-    head->fortran = take(&text, "True");
-    if ((!head->fortran && !take(&text, "False")) || !take(&text, ", 'shape': ") || !take_shape(&text, head) ||
-        !take(&text, ", }"))
+    if (!npy_take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged header");
+    head->fortran = npy_take(&text, "True");
+    if ((!head->fortran && !npy_take(&text, "False")) || !npy_take(&text, ", 'shape': ") || !take_shape(&text, head) ||
+        !npy_take(&text, ", }"))
         return refuse(reason, "with a damaged header");
     text += strspn(text, " ");
     if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged header");
@@ -204,7 +204,7 @@ static Number load_half(const void *item) {
     return (Number)copysign(size, bits >> 15 ? -1 : 1);
 }
 
-static Number load(NpzType type, const void *item) {
+static Number npy_load(NpzType type, const void *item) {
     switch (type) {
     case NPZ_FLOAT16: return load_half(item);
     case NPZ_FLOAT32: LOAD(float);
@@ -230,7 +230,7 @@ static Number load(NpzType type, const void *item) {
     } while (0)
 
 /* False if the number does not fit. */
-static bool store(NpzType type, Number number, void *item) {
+static bool npy_store(NpzType type, Number number, void *item) {
     switch (type) {
     case NPZ_FLOAT32:
         memcpy(item, &(float){(float)number}, sizeof(float));
@@ -279,8 +279,8 @@ bool npy_convert(const NpyHead *head, const void *data, NpzType type, void *conv
     const bool reordered = head->fortran && head->rank > 1;
     for (size_t i = 0; i < count; i++) {
         size_t at = reordered ? fortran_index(head, i) : i;
-        const Number number = load(head->type, (const char *)data + at * from);
-        if (!store(type, number, (char *)converted + i * to)) return refuse_number(head, i, number, type, reason);
+        const Number number = npy_load(head->type, (const char *)data + at * from);
+        if (!npy_store(type, number, (char *)converted + i * to)) return refuse_number(head, i, number, type, reason);
     }
     return true;
 }

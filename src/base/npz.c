@@ -30,7 +30,7 @@ struct NpzFile {
 };
 
 /* NULL if no array has this name. */
-static const StoredArray *find(const NpzFile *file, const char *name) {
+static const StoredArray *npz_find(const NpzFile *file, const char *name) {
     for (int64_t i = 0; i < file->count; i++)
         if (strcmp(file->arrays[i].name, name) == 0) return &file->arrays[i];
     return NULL;
@@ -44,7 +44,7 @@ static bool take_name(NpzFile *file, const char *member, char name[NPZ_NAME_SIZE
     if (!plain || strcmp(member + length - 4, ".npy") != 0)
         return error_input(error, file->path, "holds a member that is not a named .npy array");
     memcpy(name, member, length - 4);
-    if (find(file, name) != NULL) return error_input(error, file->path, "holds array '%s' twice", name);
+    if (npz_find(file, name) != NULL) return error_input(error, file->path, "holds array '%s' twice", name);
     return true;
 }
 
@@ -121,7 +121,7 @@ const char *npz_name(const NpzFile *file, size_t index) {
 
 const char *npz_path(const NpzFile *file) { return file->path; }
 
-bool npz_has(const NpzFile *file, const char *name) { return find(file, name) != NULL; }
+bool npz_has(const NpzFile *file, const char *name) { return npz_find(file, name) != NULL; }
 
 static bool is_stored_as(const NpyHead *head, NpzType type, int rank) {
     return head->type == type && head->rank == rank && !head->big_endian && !(head->fortran && rank > 1);
@@ -134,7 +134,7 @@ static bool is_convertible(const NpyHead *head, NpzType type, int rank) {
 }
 
 static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {
-    const StoredArray *array = find(file, name);
+    const StoredArray *array = npz_find(file, name);
     if (array == NULL) {
         error_input(error, file->path, "has no array '%s'", name);
         return NULL;
@@ -191,7 +191,7 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
 }
 
 /* Replaces `data`, which it frees, by a block of the type. */
-static void *convert(NpzFile *file, const StoredArray *array, void *data, NpzType type, Error *error) {
+static void *convert_npz(NpzFile *file, const StoredArray *array, void *data, NpzType type, Error *error) {
     size_t size = npy_count(&array->head) * npy_type_size(type);
     char reason[NPY_REASON_SIZE];
     void *converted = malloc(size > 0 ? size : 1);
@@ -235,12 +235,13 @@ void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const in
     const uint64_t converted = npy_count(&array->head) * npy_type_size(type), stored = array->head.data_size;
     if (converted > stored && !spend(file, converted - stored, error)) return NULL;
     void *data = read_data(file, array, error);
-    return data == NULL || is_stored_as(&array->head, type, array->head.rank) ? data
-                                                                              : convert(file, array, data, type, error);
+    return data == NULL || is_stored_as(&array->head, type, array->head.rank)
+               ? data
+               : convert_npz(file, array, data, type, error);
 }
 
 /* Appends one character; false if it is not one (NUL, surrogate, too large), or has no room with a NUL behind it. */
-static bool append(uint32_t character, char *text, size_t *used, size_t size) {
+static bool npz_append(uint32_t character, char *text, size_t *used, size_t size) {
     char bytes[4];
     if (character == 0 || character > 0x10ffff || (character >= 0xd800 && character < 0xe000)) return false;
     size_t length = utf8_put(bytes, character);
@@ -262,7 +263,7 @@ bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Err
     while (count > 0 && characters[count - 1] == 0) count--;
     size_t used = 0;
     bool done = true;
-    for (int64_t i = 0; done && i < count; i++) done = append(characters[i], text, &used, size);
+    for (int64_t i = 0; done && i < count; i++) done = npz_append(characters[i], text, &used, size);
     text[used] = '\0';
     free(characters);
     return done || error_input(error, file->path, "text '%s' is damaged, or longer than %zu bytes", name, size - 1);

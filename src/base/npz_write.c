@@ -217,7 +217,7 @@ static bool add_size(Zip *zip, uint64_t size, Error *error) {
     return true;
 }
 
-static bool put(Zip *zip, const void *data, size_t size, Error *error) {
+static bool npz_write_put(Zip *zip, const void *data, size_t size, Error *error) {
     return add_size(zip, size, error) && file_draft_write(zip->draft, zip->path, data, size, error);
 }
 
@@ -225,7 +225,8 @@ static bool put(Zip *zip, const void *data, size_t size, Error *error) {
 static bool zip_begin(Zip *zip, Member *member, Error *error) {
     member->offset = (uint32_t)zip->used;
     Record header = local_header(member);
-    return put(zip, header.bytes, header.used, error) && put(zip, member->name, strlen(member->name), error);
+    return npz_write_put(zip, header.bytes, header.used, error) &&
+           npz_write_put(zip, member->name, strlen(member->name), error);
 }
 
 static bool overwrite(int file, const unsigned char *data, size_t size, off_t at) {
@@ -254,7 +255,8 @@ static bool zip_end(Zip *zip, Member *member, uint32_t crc, uint64_t size, uint6
 /* After the last member: the entry of each in the directory, then the end of the directory that began at `start`. */
 static bool zip_list(Zip *zip, const Member *member, Error *error) {
     Record entry = directory_entry(member);
-    return put(zip, entry.bytes, entry.used, error) && put(zip, member->name, strlen(member->name), error);
+    return npz_write_put(zip, entry.bytes, entry.used, error) &&
+           npz_write_put(zip, member->name, strlen(member->name), error);
 }
 
 static bool zip_finish(Zip *zip, int count, uint64_t start, Error *error) {
@@ -268,7 +270,7 @@ static bool zip_finish(Zip *zip, int count, uint64_t start, Error *error) {
     put32(&end, (uint32_t)start);
     put16(&end, 0); /* comment */
     assert(end.used == END_SIZE);
-    return put(zip, end.bytes, end.used, error);
+    return npz_write_put(zip, end.bytes, end.used, error);
 }
 
 /* An array of the stream. */
@@ -336,7 +338,7 @@ static bool decode_text(Column *column, const NpzArray *array, const char *path,
     return true;
 }
 
-static bool measure(NpzStream *stream, Column *column, Error *error) {
+static bool npz_write_measure(NpzStream *stream, Column *column, Error *error) {
     return npy_measure(&column->head) || error_input(error, stream->zip.path, "cannot store '%.*s': larger than 2 GiB",
                                                      (int)strlen(column->member.name) - 4, column->member.name);
 }
@@ -353,11 +355,11 @@ int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error) {
     if (array->type == NPZ_TEXT && !decode_text(column, array, stream->zip.path, error)) return -1;
     if (array->data == NULL && array->rank > 0) {
         column->head.shape[0] = 1;
-        if (!measure(stream, column, error)) return -1;
+        if (!npz_write_measure(stream, column, error)) return -1;
         column->row_size = column->head.data_size;
         column->head.shape[0] = array->shape[0];
     }
-    return measure(stream, column, error) ? stream->count - 1 : -1;
+    return npz_write_measure(stream, column, error) ? stream->count - 1 : -1;
 }
 
 /* What was kept and all that follows goes into a file. */
@@ -376,7 +378,7 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
     assert(array >= 0 && array < stream->count && column->data == NULL);
     size_t size = (size_t)((uint64_t)count * column->row_size);
     column->head.shape[0] += count;
-    if (!measure(stream, column, error)) return false;
+    if (!npz_write_measure(stream, column, error)) return false;
     if (size == 0) return true;
     if (column->spill < 0 && column->used + size >= NPZ_LARGE && !spill(stream, column, error)) return false;
     if (column->spill >= 0) return pack_put(&column->pack, rows, size, error);

@@ -50,7 +50,7 @@ typedef struct Number {
 } Number;
 
 /* The number of a text that is known to begin with a decimal. */
-static bool convert(const char *text, Number *number) {
+static bool parse_convert(const char *text, Number *number) {
     locale_t previous = enter_c_locale();
     if (previous == (locale_t)0) return false;
     *number = (Number){strtof(text, NULL), strtod(text, NULL)};
@@ -63,7 +63,7 @@ static bool take_number(const char *text, char terminator, Number *number, const
     const char *end = decimal_end(text);
     if (end == NULL || *end != terminator) return false;
     *rest = end + 1;
-    return convert(text, number);
+    return parse_convert(text, number);
 }
 
 bool parse_float(const char *text, float *value) {
@@ -90,7 +90,7 @@ bool parse_double(const char *text, double *value) {
 bool parse_leading_double(const char *text, double *value, const char **rest) {
     Number number;
     const char *end = decimal_end(text);
-    if (end == NULL || !convert(text, &number)) return false;
+    if (end == NULL || !parse_convert(text, &number)) return false;
     *value = number.full;
     *rest = end;
     return true;
@@ -139,7 +139,7 @@ float range_value(const FloatRange *range, int i) {
 
 /* The settings of a method. */
 
-static const Setting *find(const Settings *settings, const char *key) {
+static const Setting *parse_find(const Settings *settings, const char *key) {
     for (int i = 0; i < settings->count; i++)
         if (strcmp(settings->items[i].key, key) == 0) return &settings->items[i];
     return NULL;
@@ -173,7 +173,7 @@ static bool parse_item(Settings *settings, const char *item, size_t length, cons
     memcpy(setting.value, equals + 1, value_length);
     if (!settings_known(known, setting.key) && !settings_known(known, "*"))
         return unknown_key(known, setting.key, where, error);
-    if (find(settings, setting.key) != NULL)
+    if (parse_find(settings, setting.key) != NULL)
         return error_input(error, where, "setting '%s' is given twice", setting.key);
     if (settings->count == SETTINGS_MAX) return error_input(error, where, "more than %d settings", SETTINGS_MAX);
     settings->items[settings->count++] = setting;
@@ -192,12 +192,12 @@ bool settings_parse(Settings *settings, const char *text, const SettingSpec *kno
 }
 
 const char *settings_get(const Settings *settings, const char *key) {
-    const Setting *setting = find(settings, key);
+    const Setting *setting = parse_find(settings, key);
     return setting == NULL ? NULL : setting->value;
 }
 
 bool settings_default(Settings *settings, const char *key, const char *value) {
-    if (find(settings, key) != NULL) return true;
+    if (parse_find(settings, key) != NULL) return true;
     if (settings->count == SETTINGS_MAX || strlen(key) >= SETTING_KEY_SIZE || strlen(value) >= SETTING_VALUE_SIZE)
         return false;
     Setting *setting = &settings->items[settings->count++];

@@ -13,7 +13,7 @@ typedef struct MemoryStream {
     bool full;
 } MemoryStream;
 
-static bool reserve(MemoryStream *stream, size_t wanted) {
+static bool stream_reserve(MemoryStream *stream, size_t wanted) {
     if (wanted <= stream->capacity) return true;
     size_t capacity = stream->capacity;
     while (capacity < wanted) capacity *= 2;
@@ -24,10 +24,10 @@ static bool reserve(MemoryStream *stream, size_t wanted) {
     return true;
 }
 
-static ssize_t add(void *cookie, const char *data, size_t size) {
+static ssize_t stream_add(void *cookie, const char *data, size_t size) {
     MemoryStream *stream = cookie;
     /* A text without its middle would be worse than one without its end. */
-    stream->full = stream->full || !reserve(stream, *stream->size + size + 1);
+    stream->full = stream->full || !stream_reserve(stream, *stream->size + size + 1);
     if (stream->full) return 0;
     memcpy(*stream->text + *stream->size, data, size);
     *stream->size += size;
@@ -36,14 +36,14 @@ static ssize_t add(void *cookie, const char *data, size_t size) {
 }
 
 /* For ftell(). */
-static int tell(void *cookie, off64_t *offset, int whence) {
+static int stream_tell(void *cookie, off64_t *offset, int whence) {
     const MemoryStream *stream = cookie;
     if (whence == SEEK_SET || *offset != 0) return -1;
     *offset = (off64_t)*stream->size;
     return 0;
 }
 
-static int end(void *cookie) {
+static int stream_end(void *cookie) {
     free(cookie);
     return 0;
 }
@@ -54,7 +54,8 @@ FILE *memory_stream(char **text, size_t *size) {
     char *first = malloc(FIRST);
     FILE *file = NULL;
     if (stream != NULL && first != NULL)
-        file = fopencookie(stream, "w", (cookie_io_functions_t){.write = add, .seek = tell, .close = end});
+        file = fopencookie(stream, "w",
+                           (cookie_io_functions_t){.write = stream_add, .seek = stream_tell, .close = stream_end});
     if (file == NULL) {
         free(first);
         free(stream);

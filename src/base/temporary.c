@@ -199,7 +199,7 @@ static bool same_file(const struct stat *a, const struct stat *b) {
 }
 
 /* Whether this folder is met for the first time. The oldest of many is forgotten. */
-static bool remember(const struct stat *folder) {
+static bool temporary_remember(const struct stat *folder) {
     bool known = false;
     pthread_mutex_lock(&swept.mutex);
     for (int i = 0; i < swept.count && i < REMEMBERED; i++) known = known || same_file(&swept.folders[i], folder);
@@ -223,7 +223,7 @@ static void remove_dead(int folder, const char *name, bool (*lock)(int)) {
 static bool lock_now(int file) { return flock(file, LOCK_EX | LOCK_NB) == 0; }
 
 /* Reservations have no owner in their names. A temporary file may be in use by children of a process that has ended. */
-static void visit(int folder, const char *name) {
+static void temporary_visit(int folder, const char *name) {
     static const char start[] = ".twinbox-";
     const char *owner = name + sizeof start - 1;
     if (strncmp(name, start, sizeof start - 1) != 0 || !file_name_ends_with(name, ".tmp")) return;
@@ -240,12 +240,12 @@ void temporary_sweep(int at, const char *path) {
     if (snprintf(name, sizeof name, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".") >= PATH_MAX) return;
     const int folder = openat(at, name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder < 0) return;
-    DIR *entries = fstat(folder, &status) == 0 && remember(&status) ? fdopendir(folder) : NULL;
+    DIR *entries = fstat(folder, &status) == 0 && temporary_remember(&status) ? fdopendir(folder) : NULL;
     if (entries == NULL) {
         close(folder);
         return;
     }
-    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) visit(folder, entry->d_name);
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) temporary_visit(folder, entry->d_name);
     closedir(entries);
 }
 
@@ -270,7 +270,7 @@ static long find_holder(const struct stat *file) {
     return holder > 0 && (kill((pid_t)holder, 0) == 0 || errno == EPERM) ? holder : 0;
 }
 
-static bool refuse(const char *path, const char *what, long holder, Error *error) {
+static bool temporary_refuse(const char *path, const char *what, long holder, Error *error) {
     char name[48] = "another process";
     if (holder > 0) snprintf(name, sizeof name, "another process (%ld)", holder);
     return error_system(error, path, "%s %s; wait until it ends, or choose another name", name, what);
@@ -289,7 +289,7 @@ static bool take_lock(int file, const char *path, const char *what, Error *error
         if (fstat(file, &status) != 0) return error_system(error, path, "cannot be locked: %s", strerror(errno));
         const long holder = find_holder(&status);
         if (clock_seconds() - begun > (holder > 0 ? patience : patience_with_children))
-            return refuse(path, what, holder, error);
+            return temporary_refuse(path, what, holder, error);
         nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
     }
     return true;
@@ -362,7 +362,7 @@ static bool is_reserved(const struct stat *folder) {
 }
 
 /* Of more, the oldest is given back. */
-static void keep(int file, const struct stat *folder) {
+static void temporary_keep(int file, const struct stat *folder) {
     const int place = reserved.count++ % FOLDERS;
     if (reserved.count > FOLDERS) close(reserved.files[place]);
     reserved.files[place] = file;
@@ -383,7 +383,7 @@ bool folder_reserve(const char *folder, Error *error) {
     const bool known = is_reserved(&status),
                done = known || take_lock(file, folder, "is writing into this folder", error);
     if (done && !known)
-        keep(file, &status);
+        temporary_keep(file, &status);
     else
         close(file);
     return done;

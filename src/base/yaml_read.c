@@ -99,7 +99,7 @@ typedef struct Builder {
     Place place;              /* of the last event that had one */
 } Builder;
 
-static bool fail(const Builder *builder, Error *error, const char *what) {
+static bool yaml_read_fail(const Builder *builder, Error *error, const char *what) {
     return source_error(&builder->tree->source, builder->place, error, "%s", what);
 }
 
@@ -130,7 +130,8 @@ static bool add_node(Builder *builder, YamlKind kind, Error *error) {
 
 static bool add_scalar(Builder *builder, const void *text, size_t length, Error *error) {
     if (!add_node(builder, YAML_SCALAR, error)) return false;
-    if (memchr(text, '\0', length) != NULL) return fail(builder, error, "a text must not contain the character \\0");
+    if (memchr(text, '\0', length) != NULL)
+        return yaml_read_fail(builder, error, "a text must not contain the character \\0");
     void *texts = builder->tree->texts;
     bool room = array_reserve(&texts, &builder->text_capacity, builder->text_size + length + 1, 1);
     builder->tree->texts = texts;
@@ -158,8 +159,8 @@ static void close_node(Builder *builder) {
 
 /* Aliases need an anchor before them, so without anchors there are no valid aliases. */
 static bool refuse_extras(const Builder *builder, const void *anchor, const void *tag, Error *error) {
-    if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed");
-    return tag == NULL || fail(builder, error, "tags (!) are not allowed");
+    if (anchor != NULL) return yaml_read_fail(builder, error, "anchors (&) are not allowed");
+    return tag == NULL || yaml_read_fail(builder, error, "tags (!) are not allowed");
 }
 
 /* `dt:` without a value; `dt: ""` has one. */
@@ -185,7 +186,7 @@ static bool take_event(Builder *builder, const yaml_event_t *event, Error *error
     if (!is_missing_value(event)) builder->place = place_of_event(event);
     switch (event->type) {
     case YAML_DOCUMENT_START_EVENT:
-        return ++builder->documents == 1 || fail(builder, error, "a file must hold one document only");
+        return ++builder->documents == 1 || yaml_read_fail(builder, error, "a file must hold one document only");
     case YAML_MAPPING_START_EVENT:
         return refuse_extras(builder, event->data.mapping_start.anchor, event->data.mapping_start.tag, error) &&
                open_node(builder, YAML_MAPPING, error);
@@ -197,7 +198,7 @@ static bool take_event(Builder *builder, const yaml_event_t *event, Error *error
     case YAML_SCALAR_EVENT:
         return refuse_extras(builder, event->data.scalar.anchor, event->data.scalar.tag, error) &&
                add_scalar(builder, event->data.scalar.value, event->data.scalar.length, error);
-    case YAML_ALIAS_EVENT: return fail(builder, error, "aliases (*) are not allowed");
+    case YAML_ALIAS_EVENT: return yaml_read_fail(builder, error, "aliases (*) are not allowed");
     default: return true;
     }
 }

@@ -89,7 +89,7 @@ static bool check_limits(CheckedRun *checked, Error *error) {
     return true;
 }
 
-static void print(const CheckedRun *checked) {
+static void check_run_print(const CheckedRun *checked) {
     const Trajectory *run = checked->run;
     printf("%s by %s: %d steps of %g s, %d bodies (%s)\n", run->scene, run->method, run->frames - 1, (double)run->dt,
            run->bodies, checked->options->path);
@@ -115,7 +115,7 @@ bool check_run(const CheckRunOptions *options, Error *error) {
     if (ok && options->json)
         ok = json_output("twinbox check run 1", write_checked, &checked, error);
     else if (ok)
-        print(&checked);
+        check_run_print(&checked);
     judged_run_free(&checked.judged);
     trajectory_destroy(run);
     return ok && checked.failed == 0;

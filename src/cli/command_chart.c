@@ -86,7 +86,7 @@ static bool write_page(Pages *pages, const Contender *contender, const WorstLaun
     return done;
 }
 
-static LaunchPage describe(const Pages *pages, const Contender *contender, const WorstLaunch *worst, int phase) {
+static LaunchPage chart_describe(const Pages *pages, const Contender *contender, const WorstLaunch *worst, int phase) {
     const Launch launch = pages->study.launches[worst->launch];
     return (LaunchPage){.scene = pages->study.scene->name,
                         .method = contender->name,
@@ -114,7 +114,7 @@ static void end_scene(Pages *pages) {
 }
 
 /* Parts are the contenders of scene after scene. */
-static bool enter(Pages *pages, int part, Error *error) {
+static bool chart_enter(Pages *pages, int part, Error *error) {
     int scene = 0, first = 0;
     while (part >= first + pages->scenes[scene].contenders) first += pages->scenes[scene++].contenders;
     pages->contender = part - first;
@@ -134,14 +134,14 @@ static bool write_contender(void *context, int part, FILE *rows, const Progress 
     WorstLaunch worst[PHASES];
     PageFile file = {0};
     char link[PAGE_LINK_SIZE];
-    if (!enter(pages, part, error)) return false;
+    if (!chart_enter(pages, part, error)) return false;
     const Contender *contender = pages->study.contenders[pages->contender];
     if (!worst_launch_find(&pages->study, &contender->method, worst, progress, error)) return false;
     for (int phase = PHASE_IMPACT; phase <= PHASE_AFTER; phase++) {
         if (worst[phase].launch < 0) continue;
         const bool same = phase == PHASE_AFTER && worst[phase].launch == worst[PHASE_IMPACT].launch;
         if (!same && !write_page(pages, contender, &worst[phase], &file, error)) return false;
-        LaunchPage row = describe(pages, contender, &worst[phase], phase);
+        LaunchPage row = chart_describe(pages, contender, &worst[phase], phase);
         page_set_link(link, &file, row.time, row.body, 1);
         row.page = link;
         row.bytes = file.bytes;
@@ -330,7 +330,8 @@ static bool draw_measured(const SpeedAccuracyOptions *options, const char *csv, 
     return true;
 }
 
-static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key, Error *error) {
+static bool chart_draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key,
+                       Error *error) {
     char csv[CSV_PATH_SIZE];
     if (!csv_table_path(csv, options->folder, &chart_layout, error)) return false;
     for (int i = 0; i < options->scene_count; i++)
@@ -372,7 +373,7 @@ static void note_misses(const SpeedAccuracyScene *scene) {
                    missed, scene->launches, plural_es(scene->launches), missed == 1 ? "s" : "");
 }
 
-static bool study(const SpeedAccuracyOptions *options, Error *error) {
+static bool chart_study(const SpeedAccuracyOptions *options, Error *error) {
     Pieces pieces = {0};
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
     const bool ok = speed_accuracy_run(options, &pieces, progress_bar_begin("chart"), scenes, error);
@@ -386,7 +387,7 @@ bool command_chart(int argc, char **argv, Error *error) {
     PiecesRun run;
     options.study.scenes = options.scenes;
     options.study.begin = note_misses;
-    options.study.draw = draw;
+    options.study.draw = chart_draw;
     options.study.run = &run;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const LaunchChoice *launches = &options.study.launches;
@@ -399,5 +400,5 @@ bool command_chart(int argc, char **argv, Error *error) {
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
     return shard_option_take(&run, options.shard, argc, argv, error) && check_look(&options.study, error) &&
-           output_check_folder(options.study.folder, error) && study(&options.study, error);
+           output_check_folder(options.study.folder, error) && chart_study(&options.study, error);
 }

@@ -99,14 +99,14 @@ static Fit find_fit(const Scene *scene) {
     return (Fit){side, (double)CONTACT_SLOP / side, pull * dt * dt / side};
 }
 
-static bool fits(const Fit *fit) {
+static bool check_fits(const Fit *fit) {
     const double most = 0.05;
     return fit->slop <= most && fit->step <= most;
 }
 
 static void print_fit(FILE *out, const Scene *scene) {
     const Fit fit = find_fit(scene);
-    if (!fits(&fit))
+    if (!check_fits(&fit))
         fprintf(
             out,
             "    size: of the smallest side, %.3g m, contacts leave %.3g%% as overlap (slop, %g m), and a box falls by "
@@ -179,7 +179,7 @@ static void print_lists(FILE *out, const Scene *scene) {
         fprintf(out, "    network of %s: %s\n", scene->networks[i].method, scene->networks[i].path);
 }
 
-static bool draw(const Trajectory *run, const char *path, Error *error) {
+static bool check_draw(const Trajectory *run, const char *path, Error *error) {
     RenderOptions render = draw_panels_defaults(NULL);
     render.look.show = LOOK_APPROACH;
     render.width = WIDTH;
@@ -201,7 +201,7 @@ static bool draw_first_frame(const Scene *scene, const char *path, Error *error)
     const double frames = scene->bomb.present ? scene->bomb.frame + ceil(way / (double)scene->dt) : 1;
     if (frames < shown.frames) shown.frames = (int)frames;
     if (shown.frames * bodies > most_states) shown.frames = 1;
-    const bool ok = panels_add_run(&panels, &shown, "engine", path, error) && draw(panels.runs[0], path, error);
+    const bool ok = panels_add_run(&panels, &shown, "engine", path, error) && check_draw(panels.runs[0], path, error);
     panels_free(&panels);
     return ok;
 }
@@ -209,7 +209,7 @@ static bool draw_first_frame(const Scene *scene, const char *path, Error *error)
 /* null if all fits, as there is no remark then. */
 static void put_fit(JsonWriter *json, const Scene *scene) {
     const Fit fit = find_fit(scene);
-    if (json_put_absent(json, "size", fits(&fit))) return;
+    if (json_put_absent(json, "size", check_fits(&fit))) return;
     json_begin_object(json, "size", JSON_ONE_LINE);
     json_put_number(json, "smallest_side", fit.side);
     json_put_number(json, "slop", fit.slop);
@@ -298,7 +298,7 @@ static void print_summary(FILE *out, const char *path, const Scene *scene, const
     fflush(out);
 }
 
-static bool check(const Scene *scene, const Options *options, Error *error) {
+static bool check_and_report(const Scene *scene, const Options *options, Error *error) {
     const bool to_output = options->output != NULL && strcmp(options->output, "-") == 0;
     FILE *out = to_output && note_level() > NOTES_QUIET ? stderr : stdout;
     char standard[SCENE_NAME_SIZE + 32];
@@ -356,7 +356,7 @@ bool command_check(int argc, char **argv, Error *error) {
         return error_input(error, "--json", "cannot be combined with a picture on standard output");
     if (note_level() == NOTES_QUIET && !options.json) results_keep();
     Scene *scene = scene_read(options.scene, error);
-    const bool ok = scene != NULL && check(scene, &options, error);
+    const bool ok = scene != NULL && check_and_report(scene, &options, error);
     scene_destroy(scene);
     return ok;
 }

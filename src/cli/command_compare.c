@@ -234,7 +234,7 @@ static bool compare_options_parse(CompareOptions *options, int argc, char **argv
     return check_inputs(options, error);
 }
 
-static bool report(Regression *regression, const CompareOptions *options, Error *error) {
+static bool compare_report(Regression *regression, const CompareOptions *options, Error *error) {
     bool ok = regression_report_write(regression, options->report, (size_t)options->megabytes << 20,
                                       progress_bar_begin("report"), error);
     progress_bar_end();
@@ -243,7 +243,7 @@ static bool report(Regression *regression, const CompareOptions *options, Error 
 }
 
 /* A name may look like a command of GitHub's runner. Nobody can name a file by a token that has the time in it. */
-static bool print(const CompareOptions *options, const Regression *regression, Error *error) {
+static bool print_compare(const CompareOptions *options, const Regression *regression, Error *error) {
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now);
     uint64_t token = hash_xxh3(&now, sizeof now);
@@ -256,7 +256,7 @@ static bool print(const CompareOptions *options, const Regression *regression, E
     return ok;
 }
 
-static bool annotate(const CompareOptions *options, const Regression *regression, Error *error) {
+static bool compare_annotate(const CompareOptions *options, const Regression *regression, Error *error) {
     const char *summary = getenv("GITHUB_STEP_SUMMARY");
     if (options->annotations != ANNOTATE_GITHUB) return true;
     github_annotate(stdout, regression);
@@ -284,16 +284,17 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
                  plural(regression.count), regression.run_count,
                  regression.run_count == 1 ? "trajectory" : "trajectories", regression_limits(&regression).text,
                  regression.seconds);
-    ok = (options->json || print(options, &regression, error)) && regression_passed(&regression);
-    if (error->kind == ERROR_NONE && options->report != NULL && !report(&regression, options, error)) ok = false;
+    ok = (options->json || print_compare(options, &regression, error)) && regression_passed(&regression);
+    if (error->kind == ERROR_NONE && options->report != NULL && !compare_report(&regression, options, error))
+        ok = false;
     if (error->kind == ERROR_NONE && options->json && !compare_json_pictures(&regression, error)) ok = false;
-    if (error->kind == ERROR_NONE && !annotate(options, &regression, error)) ok = false;
+    if (error->kind == ERROR_NONE && !compare_annotate(options, &regression, error)) ok = false;
     if (error->kind == ERROR_NONE && !regression_was_read(&regression, error)) ok = false;
     regression_free(&regression);
     return ok;
 }
 
-static bool compare(const CompareOptions *options, Error *error) {
+static bool compare_inputs(const CompareOptions *options, Error *error) {
     bool same = is_trajectory(options->paths[0]) ? compare_runs(options, error) : compare_pictures(options, error);
     if (error->kind != ERROR_NONE && options->annotations == ANNOTATE_GITHUB)
         github_annotate_message(stdout, error->message);
@@ -304,7 +305,7 @@ bool command_compare(int argc, char **argv, Error *error) {
     CompareOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
     bool same = compare_options_parse(&options, argc, argv, error);
     if (same && options.server) return compare_serve(error);
-    same = same && (options.watch ? compare_watch(&options, compare, error) : compare(&options, error));
+    same = same && (options.watch ? compare_watch(&options, compare_inputs, error) : compare_inputs(&options, error));
     mask_free(&options.mask);
     return same;
 }

@@ -237,7 +237,7 @@ static void print_others(FILE *out, const RunComparison *c) {
     if (c->parting.first.frame >= 0) fprintf(out, "not compared: contacts and their impulses of later steps\n");
 }
 
-static void print(FILE *out, const RunComparison *c) {
+static void compare_runs_print(FILE *out, const RunComparison *c) {
     const Trajectory *a = c->runs[0];
     print_runs(out, c->options->paths, a, c->runs[1]);
     if (!c->same_world) {
@@ -253,7 +253,7 @@ static void print(FILE *out, const RunComparison *c) {
     if (c->chaos.distance != NULL) print_chaos(out, &c->chaos, &c->growth, &c->shifted, (double)a->dt);
 }
 
-static bool measure(RunComparison *c, Error *error) {
+static bool compare_runs_measure(RunComparison *c, Error *error) {
     int frames = c->parting.frames;
     c->distance = malloc((size_t)frames * sizeof *c->distance);
     if (c->distance == NULL) return error_memory(error, "compare");
@@ -284,7 +284,7 @@ static bool check_worlds(RunComparison *c, Error *error) {
                        c->difference.what);
 }
 
-static bool find(RunComparison *c, Error *error) {
+static bool compare_runs_find(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
     for (int i = 0; i < 2; i++)
         if ((c->runs[i] = trajectory_read(options->paths[i], error)) == NULL) return false;
@@ -294,8 +294,8 @@ static bool find(RunComparison *c, Error *error) {
     trajectory_compare(c->runs[0], c->runs[1], &c->difference);
     if (!check_worlds(c, error)) return false;
     if (!c->same_world) return true;
-    if (!trajectory_part(c->runs[0], c->runs[1], &options->poses, &c->parting, error) || !measure(c, error) ||
-        (options->scene != NULL && !measure_chaos(c, options->scene, error)))
+    if (!trajectory_part(c->runs[0], c->runs[1], &options->poses, &c->parting, error) ||
+        !compare_runs_measure(c, error) || (options->scene != NULL && !measure_chaos(c, options->scene, error)))
         return false;
     const DistanceTable table = {c->parting.frames, (double)c->runs[0]->dt, c->distance, c->chaos.distance};
     return options->csv == NULL || distance_table_write(&table, options->csv, error);
@@ -306,11 +306,11 @@ static bool write_text(RunComparison *c, Error *error) {
     size_t size;
     FILE *out = open_memstream(&c->text, &size);
     if (out == NULL) return error_memory(error, "compare");
-    print(out, c);
+    compare_runs_print(out, c);
     return fclose(out) == 0 || error_memory(error, "compare");
 }
 
-static bool show(RunComparison *c, Error *error) {
+static bool compare_runs_show(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
     c->passed = passed(c);
     if (!write_text(c, error) || (options->report != NULL && !compare_runs_report(c, options->report, error)))
@@ -326,9 +326,9 @@ static bool show(RunComparison *c, Error *error) {
 bool compare_runs(const CompareOptions *options, Error *error) {
     RunComparison comparison = {.options = options};
     const double begun = clock_seconds();
-    bool ok = find(&comparison, error);
+    bool ok = compare_runs_find(&comparison, error);
     comparison.seconds = clock_seconds() - begun;
-    ok = ok && show(&comparison, error) && comparison.passed;
+    ok = ok && compare_runs_show(&comparison, error) && comparison.passed;
     chaos_free(&comparison.chaos);
     free(comparison.distance);
     free(comparison.text);

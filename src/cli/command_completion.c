@@ -28,7 +28,8 @@ typedef struct CompletionValue {
 } CompletionValue;
 
 /* Prints begin, word and ending as a candidate if it begins with what was typed (behind `begin`). */
-static void offer(const char *begin, const char *typed, const char *word, const char *ending, const char *description) {
+static void completion_offer(const char *begin, const char *typed, const char *word, const char *ending,
+                             const char *description) {
     char whole[COMPLETION_WORD_SIZE];
     const int length = snprintf(whole, sizeof whole, "%s%s", word, ending);
     if (length < 0 || (size_t)length >= sizeof whole || strncmp(whole, typed, strlen(typed)) != 0) return;
@@ -62,8 +63,8 @@ static void offer_value(const Piece *piece, const SettingSpec *settings) {
         if (strlen(setting->key) != length || strncmp(setting->key, piece->text, length) != 0) continue;
         if (strcmp(setting->key, "network") == 0) offer_entries(value.begin, "npz");
         if (strncmp(setting->summary, "on|off", strlen("on|off")) != 0) continue;
-        offer(value.begin, value.text, "on", "", setting->summary);
-        offer(value.begin, value.text, "off", "", setting->summary);
+        completion_offer(value.begin, value.text, "on", "", setting->summary);
+        completion_offer(value.begin, value.text, "off", "", setting->summary);
     }
 }
 
@@ -73,19 +74,19 @@ static void offer_settings(const Piece *piece, const SettingSpec *settings) {
         return;
     }
     for (const SettingSpec *setting = settings; setting != NULL && setting->key != NULL; setting++)
-        offer(piece->begin, piece->text, setting->key, "=", setting->summary);
+        completion_offer(piece->begin, piece->text, setting->key, "=", setting->summary);
 }
 
 /* A name; with its settings when it is complete. */
 static void offer_method_names(const Piece *piece) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         const MethodDescription *method = kind->description;
-        offer(piece->begin, piece->text, method->name, "", method->summary);
+        completion_offer(piece->begin, piece->text, method->name, "", method->summary);
         if (strcmp(method->name, piece->text) != 0) continue;
         for (const SettingSpec *setting = method->settings; setting != NULL && setting->key != NULL; setting++) {
             char ending[64];
             snprintf(ending, sizeof ending, ":%s=", setting->key);
-            offer(piece->begin, piece->text, method->name, ending, setting->summary);
+            completion_offer(piece->begin, piece->text, method->name, ending, setting->summary);
         }
     }
 }
@@ -115,7 +116,7 @@ static void offer_methods(const char *begin, const char *typed, bool list) {
 /* Values of options. What a value may be is read from its row: names, the name of the value ("FILE.csv", "on|off",
    "SCENE"), and the endings in the help ("Figure to write: .png, .svg or .pdf"). */
 
-static bool has(const char *text, const char *piece) { return strstr(text, piece) != NULL; }
+static bool completion_has(const char *text, const char *piece) { return strstr(text, piece) != NULL; }
 
 /* One of the names; with `list`, further ones separated by commas. */
 static void offer_names(const CompletionValue *value, const char *const *names, bool list) {
@@ -123,7 +124,7 @@ static void offer_names(const CompletionValue *value, const char *const *names, 
     const char *typed = comma != NULL ? comma + 1 : value->typed;
     char begin[COMPLETION_WORD_SIZE] = "";
     text_add(begin, sizeof begin, "%s%.*s", value->begin, (int)(typed - value->typed), value->typed);
-    for (int i = 0; names[i] != NULL; i++) offer(begin, typed, names[i], "", "");
+    for (int i = 0; names[i] != NULL; i++) completion_offer(begin, typed, names[i], "", "");
 }
 
 /* "fast|small", but not "N|FILE.csv": words in lower case. */
@@ -135,7 +136,7 @@ static void offer_alternatives(const CompletionValue *value, const char *text) {
         for (size_t i = 0; i < length; i++) lower = lower && islower((unsigned char)text[i]);
         if (lower) {
             snprintf(word, sizeof word, "%.*s", (int)length, text);
-            offer(value->begin, value->typed, word, "", "");
+            completion_offer(value->begin, value->typed, word, "", "");
         }
         text += length + (text[length] == '|');
     }
@@ -151,7 +152,8 @@ static void offer_parameters(const CompletionValue *value) {
         if (scene_parameter(scene, parameter->name) != parameter) continue;
         snprintf(range, sizeof range, "%g to %g%s%s (the scene's: %g)", parameter->from, parameter->to,
                  parameter->unit[0] != '\0' ? " " : "", parameter->unit, parameter->value);
-        offer(value->begin, value->typed, parameter->name, value->option->read == option_set ? "=" : "", range);
+        completion_offer(value->begin, value->typed, parameter->name, value->option->read == option_set ? "=" : "",
+                         range);
     }
     scene_destroy(scene);
 }
@@ -174,7 +176,7 @@ static void find_endings(const char *text, char endings[64]) {
 static void offer_scene(const char *scene, void *context) {
     const CompletionValue *value = context;
     if (strchr(scene, '/') == NULL || strchr(value->typed, '/') != NULL)
-        offer(value->begin, value->typed, scene, "", "scene");
+        completion_offer(value->begin, value->typed, scene, "", "scene");
 }
 
 /* Files that an option takes, by the name of its value. */
@@ -182,22 +184,23 @@ static void offer_files(const CompletionValue *value) {
     const Option *option = value->option;
     const char *name = option->value, *help = option->help != NULL ? option->help : "";
     char endings[64], named[64];
-    if (has(name, "DIR")) {
+    if (completion_has(name, "DIR")) {
         offer_folders(value->begin);
         return;
     }
     find_endings(name, named);
     snprintf(endings, sizeof endings, "%s", named);
     if (endings[0] == '\0') find_endings(help, endings);
-    if (has(named, "yaml")) { /* a scene that is written */
+    if (completion_has(named, "yaml")) { /* a scene that is written */
         offer_entries(value->begin, named);
-    } else if (has(name, "SCENE")) {
-        text_add(named, sizeof named, "%syaml%s", named[0] != '\0' ? " " : "", has(name, "RUN") ? " npz" : "");
+    } else if (completion_has(name, "SCENE")) {
+        text_add(named, sizeof named, "%syaml%s", named[0] != '\0' ? " " : "",
+                 completion_has(name, "RUN") ? " npz" : "");
         offer_entries(value->begin, named);
         installed_scenes(offer_scene, (void *)value);
-    } else if (endings[0] == '\0' && has(name, "RUN"))
+    } else if (endings[0] == '\0' && completion_has(name, "RUN"))
         offer_entries(value->begin, "npz");
-    else if (named[0] != '\0' || has(name, "RUN") || has(name, "FILE") || option->name == NULL)
+    else if (named[0] != '\0' || completion_has(name, "RUN") || completion_has(name, "FILE") || option->name == NULL)
         offer_entries(value->begin, endings);
 }
 
@@ -208,8 +211,9 @@ static void offer_of(const CompletionValue *value) {
         offer_parameters(value);
     else if (option->names != NULL)
         offer_names(value, option->names, option->read == option_flags);
-    else if (has(option->value, "KEY=VALUE") || (option->name != NULL && strcmp(option->name, "--methods") == 0))
-        offer_methods(value->begin, value->typed, !has(option->value, "KEY=VALUE"));
+    else if (completion_has(option->value, "KEY=VALUE") ||
+             (option->name != NULL && strcmp(option->name, "--methods") == 0))
+        offer_methods(value->begin, value->typed, !completion_has(option->value, "KEY=VALUE"));
     else {
         offer_alternatives(value, option->value);
         offer_files(value);
@@ -220,7 +224,7 @@ static void offer_of(const CompletionValue *value) {
 
 static void offer_options(const Option *rows, const char *typed) {
     for (; rows->help != NULL; rows++)
-        if (rows->name != NULL) offer("", typed, rows->name, "", rows->help);
+        if (rows->name != NULL) completion_offer("", typed, rows->name, "", rows->help);
 }
 
 /* The row of "--name" or "--name=value", or NULL. */
@@ -272,7 +276,7 @@ static Before look_before(const CommandSpec *spec, const CompletionWords *words)
 }
 
 /* `context` has the words behind the command. */
-static void complete(const CommandSpec *spec, void *context) {
+static void completion_complete(const CommandSpec *spec, void *context) {
     const CompletionWords *words = context;
     const char *typed = words->words[words->count - 1], *equals = strchr(typed, '=');
     const Before before = look_before(spec, words);
@@ -286,8 +290,8 @@ static void complete(const CommandSpec *spec, void *context) {
     } else if (before.waiting == NULL && !before.only_inputs && typed[0] == '-') {
         offer_options(spec->options, typed);
         offer_options(options_of_all, typed);
-        offer("", typed, "--help", "", "Give this help list");
-        offer("", typed, "--version", "", "Print the version");
+        completion_offer("", typed, "--help", "", "Give this help list");
+        completion_offer("", typed, "--version", "", "Print the version");
         return;
     } else if (before.waiting == NULL) {
         /* Names are for the first argument only. */
@@ -303,14 +307,14 @@ static void complete(const CommandSpec *spec, void *context) {
 static void complete_command(const char *typed, bool is_first) {
     for (const Command *command = commands; command->name != NULL; command++) {
         if (command->heading != NULL) printf("<group>%s\n", command->heading);
-        if (command->summary != NULL) offer("", typed, command->name, "", command->summary);
+        if (command->summary != NULL) completion_offer("", typed, command->name, "", command->summary);
     }
     if (!is_first) return;
     puts("<group>Help");
-    offer("", typed, "help", "", "print the help of a command");
+    completion_offer("", typed, "help", "", "print the help of a command");
     if (typed[0] != '-') return;
-    offer("", typed, "--help", "", "list the commands");
-    offer("", typed, "--version", "", "print the version");
+    completion_offer("", typed, "--help", "", "list the commands");
+    completion_offer("", typed, "--version", "", "print the version");
 }
 
 /* Prints what the last word may become, one line each: the whole word, a tab, a description. A line
@@ -326,7 +330,7 @@ static void print_completions(const CompletionWords *words) {
     for (const Command *command = commands; command->name != NULL; command++) {
         if (strcmp(command->name, words->words[0]) != 0) continue;
         CompletionWords rest = {words->count - 1, words->words + 1};
-        options_visit_next(complete, &rest);
+        options_visit_next(completion_complete, &rest);
         command->run(0, NULL, &(Error){0});
         return;
     }

@@ -71,7 +71,7 @@ static void print_rows(const Options *options, const Dataset *dataset) {
         printf("    steps left out, as the reference does not converge: %" PRId64 "\n", dataset->unconverged);
 }
 
-static bool record(const Options *options, Error *error) {
+static bool record_dataset(const Options *options, Error *error) {
     FileReservation reservation;
     if (!file_reserve(&reservation, options->output, error)) return false;
     Dataset *dataset = dataset_record(&options->dataset, progress_bar_begin("recording launches"), error);
@@ -88,13 +88,13 @@ bool command_dataset(int argc, char **argv, Error *error) {
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (!output_check_npz(options.output, "dataset", error)) return false;
     options.dataset.scenes = options.scenes;
-    if (options.dataset.table_path == NULL) return record(&options, error);
+    if (options.dataset.table_path == NULL) return record_dataset(&options, error);
     if (options.dataset.bomb_x.count + options.dataset.random > 0)
         return error_input(error, "--launches", "cannot be combined with --bomb-x or --random");
     LaunchTable table;
     if (!launches_read(&table, options.dataset.table_path, error)) return false;
     options.dataset.table = &table;
-    const bool ok = record(&options, error);
+    const bool ok = record_dataset(&options, error);
     launches_free(&table);
     return ok;
 }

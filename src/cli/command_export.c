@@ -60,7 +60,7 @@ static bool is_input(const char *directory, const char *name, const Panels *pane
     return false;
 }
 
-static bool add(FolderList *names, const char *name, Error *error) {
+static bool export_add(FolderList *names, const char *name, Error *error) {
     char *copy = strdup(name);
     if (copy != NULL &&
         array_reserve((void **)&names->names, &names->capacity, names->count + 1, sizeof *names->names)) {
@@ -76,11 +76,11 @@ static bool collect_entry(FolderList *names, const char *directory, const char *
     if (name[0] == '.' || (!file_name_ends_with(name, ".png") && !file_name_ends_with(name, ".npz")) ||
         is_of_sequence(name, result, panels) || is_input(directory, name, panels, error))
         return true;
-    return error->kind == ERROR_NONE && add(names, name, error);
+    return error->kind == ERROR_NONE && export_add(names, name, error);
 }
 
-static bool collect(FolderList *names, const char *directory, const RenderResult *result, const Panels *panels,
-                    Error *error) {
+static bool export_collect(FolderList *names, const char *directory, const RenderResult *result, const Panels *panels,
+                           Error *error) {
     DIR *folder = opendir(directory);
     if (folder == NULL) return folder_error(directory, error);
     const struct dirent *entry;
@@ -108,7 +108,7 @@ static size_t end_of_range(const FolderList *names, size_t first) {
     return last;
 }
 
-static void describe(const FolderList *names, char text[TEXT_SIZE]) {
+static void export_describe(const FolderList *names, char text[TEXT_SIZE]) {
     size_t i = 0;
     for (int shown = 0; shown < SHOWN_MAX && i < names->count; shown++) {
         const size_t last = end_of_range(names, i);
@@ -122,10 +122,10 @@ static void describe(const FolderList *names, char text[TEXT_SIZE]) {
 bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error) {
     FolderList names = {0};
     char text[TEXT_SIZE] = "";
-    const bool ok = collect(&names, directory, result, panels, error);
+    const bool ok = export_collect(&names, directory, result, panels, error);
     if (ok && names.count > 0) {
         qsort(names.names, names.count, sizeof *names.names, by_name);
-        describe(&names, text);
+        export_describe(&names, text);
         note_print("%s also has %zu file%s that %s not of this sequence: %s", directory, names.count,
                    plural((int)names.count), names.count > 1 ? "are" : "is", text);
     }

@@ -136,7 +136,7 @@ static bool read_bodies(const Option *option, const char *text, void *value, Err
     }
 }
 
-static bool refuse(const char *option, const FigureKind *kind, Error *error) {
+static bool figure_refuse(const char *option, const FigureKind *kind, Error *error) {
     return error_input(error, option, "does not apply to the kind %s", kind->name);
 }
 
@@ -167,23 +167,23 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     if (options->caption != NULL && !file_name_ends_with(options->caption, ".tex"))
         return error_input(error, "--caption-text", "the name of a caption must end in .tex (got '%s')",
                            options->caption);
-    if (figure->time_count > 0 && !kind->takes_times) return refuse("--at", kind, error);
-    if (figure->moments > 0 && !kind->takes_moments) return refuse("--moments", kind, error);
-    if (figure->scene != NULL && !kind->takes_scene) return refuse("--scene", kind, error);
-    if (figure->height > 0 && !kind->takes_height) return refuse("--height", kind, error);
+    if (figure->time_count > 0 && !kind->takes_times) return figure_refuse("--at", kind, error);
+    if (figure->moments > 0 && !kind->takes_moments) return figure_refuse("--moments", kind, error);
+    if (figure->scene != NULL && !kind->takes_scene) return figure_refuse("--scene", kind, error);
+    if (figure->height > 0 && !kind->takes_height) return figure_refuse("--height", kind, error);
     if (figure->body_count > 0 && figure->view.width > 0)
         return error_input(error, "--bodies", "cannot be combined with --camera");
-    if (figure->body_count > 0 && kind->max_bodies == 0) return refuse("--bodies", kind, error);
+    if (figure->body_count > 0 && kind->max_bodies == 0) return figure_refuse("--bodies", kind, error);
     if (figure->body_count > 0 && (figure->body_count < kind->min_bodies || figure->body_count > kind->max_bodies))
         return error_input(error, "--bodies", "%s takes %s%d bodies (got %d)", kind->name,
                            kind->min_bodies < kind->max_bodies ? "at most " : "", kind->max_bodies, figure->body_count);
-    if (figure->view.width > 0 && !kind->takes_view) return refuse("--camera", kind, error);
-    if (options->view_from != NULL && !kind->takes_view) return refuse("--view-from", kind, error);
+    if (figure->view.width > 0 && !kind->takes_view) return figure_refuse("--camera", kind, error);
+    if (options->view_from != NULL && !kind->takes_view) return figure_refuse("--view-from", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||
            error_input(error, "--moments", "cannot be combined with --at");
 }
 
-static bool draw(const FigureKind *kind, const Options *options, Error *error) {
+static bool figure_draw_and_write(const FigureKind *kind, const Options *options, Error *error) {
     const SketchOutput output = {options->figure.dpi, options->transparent, options->outlines};
     Sketch sketch = {0};
     bool ok = figure_draw(kind, &sketch, &options->figure, error) && sketch_check_texts(&sketch, kind->name, error) &&
@@ -222,7 +222,7 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
     }
     if (ok) note_different_scenes(figure->runs, figure->run_count);
     figure->progress = progress_bar_begin(kind->name);
-    ok = ok && draw(kind, options, error);
+    ok = ok && figure_draw_and_write(kind, options, error);
     progress_bar_end();
     if (ok && !path_is_standard(options->output)) next_chart(runs[0]->scene);
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) trajectory_destroy(runs[i]);

@@ -50,7 +50,7 @@ static const CommandSpec spec = {
         "         ./box2d scenes/stack.yaml | twinbox import - -o box2d.npz"};
 
 /* A run of bodies that come and go as twinbox's do not is imported without a verdict. */
-static bool judge(JudgedRun *judged, Trajectory *run, const Options *options, Error *unjudged, Error *error) {
+static bool import_judge(JudgedRun *judged, Trajectory *run, const Options *options, Error *unjudged, Error *error) {
     if (judged_run_find(judged, run, &options->judge, unjudged)) {
         const VerdictReading *reading = &judged->verdict.reading;
         const int last = run->frames - 1;
@@ -70,8 +70,8 @@ static bool import_run(const Options *options, Error *error) {
     Trajectory *run = csv_run_read(options->input, &how, &notes, error);
     JudgedRun judged = {0};
     Error unjudged = {0};
-    bool ok =
-        run != NULL && judge(&judged, run, options, &unjudged, error) && trajectory_write(run, options->output, error);
+    bool ok = run != NULL && import_judge(&judged, run, options, &unjudged, error) &&
+              trajectory_write(run, options->output, error);
     if (ok) {
         printf("%s by %s: %d frames of %d bodies, dt %g s -> %s\n", run->scene, run->method, run->frames, run->bodies,
                (double)run->dt, options->output);

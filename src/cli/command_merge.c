@@ -102,7 +102,7 @@ static bool run_command(const StudyRecord *record, const Command *command, char 
     return done;
 }
 
-static bool merge(const StudyRecord *record, const char *path, char output[PATH_MAX], Error *error) {
+static bool merge_study(const StudyRecord *record, const char *path, char output[PATH_MAX], Error *error) {
     struct stat merged;
     const Command *command = find_command(record, path, error);
     if (command == NULL) return false;
@@ -120,7 +120,7 @@ bool command_merge(int argc, char **argv, Error *error) {
     strcpy(output, options.output);
     const PiecesRun run = {.merge = true, .times_first = options.times == 1, .shards = &missing};
     shard_option_merge(&run);
-    const bool ok = study_record_read(&record, path, error) && merge(&record, path, output, error);
+    const bool ok = study_record_read(&record, path, error) && merge_study(&record, path, output, error);
     shard_option_merge(NULL);
     if (missing != NULL) printf("--array=%s\n", missing);
     free(missing);

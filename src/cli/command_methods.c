@@ -20,7 +20,7 @@ static const CommandSpec spec = {
             "An installed program finds its networks in any folder:\n"
             "network=scenes/networks/NAME.npz"};
 
-static void print(void) {
+static void methods_print(void) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         const MethodDescription *method = kind->description;
         printf("%-17s %s\n", method->name, method->summary);
@@ -61,6 +61,6 @@ bool command_methods(int argc, char **argv, Error *error) {
     Options options = {.json = false};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (options.json) return json_output("twinbox methods 1", write_methods, NULL, error);
-    print();
+    methods_print();
     return true;
 }

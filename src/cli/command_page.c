@@ -141,7 +141,7 @@ static bool add_methods(const Options *options, const char *path, PlayerLive *li
     return true;
 }
 
-static bool pack(const char *scene, PlayerLive *live, Error *error) {
+static bool page_pack(const char *scene, PlayerLive *live, Error *error) {
     const char *methods[RENDER_PANELS_MAX];
     void *bundle = NULL;
     bool networks = false;
@@ -172,7 +172,7 @@ static bool write_live(const Options *options, Panels *panels, Error *error) {
     for (int i = 0; i < options->input_count; i++)
         if (options->inputs[i] != scene) runs[count++] = options->inputs[i];
     const bool ok = add_methods(options, scene, &live, panels, error) &&
-                    panels_load(panels, runs, count, &none, &stored, error) && pack(scene, &live, error) &&
+                    panels_load(panels, runs, count, &none, &stored, error) && page_pack(scene, &live, error) &&
                     write_page(options, panels, &live, error);
     free((void *)live.bundle);
     return ok;

@@ -278,8 +278,8 @@ static Recorder *create_recorder(const Scene *scene, const Method *method, const
 }
 
 /* Runs the scene and writes the files; fills the result. */
-static bool record(const Scene *scene, const Method *method, const Options *options, SimulateResult *result,
-                   Error *error) {
+static bool simulate_record(const Scene *scene, const Method *method, const Options *options, SimulateResult *result,
+                            Error *error) {
     const StepObserver observer = simulate_verdict_observer(&result->verdict);
     Recorder *recorder = create_recorder(scene, method, options, error);
     if (recorder == NULL) return false;
@@ -306,7 +306,7 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
 }
 
 /* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
-static bool judge(SimulateResult *result, const Options *options, Error *error) {
+static bool simulate_judge(SimulateResult *result, const Options *options, Error *error) {
     if (!result->judged || (error->kind != ERROR_NONE && error->failure == FAILURE_NONE)) return false;
     if (!options->json) simulate_verdict_print(&result->verdict);
     return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
@@ -316,9 +316,9 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
     SimulateResult result = {.scene = scene, .method = method->text, .output = options->output};
     if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method, error))
         return false;
-    bool ok = record(scene, method, options, &result, error);
+    bool ok = simulate_record(scene, method, options, &result, error);
     if (ok && !options->json) simulate_result_print(&result);
-    ok = judge(&result, options, error) && ok;
+    ok = simulate_judge(&result, options, error) && ok;
     ok = ok && (!options->json || json_output("twinbox simulate 1", write_result, &result, error));
     if (ok && !options->json && options->output != NULL && file_name_ends_with(options->output, ".npz"))
         next_film(options->output);

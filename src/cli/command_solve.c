@@ -91,7 +91,8 @@ typedef struct Result {
     Score scores[MAX_METHODS + 1]; /* of the impulses behind the methods */
 } Result;
 
-static bool score(const Result *result, const Method *method, ContactSolution *solution, Score *score, Error *error) {
+static bool solve_score(const Result *result, const Method *method, ContactSolution *solution, Score *score,
+                        Error *error) {
     const Scene scene = {.iterations = 10, .accumulate_impulses = true};
     const ContactProblem *problem = &result->stored->problem;
     ContactSolver solver;
@@ -159,7 +160,7 @@ static bool score_all(Result *result, Error *error) {
     if (!ok) error_memory(error, "solve");
     ok = ok && reference_solve(&result->truth, problem, NULL, error);
     for (int i = 0; ok && i < result->method_count; i++)
-        ok = score(result, &result->methods[i], &solution, &result->scores[i], error);
+        ok = solve_score(result, &result->methods[i], &solution, &result->scores[i], error);
     if (ok && result->impulses != NULL)
         ok = score_impulses(result, &solution, &result->scores[result->method_count], error);
     free(solution.velocities);
@@ -173,7 +174,7 @@ static const char *row_name(const Result *result, int i) {
     return i < result->method_count ? result->methods[i].text : result->impulses;
 }
 
-static void print(const Result *result) {
+static void solve_print(const Result *result) {
     const StoredProblem *stored = result->stored;
     printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations\n", stored->scene,
            stored->frame, stored->problem.body_count, stored->problem.contact_count, result->truth.residual,
@@ -227,7 +228,7 @@ static void write_result(JsonWriter *json, const void *context) {
     json_end(json);
 }
 
-static bool solve(const StoredProblem *stored, const Options *options, Error *error) {
+static bool solve_and_print(const StoredProblem *stored, const Options *options, Error *error) {
     static Method methods[MAX_METHODS];
     Result result = {
         .stored = stored, .methods = methods, .method_count = options->method_count, .impulses = options->impulses};
@@ -237,7 +238,7 @@ static bool solve(const StoredProblem *stored, const Options *options, Error *er
     if (ok && options->json)
         ok = json_output("twinbox solve 1", write_result, &result, error);
     else if (ok)
-        print(&result);
+        solve_print(&result);
     reference_free(&result.truth);
     return ok;
 }
@@ -266,7 +267,7 @@ static bool use_last(void *context, int frame, const World *world, Error *error)
     StoredProblem stored = {.frame = frame, .problem = *world_problem(world)};
     snprintf(stored.scene, sizeof stored.scene, "%s", recording->scene->name);
     return (options->output == NULL || write(&stored, options, error)) &&
-           (!is_scored(options) || solve(&stored, options, error));
+           (!is_scored(options) || solve_and_print(&stored, options, error));
 }
 
 static bool run_scene(Scene *scene, const Options *options, Error *error) {
@@ -288,7 +289,7 @@ static bool solve_step(const Options *options, Error *error) {
 
 static bool solve_file(const Options *options, Error *error) {
     StoredProblem *stored = problem_read(options->input, error);
-    const bool ok = stored != NULL && solve(stored, options, error);
+    const bool ok = stored != NULL && solve_and_print(stored, options, error);
     problem_destroy(stored);
     return ok;
 }

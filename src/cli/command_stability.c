@@ -242,7 +242,7 @@ static bool write_pages(const Options *options, uint64_t key, Error *error) {
     return ok;
 }
 
-static bool draw(void *context, uint64_t key, Error *error) {
+static bool stability_draw(void *context, uint64_t key, Error *error) {
     const Options *options = context;
     const bool drawn =
         stability_figures_write(options->study.folder, options->study.own, progress_bar_begin("maps"), error);
@@ -250,7 +250,7 @@ static bool draw(void *context, uint64_t key, Error *error) {
     return drawn && (!options->pages || write_pages(options, key, error));
 }
 
-static bool study(const StabilityOptions *options, Error *error) {
+static bool stability_study(const StabilityOptions *options, Error *error) {
     Pieces pieces = {0};
     bool ok = stability_run(options, &pieces, progress_bar_begin("stability"), error);
     progress_bar_end();
@@ -290,7 +290,7 @@ static bool check_options(const Options *options, Error *error) {
 }
 
 bool command_stability(int argc, char **argv, Error *error) {
-    Options options = {.study = {.scenes = installed_path("scenes"), .draw = draw}};
+    Options options = {.study = {.scenes = installed_path("scenes"), .draw = stability_draw}};
     StabilityOwn own;
     PiecesRun run;
     list_names();
@@ -304,5 +304,5 @@ bool command_stability(int argc, char **argv, Error *error) {
     options.study.run = &run;
     if (options.plan) return estimate(&options.study, error);
     if (!shard_option_take(&run, options.shard, argc, argv, error)) return false;
-    return output_check_folder(options.study.folder, error) && study(&options.study, error);
+    return output_check_folder(options.study.folder, error) && stability_study(&options.study, error);
 }

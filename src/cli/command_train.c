@@ -124,7 +124,7 @@ static void print_score(void *context, const TrainingScore *score) {
     fflush(stdout);
 }
 
-static Network *train(const Dataset *dataset, TrainingOptions *training, Error *error) {
+static Network *train_network(const Dataset *dataset, TrainingOptions *training, Error *error) {
     training->on_score = print_score;
     printf("iteration   test score  train score  constant test  constant train\n");
     Network *network = training_run(dataset, training, progress_bar_begin("training"), error);
@@ -160,8 +160,8 @@ static bool may_replace(const Dataset *dataset, const TrainRequest *request, con
     return false;
 }
 
-static bool store(Network *network, const Dataset *dataset, const TrainRequest *request,
-                  const TrainingOptions *training, Error *error) {
+static bool train_store(Network *network, const Dataset *dataset, const TrainRequest *request,
+                        const TrainingOptions *training, Error *error) {
     TrainingScore score;
     train_describe(request, network->command, sizeof network->command);
     if (!training_score(dataset, network, training->loss, &score, error) ||
@@ -175,13 +175,13 @@ static bool store(Network *network, const Dataset *dataset, const TrainRequest *
 
 static bool train_and_store(const Dataset *dataset, const TrainRequest *request, TrainingOptions *training,
                             Error *error) {
-    Network *network = train(dataset, training, error);
-    bool ok = network != NULL && store(network, dataset, request, training, error);
+    Network *network = train_network(dataset, training, error);
+    bool ok = network != NULL && train_store(network, dataset, request, training, error);
     network_destroy(network);
     return ok;
 }
 
-static bool run(const TrainRequest *request, Error *error) {
+static bool train_run(const TrainRequest *request, Error *error) {
     TrainPairNetOptions given = {.from = NULL};
     if (!train_read(request, &given, error)) return false;
     Network *start = NULL;
@@ -202,7 +202,7 @@ const TrainKind train_pair_net = {
         "beside that of always predicting the mean",
     .file_kind = "network",
     .options = pair_net_options,
-    .train = run};
+    .train = train_run};
 
 #define TRAIN_KIND_ENTRY(name) &train_##name,
 const TrainKind *const train_kinds[] = {TRAIN_KINDS(TRAIN_KIND_ENTRY) NULL};
@@ -223,7 +223,7 @@ typedef struct HelpTexts {
     const char *names[KINDS + 1]; /* ended by NULL */
 } HelpTexts;
 
-static bool remember(const Option *option, const char *text, void *value, Error *error) {
+static bool train_remember(const Option *option, const char *text, void *value, Error *error) {
     (void)error;
     Options *options = value;
     options->values[option - options->rows] = text != NULL ? text : "";
@@ -251,7 +251,7 @@ static void add_kind(Options *options, HelpTexts *texts, int k) {
     add_row(options, (Option){.help = texts->headings[k]});
     for (const Option *option = kind->options; option->name != NULL; option++) {
         Option row = *option;
-        row.read = remember;
+        row.read = train_remember;
         row.at = 0;
         add_row(options, row);
     }

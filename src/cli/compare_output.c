@@ -49,7 +49,7 @@ static void print_unread(const Regression *regression) {
             printf("not comparable: %s\n", regression->frames[i].read_error);
 }
 
-static const char *differ(int count) { return count == 1 ? "differs" : "differ"; }
+static const char *compare_output_differ(int count) { return count == 1 ? "differs" : "differ"; }
 
 /* The three largest regions. */
 static void print_regions(const FrameChanges *changes) {
@@ -100,9 +100,11 @@ static void print_counts(const Regression *regression) {
     const int runs = regression->run_count - alone, run_failed = regression->run_failed - alone;
     int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA] - by[PIXELS_UNREAD];
     int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
-    if (different > 0) printf("%d of %d frame%s %s", different, compared, plural(compared), differ(different));
+    if (different > 0)
+        printf("%d of %d frame%s %s", different, compared, plural(compared), compare_output_differ(different));
     if (different > 0 && run_failed > 0) printf(", ");
-    if (run_failed > 0) printf("%d of %d %s %s", run_failed, runs, trajectories(runs), differ(run_failed));
+    if (run_failed > 0)
+        printf("%d of %d %s %s", run_failed, runs, trajectories(runs), compare_output_differ(run_failed));
     if (different > 0 || run_failed > 0) printf("\n");
 }
 

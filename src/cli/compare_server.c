@@ -71,7 +71,7 @@ static void print_answer(FILE *out, const void *context) {
 }
 
 /* False with error set if nobody can read it. */
-static bool send(const Answer *answer, Error *error) {
+static bool compare_server_send(const Answer *answer, Error *error) {
     size_t size;
     char *text = file_print(print_answer, answer, &size);
     if (text == NULL) return error_memory(error, name);
@@ -81,20 +81,20 @@ static bool send(const Answer *answer, Error *error) {
 }
 
 /* The value of a key that is given and not null. */
-static const json_t *find(const json_t *object, const char *key) {
+static const json_t *compare_server_find(const json_t *object, const char *key) {
     const json_t *value = json_object_get(object, key);
     return json_is_null(value) ? NULL : value;
 }
 
 static bool read_path(const json_t *object, const char *key, const char **path, Error *error) {
-    const json_t *value = find(object, key);
+    const json_t *value = compare_server_find(object, key);
     *path = json_string_value(value);
     if (value != NULL && *path == NULL) return error_input(error, name, "%s must be a text", key);
     return *path == NULL || !path_is_standard(*path) || error_input(error, name, "%s must be a file, not '-'", key);
 }
 
 static bool read_flag(const json_t *object, const char *key, bool *flag, Error *error) {
-    const json_t *value = find(object, key);
+    const json_t *value = compare_server_find(object, key);
     *flag = json_is_true(value);
     return value == NULL || json_is_boolean(value) || error_input(error, name, "%s must be true or false", key);
 }
@@ -119,10 +119,10 @@ static bool read_color(const json_t *value, uint8_t color[3], Error *error) {
 }
 
 static bool read_picture(const json_t *options, OdiffPicture *picture, Error *error) {
-    const json_t *overlay = find(options, "diffOverlay");
+    const json_t *overlay = compare_server_find(options, "diffOverlay");
     bool mask;
     *picture = (OdiffPicture){.white = 0.5};
-    if (!read_color(find(options, "diffColor"), picture->color, error) ||
+    if (!read_color(compare_server_find(options, "diffColor"), picture->color, error) ||
         !read_flag(options, "outputDiffMask", &mask, error))
         return false;
     if (mask) picture->ground = ODIFF_ON_NOTHING;
@@ -156,7 +156,7 @@ static bool read_regions(const json_t *value, Request *request, Error *error) {
 }
 
 static bool read_options(const json_t *options, Request *request, Error *error) {
-    const json_t *threshold = find(options, "threshold");
+    const json_t *threshold = compare_server_find(options, "threshold");
     if (options != NULL && !json_is_object(options)) return error_input(error, name, "options must be an object");
     request->compared.threshold = 0.1;
     return (threshold == NULL || read_share(threshold, "threshold", &request->compared.threshold, error)) &&
@@ -165,7 +165,7 @@ static bool read_options(const json_t *options, Request *request, Error *error) 
            read_flag(options, "captureDiffLines", &request->rows, error) &&
            read_flag(options, "captureDiffCols", &request->columns, error) &&
            read_picture(options, &request->picture, error) &&
-           read_regions(find(options, "ignoreRegions"), request, error);
+           read_regions(compare_server_find(options, "ignoreRegions"), request, error);
 }
 
 static bool load_files(const json_t *json, Request *request, Error *error) {
@@ -207,7 +207,7 @@ static bool load_buffers(const json_t *json, Request *request, Error *error) {
     return error->kind == ERROR_NONE;
 }
 
-static bool compare(Request *request, Image *images[2], Answer *answer, Error *error) {
+static bool compare_server_judge(Request *request, Image *images[2], Answer *answer, Error *error) {
     const Image *a = images[0], *b = images[1];
     if (request->same_layout && (a->width != b->width || a->height != b->height)) {
         answer->kind = ANSWER_LAYOUT;
@@ -230,7 +230,7 @@ static bool compare_files(Request *request, Answer *answer, Error *error) {
         return png_check_start(data[0], request->sizes[0], request->paths[0], error) &&
                png_check(data[0], request->sizes[0], request->paths[0], &width, &height, error);
     const bool ok = image_decode_png_pair(data, request->sizes, request->paths, IMAGE_MAX_PIXELS, images, error) &&
-                    (images[0] == images[1] || compare(request, images, answer, error));
+                    (images[0] == images[1] || compare_server_judge(request, images, answer, error));
     image_destroy_pair(images);
     return ok;
 }
@@ -243,8 +243,8 @@ static bool answer_request(const json_t *json, Request *request, Answer *answer,
     request->id = json_integer_value(id);
     return (buffers ? load_buffers(json, request, error) : load_files(json, request, error)) &&
            (request->has_id || error_input(error, name, "requestId must be a whole number")) &&
-           read_path(json, "output", &request->output, error) && read_options(find(json, "options"), request, error) &&
-           compare_files(request, answer, error);
+           read_path(json, "output", &request->output, error) &&
+           read_options(compare_server_find(json, "options"), request, error) && compare_files(request, answer, error);
 }
 
 /* Of a line that is no request: its number, for which a client waits, and whether files may follow it. */
@@ -285,7 +285,7 @@ static bool serve(const char *line, size_t size, bool whole, Request *request, E
     *request = (Request){.id = 0};
     read_request(line, size, whole, &reader, request, &answer, &failure);
     if (failure.kind != ERROR_NONE) answer.kind = ANSWER_ERROR;
-    const bool sent = send(&answer, error);
+    const bool sent = compare_server_send(&answer, error);
     json_read_close(&reader);
     for (int i = 0; i < 2; i++) free(request->data[i]);
     odiff_difference_free(&answer.difference);
@@ -313,7 +313,7 @@ bool compare_serve(Error *error) {
     static Request request;
     size_t length;
     bool whole;
-    bool ok = send(&(Answer){.kind = ANSWER_READY, .request = &request}, error);
+    bool ok = compare_server_send(&(Answer){.kind = ANSWER_READY, .request = &request}, error);
     while (ok && read_line(line, REQUEST_SIZE, &length, &whole))
         ok = length == 0 || serve(line, length, whole, &request, error);
     return ok;

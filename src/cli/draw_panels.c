@@ -59,8 +59,8 @@ bool draw_videos_check(const DrawVideos *videos, int width, int height, bool of_
     return !files || of_merge || video_check_programs(error);
 }
 
-static bool draw(const Panels *panels, const RenderOptions *render, RenderStudy *study, RenderResult *result,
-                 Error *error) {
+static bool draw_panels_draw(const Panels *panels, const RenderOptions *render, RenderStudy *study,
+                             RenderResult *result, Error *error) {
     const Progress *progress = progress_bar_begin("drawing");
     note_verbose("drawing %d panel%s, %d x %d pixels, at most %d process%s", panels->count, plural(panels->count),
                  render->width, render->height, render->jobs, render->jobs == 1 ? "" : "es");
@@ -79,7 +79,8 @@ static bool write_output(VideoOptions *video, const Progress *progress, Error *e
     return ok;
 }
 
-static bool encode(const char *path, const RenderOptions *render, const RenderResult *result, Error *error) {
+static bool draw_panels_encode(const char *path, const RenderOptions *render, const RenderResult *result,
+                               Error *error) {
     VideoOptions video = {.directory = render->directory,
                           .first = result->first,
                           .last = result->last,
@@ -95,15 +96,16 @@ static bool encode(const char *path, const RenderOptions *render, const RenderRe
 
 bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderStudy *study,
                  RenderResult *result, Error *error) {
-    bool ok = draw(panels, render, study, result, error);
+    bool ok = draw_panels_draw(panels, render, study, result, error);
     const bool shard = study != NULL && study->pieces.mode == PIECES_SHARD;
-    for (int i = 0; ok && !shard && i < videos->count; i++) ok = encode(videos->paths[i], render, result, error);
+    for (int i = 0; ok && !shard && i < videos->count; i++)
+        ok = draw_panels_encode(videos->paths[i], render, result, error);
     free(result->hashes);
     result->hashes = NULL;
     return ok;
 }
 
-static bool differ(const Trajectory *a, const Trajectory *b) {
+static bool draw_panels_differ(const Trajectory *a, const Trajectory *b) {
     return a->scene_hash != 0 && b->scene_hash != 0 &&
            (a->scene_hash != b->scene_hash || strcmp(a->scene, b->scene) != 0);
 }
@@ -111,7 +113,7 @@ static bool differ(const Trajectory *a, const Trajectory *b) {
 void note_different_scenes(const Trajectory *const *runs, int count) {
     for (int i = 1; i < count; i++) {
         const Trajectory *a = runs[0], *b = runs[i];
-        if (!differ(a, b)) continue;
+        if (!draw_panels_differ(a, b)) continue;
         if (strcmp(a->scene, b->scene) != 0)
             note_print("the runs are of different scenes: %s (by %s) and %s (by %s)", a->scene, a->method, b->scene,
                        b->method);

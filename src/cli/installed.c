@@ -19,7 +19,7 @@ typedef struct Found {
 static Found *all_found;
 
 /* The path below TWINBOX_DATA, which is relative to the program's folder: an installed prefix can be moved. */
-static bool find(char found[PATH_SIZE], const char *path) {
+static bool installed_find(char found[PATH_SIZE], const char *path) {
     char program[PATH_SIZE];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length < 0) return false;
@@ -41,7 +41,7 @@ static bool find_scene(char found[PATH_SIZE], const char *name) {
         Error ignored = {0};
         if (!file_path(path, sizeof path, &ignored, "%s/%s.yaml", scene_folders[i], name)) return false;
         if (access(path, R_OK) == 0) return memcpy(found, path, sizeof path), true;
-        if (find(found, path)) return true;
+        if (installed_find(found, path)) return true;
     }
     return false;
 }
@@ -49,7 +49,7 @@ static bool find_scene(char found[PATH_SIZE], const char *name) {
 const char *installed_path(const char *path) {
     if (path[0] == '/' || access(path, F_OK) == 0) return path;
     Found *found = malloc(sizeof *found);
-    if (found == NULL || !(find(found->path, path) || find_scene(found->path, path))) {
+    if (found == NULL || !(installed_find(found->path, path) || find_scene(found->path, path))) {
         free(found);
         return path;
     }
@@ -103,7 +103,7 @@ void installed_scenes(InstalledScene *found, void *context) {
     for (int i = 0; i < SCENE_FOLDERS; i++) {
         char folder[PATH_SIZE];
         list_scenes(scene_folders[i], NULL, found, context);
-        if (!find(folder, scene_folders[i])) continue;
+        if (!installed_find(folder, scene_folders[i])) continue;
         list_scenes(folder, NULL, found, context);
         list_scenes(folder, scene_folders[i], found, context);
     }

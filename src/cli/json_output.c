@@ -13,7 +13,7 @@ typedef struct Output {
     const void *context;
 } Output;
 
-static void print(FILE *out, const void *context) {
+static void json_output_print(FILE *out, const void *context) {
     const Output *output = context;
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_LINES);
@@ -31,7 +31,7 @@ bool json_output_check(bool json, Error *error) {
 bool json_output(const char *format, JsonOutputWrite *write, const void *context, Error *error) {
     const Output output = {format, write, context};
     size_t size;
-    char *text = file_print(print, &output, &size);
+    char *text = file_print(json_output_print, &output, &size);
     if (text == NULL) return error_memory(error, "--json");
     fwrite(text, 1, size, stdout); /* main() checks standard output */
     free(text);

@@ -50,14 +50,14 @@ static bool count_parts(PageSet *set, int64_t part, Error *error) {
     return true;
 }
 
-static void describe(void *context, int64_t part, PieceInfo *info) {
+static void page_set_describe(void *context, int64_t part, PieceInfo *info) {
     (void)context;
     snprintf(info->name, sizeof info->name, "pages %" PRId64, part + 1);
     info->weight = 1;
     info->alone = true; /* whether there is room for a page depends on those before */
 }
 
-static bool work(void *context, int64_t part, FILE *rows, const Progress *progress, Error *error) {
+static bool page_set_work(void *context, int64_t part, FILE *rows, const Progress *progress, Error *error) {
     PageSet *set = context;
     return count_parts(set, part, error) && set->write(set->context, (int)part, rows, progress, error);
 }
@@ -66,7 +66,7 @@ static bool work(void *context, int64_t part, FILE *rows, const Progress *progre
 static bool open_parts(PageSet *set, uint64_t key, Error *error) {
     Pieces *pieces = &set->pieces;
     *pieces = (Pieces){.shard = {1, 1}, .key = key ^ UINT64_C(0x7061676573)};
-    set->plan = (PiecePlan){.count = set->parts, .describe = describe, .work = work, .context = set};
+    set->plan = (PiecePlan){.count = set->parts, .describe = page_set_describe, .work = page_set_work, .context = set};
     return file_path(pieces->folder, sizeof pieces->folder, error, "%s/parts-%016" PRIx64, set->folder, pieces->key);
 }
 

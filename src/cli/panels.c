@@ -86,7 +86,7 @@ bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels,
     return found > 0 || error_input(error, path, "has no closed-loop time at the impact for any of these runs");
 }
 
-static bool add(Panels *panels, Trajectory *run, const char *input, Error *error) {
+static bool panels_add(Panels *panels, Trajectory *run, const char *input, Error *error) {
     if (run == NULL) return false;
     if (!type_check(run->scene, input, error) || !type_check(run->method, input, error)) {
         trajectory_destroy(run);
@@ -109,12 +109,12 @@ bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_n
                         const Progress *progress, Error *error) {
     Method method;
     if (!method_parse(&method, method_name, error)) return false;
-    if (progress != NULL) return add(panels, simulate_judged(scene, &method, progress, error), input, error);
+    if (progress != NULL) return panels_add(panels, simulate_judged(scene, &method, progress, error), input, error);
     char what[2 * SCENE_NAME_SIZE + 8];
     snprintf(what, sizeof what, "%s by %s", scene->name, method_name);
     Trajectory *run = simulate_judged(scene, &method, progress_bar_begin(what), error);
     progress_bar_end();
-    return add(panels, run, input, error);
+    return panels_add(panels, run, input, error);
 }
 
 /* Why a scene has one panel, and the commands that give it a second one. */
@@ -168,7 +168,7 @@ bool panels_load(Panels *panels, const char *const *inputs, int input_count, con
     if (methods->count > 0 && scenes == 0)
         return error_input(error, "--method", "needs a scene; a run (.npz) is shown as it was simulated");
     for (int i = 0; i < input_count; i++) {
-        bool ok = is_stored(inputs[i]) ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
+        bool ok = is_stored(inputs[i]) ? panels_add(panels, trajectory_read(inputs[i], error), inputs[i], error)
                                        : panels_add_scene(panels, inputs[i], set, methods, error);
         if (!ok) return false;
     }

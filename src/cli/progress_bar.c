@@ -16,7 +16,7 @@ void time_left_begin(TimeLeft *left) {
     *left = (TimeLeft){.count = 1, .spacing = first_spacing}; /* the first sample: nothing done at 0 s */
 }
 
-static void thin(TimeLeft *left) {
+static void progress_bar_thin(TimeLeft *left) {
     for (int i = 1; 2 * i < left->count; i++) left->samples[i] = left->samples[2 * i];
     left->count = (left->count + 1) / 2;
     left->spacing *= 2;
@@ -24,7 +24,7 @@ static void thin(TimeLeft *left) {
 
 void time_left_add(TimeLeft *left, double time, double part) {
     if (time < left->samples[left->count - 1].time + left->spacing) return;
-    if (left->count == TIME_LEFT_SAMPLES) thin(left);
+    if (left->count == TIME_LEFT_SAMPLES) progress_bar_thin(left);
     left->samples[left->count++] = (struct TimeLeftSample){time, part};
 }
 
@@ -77,7 +77,7 @@ static struct {
     TimeLeft left;
 } bar;
 
-static void show(double part, double elapsed) {
+static void progress_bar_show(double part, double elapsed) {
     enum { WIDTH = 30 };
     char left[TIME_LEFT_TEXT_SIZE] = "";
     double seconds = 0;
@@ -96,7 +96,7 @@ static void show(double part, double elapsed) {
     fflush(stderr);
 }
 
-static bool report(void *context, double done, double total) {
+static bool progress_bar_report(void *context, double done, double total) {
     (void)context;
     /* Not before: work that waits for its input does not look at what this returns. */
     if (!bar.held) interrupt_hold();
@@ -110,13 +110,13 @@ static bool report(void *context, double done, double total) {
         bar.shown = time;
         bar.last = part;
         bar.visible = true;
-        show(part, elapsed);
+        progress_bar_show(part, elapsed);
     }
     return !interrupt_requested();
 }
 
 const Progress *progress_bar_begin(const char *what) {
-    static const Progress progress = {report, NULL};
+    static const Progress progress = {progress_bar_report, NULL};
     progress_bar_clear();
     bar.visible = false; /* signals stay held from one stage of a work to the next */
     bar.begun = clock_seconds();

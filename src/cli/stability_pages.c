@@ -27,19 +27,20 @@ typedef struct Value {
     char text[VALUE_SIZE];
 } Value;
 
-static Value show(double number) {
+static Value stability_pages_show(double number) {
     Value value = {"-"};
     if (!isnan(number)) snprintf(value.text, sizeof value.text, "%.9g", number);
     return value;
 }
 
 /* "14 | 15 falls"; without a value on one side: "40 | - moves". */
-static void describe(const BorderRow *row, char text[LABEL_SIZE]) {
+static void stability_pages_describe(const BorderRow *row, char text[LABEL_SIZE]) {
     const char *verdict = verdict_words[row->verdict];
     if (isnan(row->holds_at) && isnan(row->fails_at))
         snprintf(text, LABEL_SIZE, "%s", verdict);
     else
-        snprintf(text, LABEL_SIZE, "%s | %s %s", show(row->holds_at).text, show(row->fails_at).text, verdict);
+        snprintf(text, LABEL_SIZE, "%s | %s %s", stability_pages_show(row->holds_at).text,
+                 stability_pages_show(row->fails_at).text, verdict);
 }
 
 static void write_label(char label[LABEL_SIZE], const char *method, const char *setting) {
@@ -59,7 +60,7 @@ static int print_method(const CsvTable *table, int i) {
     write_label(label, row->method, row->setting);
     int next = i, width = printf("  %-*s", LABEL_WIDTH, label);
     do {
-        describe(border_row(table, next), border);
+        stability_pages_describe(border_row(table, next), border);
         if (next > i) width += printf(";");
         if (next > i && width + (int)strlen(border) + 2 > LINE_WIDTH) width = printf("\n  %-*s", LABEL_WIDTH, "") - 1;
         width += printf(" %s", border);
@@ -104,9 +105,9 @@ static int print_method_at_rest(const RunRow *rows, int count, int i) {
         if (rows[next].verdict < VERDICTS && verdict_holds((Verdict)rows[next].verdict)) shown = next;
     const RunRow *row = &rows[shown];
     write_label(label, row->method, row->setting);
-    printf("  %-*s %s %s", LABEL_WIDTH, label, show(row->value).text, verdict_words[row->verdict]);
-    if (!isnan(row->drift)) printf(", %s m", show(row->drift).text);
-    if (!isnan(row->energy)) printf(", %s J", show(row->energy).text);
+    printf("  %-*s %s %s", LABEL_WIDTH, label, stability_pages_show(row->value).text, verdict_words[row->verdict]);
+    if (!isnan(row->drift)) printf(", %s m", stability_pages_show(row->drift).text);
+    if (!isnan(row->energy)) printf(", %s J", stability_pages_show(row->energy).text);
     printf("\n");
     return next;
 }
@@ -155,7 +156,8 @@ static bool print_engines(const char *folder, Error *error) {
         write_label(label, row->method, row->setting);
         printf("%s: %s is %s %s", row->study, label, row->engine[0] != '\0' ? row->engine : "unknown", row->version);
         if (row->failed > 0) printf("; the adapter failed in %d of %d runs: %s", row->failed, row->runs, row->reason);
-        if (!isnan(row->differs)) printf("; not deterministic: two runs at %s differ", show(row->differs).text);
+        if (!isnan(row->differs))
+            printf("; not deterministic: two runs at %s differ", stability_pages_show(row->differs).text);
         printf("\n");
     }
     csv_table_free(&table);
@@ -313,7 +315,7 @@ static bool write_border(Pages *pages, const BorderRow *row, FILE *rows, const P
 }
 
 /* Behind the borders, parts are the methods of map after map, and come in this order. */
-static bool enter(Pages *pages, int part, Error *error) {
+static bool stability_pages_enter(Pages *pages, int part, Error *error) {
     while (part >= pages->first + pages->map->panel_count) {
         pages->first += pages->map->panel_count;
         if (!map_panels_gather(pages->map, &pages->table, &pages->row, error)) return false;
@@ -329,7 +331,7 @@ static bool write_part(void *context, int part, FILE *rows, const Progress *prog
     MapPlace places[MAP_PAGES_EACH];
     if (part < pages->borders.count)
         return write_border(pages, border_row(&pages->borders, part), rows, progress, error);
-    if (!enter(pages, part - pages->borders.count, error)) return false;
+    if (!stability_pages_enter(pages, part - pages->borders.count, error)) return false;
     const int count = map_pages_choose(pages->map, pages->panel, places);
     for (int i = 0; i < count; i++) {
         const MapCell *cell = map_panels_cell(pages->map, &pages->table, pages->panel, places[i]);

@@ -164,7 +164,7 @@ static bool add_launch(void *context, const HybridLaunch *launch, Error *error) 
     return true;
 }
 
-static bool learn(const Scene *scene, const HybridTraining *training, const char *output, Error *error) {
+static bool train_systems_learn(const Scene *scene, const HybridTraining *training, const char *output, Error *error) {
     printf("launches   asked  answered   grown   added  entries       MiB  error of answers, m/s\n");
     HybridMemory *memory = hybrid_training_run(scene, training, progress_bar_begin("learning"), error);
     progress_bar_end();
@@ -189,7 +189,7 @@ static bool hybrid_run(const TrainRequest *request, Error *error) {
     if (!train_read(request, &given, error)) return false;
     given.training.limit = (size_t)(given.limit * MEBIBYTE);
     report.launches = given.training.launches;
-    return learn(request->scene, &given.training, request->output, error);
+    return train_systems_learn(request->scene, &given.training, request->output, error);
 }
 
 const TrainKind train_hybrid = {
@@ -402,7 +402,7 @@ static bool scene_net_store(SceneNet *network, const TrainRequest *request, int 
     return true;
 }
 
-static const char *compare(double error, double rival) {
+static const char *train_systems_compare(double error, double rival) {
     return error < rival ? "better than" : error > rival ? "worse than" : "as good as";
 }
 
@@ -416,7 +416,8 @@ static void print_verdict(const SceneNetVerdict *verdict) {
            "sweeps %.4f\n",
            verdict->network, verdict->microseconds, verdict->sweeps, verdict->at_equal_time, verdict->at_20);
     printf("verdict: %s momentum at equal time; %s momentum with 20 sweeps\n",
-           compare(verdict->network, verdict->at_equal_time), compare(verdict->network, verdict->at_20));
+           train_systems_compare(verdict->network, verdict->at_equal_time),
+           train_systems_compare(verdict->network, verdict->at_20));
 }
 
 static SceneNet *scene_net_train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {

@@ -10,19 +10,19 @@
 static double dot(Vec2 a, Vec2 b) { return (double)a.x * (double)b.x + (double)a.y * (double)b.y; }
 
 /* Half the extent of a box along an axis, m. */
-static double reach(const Box *box, Vec2 axis) {
+static double box_reach(const Box *box, Vec2 axis) {
     return fabs(dot(box->rotation.column1, axis)) * (double)box->half.x +
            fabs(dot(box->rotation.column2, axis)) * (double)box->half.y;
 }
 
 /* The overlap along one axis. */
-static double along(const Box *a, const Box *b, Vec2 axis) {
-    return reach(a, axis) + reach(b, axis) - fabs(dot(b->position, axis) - dot(a->position, axis));
+static double box_along(const Box *a, const Box *b, Vec2 axis) {
+    return box_reach(a, axis) + box_reach(b, axis) - fabs(dot(b->position, axis) - dot(a->position, axis));
 }
 
 double overlap_depth(const Box *a, const Box *b) {
-    return fmin(fmin(along(a, b, a->rotation.column1), along(a, b, a->rotation.column2)),
-                fmin(along(a, b, b->rotation.column1), along(a, b, b->rotation.column2)));
+    return fmin(fmin(box_along(a, b, a->rotation.column1), box_along(a, b, a->rotation.column2)),
+                fmin(box_along(a, b, b->rotation.column1), box_along(a, b, b->rotation.column2)));
 }
 
 static double largest(const Box *box) {
@@ -35,12 +35,12 @@ static double rounding(const Box *a, const Box *b) { return 2 * (double)FLT_EPSI
 
 bool overlap_exceeds(const Box *a, const Box *b, double depth) {
     const double limit = depth + rounding(a, b);
-    return along(a, b, a->rotation.column1) > limit && along(a, b, a->rotation.column2) > limit &&
-           along(a, b, b->rotation.column1) > limit && along(a, b, b->rotation.column2) > limit;
+    return box_along(a, b, a->rotation.column1) > limit && box_along(a, b, a->rotation.column2) > limit &&
+           box_along(a, b, b->rotation.column1) > limit && box_along(a, b, b->rotation.column2) > limit;
 }
 
 /* Cuts the span to the x at which the projections on the axis overlap by more than the limit. */
-static void cut(OverlapSpan *span, const Box *a, const Box *b, Vec2 axis, double both, double limit) {
+static void box_cut(OverlapSpan *span, const Box *a, const Box *b, Vec2 axis, double both, double limit) {
     const double least = 1e-9, room = both - limit;
     const double across = ((double)b->position.y - (double)a->position.y) * (double)axis.y;
     if (room <= 0 || (fabs((double)axis.x) < least && fabs(across) >= room)) *span = (OverlapSpan){0, 0};
@@ -56,7 +56,7 @@ OverlapSpan overlap_span(const Box *a, const Box *b, double depth, bool any_rota
     const double radius = vec2_distance(b->half, vec2(0, 0)), limit = depth + rounding(a, b);
     OverlapSpan span = {-INFINITY, INFINITY};
     for (int i = 0; i < (any_rotation ? 2 : 4); i++)
-        cut(&span, a, b, axes[i], reach(a, axes[i]) + (any_rotation ? radius : reach(b, axes[i])), limit);
+        box_cut(&span, a, b, axes[i], box_reach(a, axes[i]) + (any_rotation ? radius : box_reach(b, axes[i])), limit);
     return span;
 }
 
@@ -82,7 +82,7 @@ static bool spread_along_y(const Box *boxes, int count) {
     return high.y - low.y > high.x - low.x;
 }
 
-static BodyPair sweep(const Entry *entries, const Box *boxes, const bool *fixed, int count, double depth) {
+static BodyPair box_sweep(const Entry *entries, const Box *boxes, const bool *fixed, int count, double depth) {
     for (int i = 0; i < count; i++)
         for (int k = i + 1; k < count && entries[k].low <= entries[i].high; k++) {
             const int a = entries[i].body, b = entries[k].body;
@@ -103,7 +103,7 @@ bool overlap_find(const Box *boxes, const bool *fixed, int count, double depth, 
         entries[i] = (Entry){along_y ? bounds.low.y : bounds.low.x, along_y ? bounds.high.y : bounds.high.x, i};
     }
     qsort(entries, (size_t)count, sizeof *entries, by_low);
-    *found = sweep(entries, boxes, fixed, count, depth);
+    *found = box_sweep(entries, boxes, fixed, count, depth);
     free(entries);
     return true;
 }
@@ -192,7 +192,7 @@ static void find_incident_edge(ClipVertex edge[2], const Box *box, Vec2 referenc
 
 /* Clips to the half-plane normal . x <= offset; `clip_edge` is the reference edge on that line. False if fewer than two
    points remain. */
-static inline bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
+static inline bool box_clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
     int count = 0;
     float distance0 = vec2_dot(normal, in[0].position) - offset;
     float distance1 = vec2_dot(normal, in[1].position) - offset;
@@ -239,9 +239,10 @@ static inline __attribute__((always_inline)) float compute(Manifold *manifold, c
 
     ClipVertex edge[2], half_clipped[2], clipped[2];
     find_incident_edge(edge, incident, front_normal);
-    if (!clip(half_clipped, edge, vec2_negate(side_normal), -side + side_half, face.along_y ? EDGE_LEFT : EDGE_BOTTOM))
+    if (!box_clip(half_clipped, edge, vec2_negate(side_normal), -side + side_half,
+                  face.along_y ? EDGE_LEFT : EDGE_BOTTOM))
         return face.separation;
-    if (!clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP))
+    if (!box_clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP))
         return face.separation;
 
     for (int i = 0; i < 2; i++) {

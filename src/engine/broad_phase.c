@@ -91,7 +91,7 @@ static bool insertion_sort(SweptBounds *items, int count, size_t most, size_t *m
 }
 
 /* Two neighbouring runs that are sorted, into one; stable. */
-static void merge(const SweptBounds *from, int middle, int count, SweptBounds *to) {
+static void broad_phase_merge(const SweptBounds *from, int middle, int count, SweptBounds *to) {
     for (int i = 0, left = 0, right = middle; i < count; i++)
         to[i] = right == count || (left < middle && from[left].low <= from[right].low) ? from[left++] : from[right++];
 }
@@ -102,7 +102,7 @@ static void merge_sort(SweptBounds *items, SweptBounds *scratch, int count, size
     for (int length = 1; length < count; length *= 2) {
         for (int first = 0; first < count; first += 2 * length) {
             const int left = count - first, both = left < 2 * length ? left : 2 * length;
-            merge(from + first, both < length ? both : length, both, to + first);
+            broad_phase_merge(from + first, both < length ? both : length, both, to + first);
         }
         SweptBounds *sorted = to;
         to = from;
@@ -119,7 +119,7 @@ static bool all_are_numbers(const SweptBounds *items, int count) {
     return true;
 }
 
-static bool sort(SortAndSweep *sweep) {
+static bool broad_phase_sort(SortAndSweep *sweep) {
     const int few_moves = 16; /* of each item */
     const size_t count = (size_t)sweep->count;
     sweep->moved = 0;
@@ -227,7 +227,7 @@ bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *boun
         return false;
     if (other_axis_is_better(sweep, bounds, count)) sweep->along_y = !sweep->along_y;
     refresh(sweep, bounds, fixed, count);
-    if (!sort(sweep) || !find_overlaps(sweep) ||
+    if (!broad_phase_sort(sweep) || !find_overlaps(sweep) ||
         !array_reserve((void **)&list->pairs, &list->capacity, sweep->found.count, sizeof *list->pairs))
         return false;
     list->count = sweep->found.count;

@@ -16,7 +16,7 @@ void contact_set_free(ContactSet *set) {
 }
 
 /* Reserves two points for every candidate pair. */
-static bool reserve(ContactSet *set, size_t pairs) {
+static bool contact_problem_reserve(ContactSet *set, size_t pairs) {
     return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, pairs, sizeof *set->arbiters) &&
            array_reserve((void **)&set->contacts, &set->contact_capacity, 2 * pairs, sizeof *set->contacts) &&
            array_reserve((void **)&set->impulses, &set->impulse_capacity, 2 * pairs, sizeof *set->impulses);
@@ -24,7 +24,7 @@ static bool reserve(ContactSet *set, size_t pairs) {
 
 bool contact_set_copy(ContactSet *to, const ContactSet *from) {
     size_t arbiters = (size_t)from->arbiter_count, contacts = (size_t)from->contact_count;
-    if (!reserve(to, arbiters)) return false;
+    if (!contact_problem_reserve(to, arbiters)) return false;
     to->arbiter_count = from->arbiter_count;
     to->contact_count = from->contact_count;
     if (arbiters == 0) return true;
@@ -100,7 +100,7 @@ static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter 
     return true;
 }
 
-static bool before(int a, int b, int of_a, int of_b) { return a < of_a || (a == of_a && b < of_b); }
+static bool contact_problem_before(int a, int b, int of_a, int of_b) { return a < of_a || (a == of_a && b < of_b); }
 
 /* Ghosts at seams. A box that slides from a tile onto the next overlaps this one along the way by less, at first, than it
    has sunk into both. So separating axes find the side of the tile, which stops the box, although the tile before covers it.
@@ -178,7 +178,7 @@ static bool is_covered(const Side *side, const ContactSet *set, int body_count) 
 }
 
 /* Replaces the points of an arbiter, and moves those behind them. */
-static void replace(ContactSet *set, int arbiter, const Manifold *manifold, const Box *boxes) {
+static void contact_problem_replace(ContactSet *set, int arbiter, const Manifold *manifold, const Box *boxes) {
     Arbiter *old = &set->arbiters[arbiter];
     const int first = old->first, end = first + old->count, more = manifold->count - old->count;
     memmove(&set->contacts[end + more], &set->contacts[end],
@@ -204,7 +204,7 @@ static bool mend_seams(ContactSet *set, const Box *boxes) {
             body_count = body_end(set);
             if (!list_partners(set, body_count)) return false;
         }
-        if (is_covered(&side, set, body_count)) replace(set, i, &side.across, boxes);
+        if (is_covered(&side, set, body_count)) contact_problem_replace(set, i, &side.across, boxes);
     }
     return true;
 }
@@ -248,10 +248,11 @@ bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxe
     const Arbiter *old = last->arbiters, *end = old + (rules.keep > 0 ? last->arbiter_count : 0);
     const BodyPair *pair = pairs->pairs, *pairs_end = pair + pairs->count;
     set->arbiter_count = set->contact_count = 0;
-    if (!reserve(set, pairs->count + (size_t)(end - old))) return false;
+    if (!contact_problem_reserve(set, pairs->count + (size_t)(end - old))) return false;
     /* Both lists rise by (a, b). */
     while (pair < pairs_end || old < end) {
-        const bool is_old = old < end && (pair == pairs_end || !before(pair->a, pair->b, old->a, old->b));
+        const bool is_old =
+            old < end && (pair == pairs_end || !contact_problem_before(pair->a, pair->b, old->a, old->b));
         const bool may_touch = !is_old || (pair < pairs_end && pair->a == old->a && pair->b == old->b);
         if (!(is_old && keep_arbiter(set, last, old, boxes, rules.keep)) && may_touch)
             find_arbiter(set, *pair, boxes, rules.mend);
@@ -265,9 +266,9 @@ void contact_set_match(ContactSet *set, const ContactSet *last) {
     const Arbiter *old = last->arbiters, *end = old + last->arbiter_count;
     for (int i = 0; i < set->arbiter_count; i++) {
         const Arbiter *arbiter = &set->arbiters[i];
-        while (old < end && before(old->a, old->b, arbiter->a, arbiter->b)) old++;
+        while (old < end && contact_problem_before(old->a, old->b, arbiter->a, arbiter->b)) old++;
         if (old == end) return;
-        if (before(arbiter->a, arbiter->b, old->a, old->b)) continue;
+        if (contact_problem_before(arbiter->a, arbiter->b, old->a, old->b)) continue;
         for (int k = arbiter->first; k < arbiter->first + arbiter->count; k++) {
             for (int j = old->first; j < old->first + old->count; j++) {
                 if (last->contacts[j].feature != set->contacts[k].feature) continue;

@@ -18,7 +18,7 @@ static const FigureKind *const kinds[] = {&figure_strip,  &figure_annotated, &fi
 const FigureKind *const *figure_kinds(void) { return kinds; }
 
 /* Truncated at its end. */
-static void append(char title[SKETCH_TEXT_SIZE], const char *before, const char *part) {
+static void figure_append(char title[SKETCH_TEXT_SIZE], const char *before, const char *part) {
     const size_t used = strlen(title);
     snprintf(title + used, SKETCH_TEXT_SIZE - used, "%s%s", before, part);
 }
@@ -32,10 +32,10 @@ static bool check_contacts(const FigureKind *kind, const FigureSpec *spec, Error
 
 bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
     if (!check_contacts(kind, spec, error) || !kind->draw(sketch, spec, error)) return false;
-    append(sketch->title, "", kind->name);
-    append(sketch->title, " of ", spec->runs[0]->scene);
+    figure_append(sketch->title, "", kind->name);
+    figure_append(sketch->title, " of ", spec->runs[0]->scene);
     for (int i = 0; i < spec->run_count; i++)
-        append(sketch->title, i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
+        figure_append(sketch->title, i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
     return true;
 }
 
@@ -173,7 +173,7 @@ typedef struct Caption {
     const FigureSpec *spec;
 } Caption;
 
-static void print(FILE *out, const void *context) {
+static void figure_print(FILE *out, const void *context) {
     const Caption *caption = context;
     fputs("\\caption{", out);
     caption->kind->caption(out, caption->spec);
@@ -183,5 +183,5 @@ static void print(FILE *out, const void *context) {
 }
 
 bool figure_write_caption(const FigureKind *kind, const FigureSpec *spec, const char *path, Error *error) {
-    return file_write_text(path, print, &(Caption){kind, spec}, error);
+    return file_write_text(path, figure_print, &(Caption){kind, spec}, error);
 }

@@ -37,7 +37,7 @@ static void free_all(Divergence *d) {
     free(d->high);
 }
 
-static bool measure(Divergence *d, Error *error) {
+static bool figure_divergence_measure(Divergence *d, Error *error) {
     const FigureSpec *spec = d->spec;
     const Trajectory *first = spec->runs[0];
     d->frames = first->frames;
@@ -107,7 +107,8 @@ static void include(PlotRange *range, const double *values, int count) {
 }
 
 /* The points of a line up to its next gap. */
-static int gather(const Divergence *d, const PlotPanel *plot, const double *values, int from, Point *points) {
+static int figure_divergence_gather(const Divergence *d, const PlotPanel *plot, const double *values, int from,
+                                    Point *points) {
     int count = 0;
     for (int i = from; i < d->frames && values[i] > 0; i++)
         points[count++] = plot_place(plot, i * (double)d->spec->runs[0]->dt, values[i]);
@@ -122,7 +123,7 @@ static Pen line_pen(const Divergence *d, int run) {
 static void draw_line(const Divergence *d, Sketch *sketch, const PlotPanel *plot, int run, Point *points) {
     const Pen pen = line_pen(d, run);
     for (int i = 0; i < d->frames; i++) {
-        int count = gather(d, plot, d->distance[run], i, points);
+        int count = figure_divergence_gather(d, plot, d->distance[run], i, points);
         sketch_path(sketch, points, count, &pen);
         i += count;
     }
@@ -131,7 +132,7 @@ static void draw_line(const Divergence *d, Sketch *sketch, const PlotPanel *plot
 static void draw_band(const Divergence *d, Sketch *sketch, const PlotPanel *plot, Point *points) {
     int first = 0;
     while (first < d->frames && !(d->high[first] > 0)) first++;
-    int count = gather(d, plot, d->high, first, points);
+    int count = figure_divergence_gather(d, plot, d->high, first, points);
     for (int i = count - 1; i >= 0; i--)
         points[count + (count - 1 - i)] =
             plot_place(plot, (first + i) * (double)d->spec->runs[0]->dt, d->low[first + i]);
@@ -217,11 +218,11 @@ static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Erro
     return true;
 }
 
-static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+static bool figure_divergence_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Divergence d = {.spec = spec};
     PlotRange range = plot_range();
-    bool done = run_colours(spec, d.colours, error) && run_check_worlds(spec, error) && measure(&d, error) &&
-                (spec->scene == NULL || make_band(&d, error));
+    bool done = run_colours(spec, d.colours, error) && run_check_worlds(spec, error) &&
+                figure_divergence_measure(&d, error) && (spec->scene == NULL || make_band(&d, error));
     for (int i = 1; done && i < spec->run_count; i++) include(&range, d.distance[i], d.frames);
     if (done) include(&range, d.low, d.frames), include(&range, d.high, d.frames);
     if (done && range.most == 0)
@@ -233,7 +234,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
-static void caption(FILE *out, const FigureSpec *spec) {
+static void figure_divergence_caption(FILE *out, const FigureSpec *spec) {
     const Trajectory *first = spec->runs[0];
     fputs("Runs of the ", out);
     caption_scene(out, spec);
@@ -258,6 +259,6 @@ const FigureKind figure_divergence = {
     .min_runs = 2,
     .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,
-    .draw = draw,
-    .caption = caption,
+    .draw = figure_divergence_draw,
+    .caption = figure_divergence_caption,
 };

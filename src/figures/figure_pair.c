@@ -57,7 +57,7 @@ static Box box_of(const Trajectory *run, int frame, int body) {
     return box_make(run->position[i], run->size[body], run->angle[i]);
 }
 
-static double tilt(const Trajectory *run, int frame, int a, int b) {
+static double figure_pair_tilt(const Trajectory *run, int frame, int a, int b) {
     const float *angle = run->angle + (size_t)frame * (size_t)run->bodies;
     double turned = fmod(fabs((double)angle[b] - (double)angle[a]) * 180 / M_PI, 90);
     return fmin(turned, 90 - turned);
@@ -71,7 +71,7 @@ static int rate_pair(const FigureSpec *spec, int step, int a, int b, int points)
                                                                                                     : SHOWS_NOTHING;
     if (run->fixed[a] || run->fixed[b]) return SHOWS_NOTHING;
     if (a != run->bomb && b != run->bomb) return SHOWS_SOMETHING;
-    return points == 2 && tilt(run, step - 1, a, b) >= min_tilt ? SHOWS_ALL : SHOWS_BOMB;
+    return points == 2 && figure_pair_tilt(run, step - 1, a, b) >= min_tilt ? SHOWS_ALL : SHOWS_BOMB;
 }
 
 /* Finds the most instructive pair of the first step from `first` on in which the bomb or the requested pair touches;
@@ -116,7 +116,7 @@ static bool check_sizes(const FigureSpec *spec, const Collision *collision, Erro
                        collision->bodies[0], collision->bodies[1], least, most, max_ratio);
 }
 
-static bool choose(const FigureSpec *spec, Collision *collision, Error *error) {
+static bool figure_pair_choose(const FigureSpec *spec, Collision *collision, Error *error) {
     const Trajectory *run = spec->runs[0];
     int frames[FIGURE_MOMENTS_MAX], count, first = 1, end = run->frames;
     if (spec->time_count > 1)
@@ -184,11 +184,11 @@ static void place_halves(const FigureSpec *spec, Half halves[2], double *height)
     }
 }
 
-static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+static bool figure_pair_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Collision collision;
     Half halves[2];
     double height;
-    if (!choose(spec, &collision, error)) return false;
+    if (!figure_pair_choose(spec, &collision, error)) return false;
     if (spec->facts != NULL)
         *spec->facts = (FigureFacts){
             .frame_count = 1, .frames = {collision.step - 1}, .bodies = {collision.bodies[0], collision.bodies[1]}};
@@ -211,7 +211,7 @@ static void caption_body(FILE *out, const FigureSpec *spec, int body) {
     fprintf(out, body == spec->runs[0]->bomb ? "the bomb" : "body~%d", body);
 }
 
-static void caption(FILE *out, const FigureSpec *spec) {
+static void figure_pair_caption(FILE *out, const FigureSpec *spec) {
     fputs("Narrow phase of ", out);
     caption_body(out, spec, spec->facts->bodies[0]);
     fputs(" and ", out);
@@ -236,6 +236,6 @@ const FigureKind figure_pair = {
     .min_bodies = 2,
     .max_bodies = 2,
     .needs_contacts = true,
-    .draw = draw,
-    .caption = caption,
+    .draw = figure_pair_draw,
+    .caption = figure_pair_caption,
 };

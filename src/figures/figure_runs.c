@@ -351,7 +351,7 @@ static bool lay_out_cells(Strip *strip, Error *error) {
 }
 
 /* False if it had to. */
-static bool grow(int *lines, int needed) {
+static bool figure_runs_grow(int *lines, int needed) {
     const bool enough = needed <= *lines;
     if (!enough) *lines = needed;
     return enough;
@@ -367,9 +367,9 @@ static bool lay_out_lines(Strip *strip, Error *error) {
         for (int row = 0; row < strip->spec->run_count; row++) {
             if (!strip->above && !fits_beside(strip, row))
                 return error_input(error, "figure", "the names have no room beside the rows");
-            enough &= grow(&strip->name_lines, strip_name(strip, row).lines);
+            enough &= figure_runs_grow(&strip->name_lines, strip_name(strip, row).lines);
             for (int column = 0; column < strip->count; column++)
-                enough &= grow(&strip->note_lines[row], note_of(strip, row, column).lines);
+                enough &= figure_runs_grow(&strip->note_lines[row], note_of(strip, row, column).lines);
         }
         if (enough) return true;
     }

@@ -168,7 +168,7 @@ static bool put_label(Closeup *closeup, Point at, double clear, bool left, uint3
     return true;
 }
 
-static Point along(const View *view, const Vec2 ends[2], double share) {
+static Point narrow_phase_along(const View *view, const Vec2 ends[2], double share) {
     const Point p = view_place(view, ends[0]), q = view_place(view, ends[1]);
     return (Point){p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)};
 }
@@ -180,7 +180,7 @@ static bool put_edge_label(Closeup *closeup, int edge, const char *words) {
     const Collision *collision = closeup->collision;
     const int box = edge == 0 ? reference_of(collision) : 1 - reference_of(collision);
     for (int i = 0; i < 2 * SHARES; i++)
-        if (put_label(closeup, along(&closeup->view, closeup->edges[edge], shares[i % SHARES]), 0.6, false,
+        if (put_label(closeup, narrow_phase_along(&closeup->view, closeup->edges[edge], shares[i % SHARES]), 0.6, false,
                       ink_of(collision, box), 0.94 * closeup->points, i >= SHARES, words))
             return true;
     return false;
@@ -200,8 +200,8 @@ static bool put_side_plane(Closeup *closeup) {
     const int right = closeup->edges[0][0].x < closeup->edges[0][1].x;
     Vec2 plane[2];
     side_plane(plane, closeup->edges[0][right], closeup->front, closeup->unit);
-    return put_label(closeup, along(&closeup->view, plane, 0.85), 0.6, false, INK, 0.94 * closeup->points, true,
-                     "side plane");
+    return put_label(closeup, narrow_phase_along(&closeup->view, plane, 0.85), 0.6, false, INK, 0.94 * closeup->points,
+                     true, "side plane");
 }
 
 static bool put_depths(Closeup *closeup) {
@@ -251,7 +251,7 @@ static bool put_labels(Closeup *closeup) {
            put_side_plane(closeup);
 }
 
-static double between(double a, double b) { return (a + b) / 2; }
+static double narrow_phase_between(double a, double b) { return (a + b) / 2; }
 
 /* Both edges are in the window, which is `around` times as large. */
 static void look_at_edges(Closeup *closeup, const View *window, double around) {
@@ -266,7 +266,7 @@ static void look_at_edges(Closeup *closeup, const View *window, double around) {
     }
     const double side = fmax(fmax(high[0] - low[0], high[1] - low[1]), (double)closeup->unit);
     *view = *window;
-    view->center = (Point){between(low[0], high[0]), between(low[1], high[1])};
+    view->center = (Point){narrow_phase_between(low[0], high[0]), narrow_phase_between(low[1], high[1])};
     view->scale = fmin(view->high.x - view->low.x, view->high.y - view->low.y) / (around * side);
     for (int i = 0; i < manifold->count; i++) {
         const ManifoldPoint *point = &manifold->points[i];

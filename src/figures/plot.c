@@ -212,7 +212,7 @@ typedef struct Plotter {
 } Plotter;
 
 /* The points of a series, clamped to the axes. */
-static int gather(Plotter *plotter, const PlotPanel *panel, int index, int series) {
+static int plot_gather(Plotter *plotter, const PlotPanel *panel, int index, int series) {
     int count = 0;
     for (int row = 0; row < plotter->spec->rows; row++) {
         PlotPoint point = {0};
@@ -225,19 +225,19 @@ static int gather(Plotter *plotter, const PlotPanel *panel, int index, int serie
     return count;
 }
 
-static int compare(double a, double b) { return (a > b) - (a < b); }
+static int plot_compare(double a, double b) { return (a > b) - (a < b); }
 
 static int by_group(const void *first, const void *second) {
     const PlotPoint *a = first, *b = second;
-    int order = compare(a->group, b->group);
-    if (order == 0) order = compare(a->x, b->x);
-    return order != 0 ? order : compare(a->y, b->y);
+    int order = plot_compare(a->group, b->group);
+    if (order == 0) order = plot_compare(a->x, b->x);
+    return order != 0 ? order : plot_compare(a->y, b->y);
 }
 
 static int by_place(const void *first, const void *second) {
     const PlotPoint *a = first, *b = second;
-    const int order = compare(a->x, b->x);
-    return order != 0 ? order : compare(a->y, b->y);
+    const int order = plot_compare(a->x, b->x);
+    return order != 0 ? order : plot_compare(a->y, b->y);
 }
 
 /* Replaces the points by their medians at each x. */
@@ -281,7 +281,7 @@ typedef enum Pass { PASS_SEEDS, PASS_BELOW, PASS_ABOVE, PASSES } Pass;
 
 static void draw_series(Plotter *plotter, const PlotPanel *panel, int index, int series, Pass pass) {
     PlotLook look = plotter->spec->look(plotter->spec->of, series);
-    int count = gather(plotter, panel, index, series);
+    int count = plot_gather(plotter, panel, index, series);
     if (count == 0 || (pass == PASS_SEEDS ? !look.seeds : look.above != (pass == PASS_ABOVE))) return;
     if (pass == PASS_SEEDS) {
         qsort(plotter->points, (size_t)count, sizeof *plotter->points, by_group);

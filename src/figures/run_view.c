@@ -57,7 +57,7 @@ static int by_size(const void *a, const void *b) {
 }
 
 /* The contacts inside the cell, largest impulse first. NULL if out of memory. */
-static ShownContact *gather(const Trajectory *run, int step, const View *view, int *count) {
+static ShownContact *run_view_gather(const Trajectory *run, int step, const View *view, int *count) {
     int64_t first = run->contact_start[step], end = run->contact_start[step + 1];
     ShownContact *shown = malloc((size_t)(end - first + 1) * sizeof *shown);
     *count = 0;
@@ -177,7 +177,7 @@ static double middle_of(const ShownContact *contacts, int count) {
 
 bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
                    int *count, int *numbered, Error *error) {
-    ShownContact *contacts = gather(run, step, view, count);
+    ShownContact *contacts = run_view_gather(run, step, view, count);
     LabelField *field = calloc(1, sizeof *field);
     const bool done = (contacts != NULL && field != NULL) || error_memory(error, "figure");
     *numbered = 0;

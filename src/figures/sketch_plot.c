@@ -275,7 +275,7 @@ static bool boxes_touch(const PageBox *a, const PageBox *b) {
 }
 
 /* Clips [*from, *to], the range of t for which p + t d is in [low, high], along one axis. */
-static void clip(double p, double d, double low, double high, double *from, double *to) {
+static void sketch_plot_clip(double p, double d, double low, double high, double *from, double *to) {
     if (d == 0) {
         if (p < low || p > high) *to = -1;
         return;
@@ -288,8 +288,8 @@ static void clip(double p, double d, double low, double high, double *from, doub
 /* Liang and Barsky 1984. */
 static bool crosses(const Segment *s, const PageBox *box) {
     double from = 0, to = 1;
-    clip(s->x0, s->x1 - s->x0, box->left, box->right, &from, &to);
-    clip(s->y0, s->y1 - s->y0, box->bottom, box->top, &from, &to);
+    sketch_plot_clip(s->x0, s->x1 - s->x0, box->left, box->right, &from, &to);
+    sketch_plot_clip(s->y0, s->y1 - s->y0, box->bottom, box->top, &from, &to);
     return from < to;
 }
 

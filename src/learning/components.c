@@ -14,7 +14,9 @@
 /* Sums over the launches have a fixed number of parts, so that their order does not depend on the number of threads. */
 enum { PARTS = 8 };
 
-static bool moves(const Scene *scene, int body) { return body == scene->body_count || !scene->bodies[body].fixed; }
+static bool components_moves(const Scene *scene, int body) {
+    return body == scene->body_count || !scene->bodies[body].fixed;
+}
 
 /* The state of a body when the bomb appears. */
 static BodyDef first_state(const Scene *launched, int body) {
@@ -41,7 +43,7 @@ static void fill_launch(PoseRows *rows, const Scene *scene, const LaunchRuns *ru
     subspace_launch(&launched, rows->launch + (size_t)launch * SUBSPACE_LAUNCH);
     for (int state = 0; state < rows->states; state++)
         for (int body = 0; body < runs->bodies; body++) {
-            if (!moves(scene, body)) continue;
+            if (!components_moves(scene, body)) continue;
             if (state == 0) {
                 fill_earlier(&launched, runs, launch, body, at);
             } else {
@@ -54,7 +56,7 @@ static void fill_launch(PoseRows *rows, const Scene *scene, const LaunchRuns *ru
 
 bool pose_rows_make(PoseRows *rows, const Scene *scene, const LaunchRuns *runs, Error *error) {
     int moving = 0;
-    for (int body = 0; body < runs->bodies; body++) moving += moves(scene, body);
+    for (int body = 0; body < runs->bodies; body++) moving += components_moves(scene, body);
     *rows = (PoseRows){
         .launches = runs->count, .states = runs->frames - scene->bomb.frame + 1, .numbers = SUBSPACE_POSE * moving};
     const size_t count = (size_t)rows->states * (size_t)rows->numbers;
@@ -73,7 +75,7 @@ void pose_rows_free(PoseRows *rows) {
 
 static void fill_rest(const PoseRows *rows, const Scene *scene, const BodyPose *poses, float *rest) {
     for (int body = 0; body < scene->body_count; body++) {
-        if (!moves(scene, body)) continue;
+        if (!components_moves(scene, body)) continue;
         subspace_pose_numbers(scene->bodies[body].size, poses[body].position, poses[body].angle, rest);
         rest += SUBSPACE_POSE;
     }
@@ -134,7 +136,7 @@ bool pose_components_fit(const PoseRows *rows, const Scene *scene, const BodyPos
     return ok || error_memory(error, "subspace");
 }
 
-static float component(const PoseRows *rows, const SubspaceNet *net, const float *row, int k) {
+static float components_component(const PoseRows *rows, const SubspaceNet *net, const float *row, int k) {
     const float *axis = net->basis + (size_t)k * (size_t)subspace_lanes(rows->numbers);
     double sum = 0;
     for (int j = 0; j < rows->numbers; j++) sum += (double)axis[j] * ((double)row[j] - (double)net->rest[j]);
@@ -147,7 +149,7 @@ void pose_components_project(const PoseRows *rows, SubspaceNet *net, float *comp
 #pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < states; i++)
         for (int k = 0; k < count; k++)
-            components[i * count + k] = component(rows, net, rows->rows + i * rows->numbers, k);
+            components[i * count + k] = components_component(rows, net, rows->rows + i * rows->numbers, k);
     for (int k = 0; k < count; k++) net->low[k] = net->high[k] = components[k];
     for (int64_t i = 0; i < states; i++)
         for (int k = 0; k < count; k++) {

@@ -27,14 +27,16 @@ typedef struct LaunchRecorder {
     PairMoment now;
 } LaunchRecorder;
 
-static bool reserve(PairMoment *moment, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool dataset_reserve(PairMoment *moment, const ContactProblem *problem, ContactSolution *solution,
+                            Error *error) {
     if (!pair_moment_reserve(moment, problem)) return error_memory(error, "dataset");
     *solution = pair_moment_solution(moment);
     return true;
 }
 
 /* The solution that the changes are computed from. *known: false if it did not converge, which is counted. */
-static bool label(LaunchRecorder *recorder, const World *world, ContactSolution *solution, bool *known, Error *error) {
+static bool dataset_label(LaunchRecorder *recorder, const World *world, ContactSolution *solution, bool *known,
+                          Error *error) {
     const ContactProblem *problem = world_problem(world);
     *solution = *world_solution(world);
     *known = true;
@@ -43,7 +45,7 @@ static bool label(LaunchRecorder *recorder, const World *world, ContactSolution 
     if (!reference_solve(reference, problem, NULL, error)) return false;
     *known = reference_converged(reference);
     recorder->launch->unconverged += !*known;
-    if (!reserve(&recorder->labels, problem, solution, error)) return false;
+    if (!dataset_reserve(&recorder->labels, problem, solution, error)) return false;
     for (int i = 0; i < problem->body_count; i++) {
         const ReferenceVelocity *v = &reference->velocities[i];
         solution->velocities[i] = (BodyVelocity){vec2((float)v->x, (float)v->y), (float)v->spin};
@@ -68,7 +70,7 @@ static PairRow *add_row(LaunchRecorder *recorder, int frame, const ContactProble
 }
 
 /* changes[3]: the difference of two velocities. */
-static void difference(float *changes, const BodyVelocity *to, const BodyVelocity *from) {
+static void dataset_difference(float *changes, const BodyVelocity *to, const BodyVelocity *from) {
     changes[0] = to->linear.x - from->linear.x;
     changes[1] = to->linear.y - from->linear.y;
     changes[2] = to->angular - from->angular;
@@ -85,9 +87,9 @@ static bool record_step(LaunchRecorder *recorder, int frame, const World *world,
     const SequentialOptions options = sweeps_of(recorder->scene);
     ContactSolution solution, begun;
     bool known;
-    if (!label(recorder, world, &solution, &known, error)) return false;
+    if (!dataset_label(recorder, world, &solution, &known, error)) return false;
     if (!known) return true;
-    if (!reserve(&recorder->now, problem, &begun, error)) return false;
+    if (!dataset_reserve(&recorder->now, problem, &begun, error)) return false;
     const bool by_contact = pair_views[dataset->view].by_contact;
     if (by_contact) sequential_impulses_begin(problem, &options, &begun);
     if (dataset->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&recorder->now, problem);
@@ -105,7 +107,7 @@ static bool record_visits(LaunchRecorder *recorder, int frame, const World *worl
     const ContactProblem *problem = world_problem(world);
     const SequentialOptions options = sweeps_of(recorder->scene);
     ContactSolution now;
-    if (!reserve(&recorder->now, problem, &now, error)) return false;
+    if (!dataset_reserve(&recorder->now, problem, &now, error)) return false;
     sequential_impulses_begin(problem, &options, &now);
     for (int sweep = 0; sweep < recorder->scene->iterations; sweep++)
         for (int first = 0, count; first < problem->contact_count; first += count) {
@@ -115,15 +117,15 @@ static bool record_visits(LaunchRecorder *recorder, int frame, const World *worl
             const BodyVelocity *a = &now.velocities[row->bodies[0]], *b = &now.velocities[row->bodies[1]];
             BodyVelocity before_a = *a, before_b = *b;
             sequential_impulses_visit(problem, &options, first, count, &now);
-            difference(row->changes, a, &before_a);
-            difference(row->changes + 3, b, &before_b);
+            dataset_difference(row->changes, a, &before_a);
+            dataset_difference(row->changes + 3, b, &before_b);
             if (pair_views[recorder->dataset->view].by_contact)
                 pair_to_contact_frame(&problem->contacts[first], row->changes);
         }
     return true;
 }
 
-static bool observe(void *context, int frame, const World *world, Error *error) {
+static bool dataset_observe(void *context, int frame, const World *world, Error *error) {
     LaunchRecorder *recorder = context;
     return recorder->dataset->target == TARGET_IMPULSE ? record_visits(recorder, frame, world, error)
                                                        : record_step(recorder, frame, world, error);
@@ -132,7 +134,7 @@ static bool observe(void *context, int frame, const World *world, Error *error) 
 bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error) {
     LaunchRecorder recorder = {.dataset = dataset, .scene = launched, .launch = rows};
     Method method;
-    StepObserver observer = {observe, &recorder};
+    StepObserver observer = {dataset_observe, &recorder};
     bool ok = method_parse(&method, "engine", error) && simulate_observed(launched, &method, &observer, error);
     reference_free(&recorder.reference);
     pair_moment_free(&recorder.labels);
@@ -221,7 +223,9 @@ Dataset *dataset_draw_subset(const Dataset *dataset, int count, uint64_t seed, E
 /* The paper's random launches (3.3). */
 static const double random_x = 15, random_rotation = 1.5, random_spin = 20;
 
-static float draw(const gsl_rng *generator, double limit) { return (float)gsl_ran_flat(generator, -limit, limit); }
+static float dataset_draw(const gsl_rng *generator, double limit) {
+    return (float)gsl_ran_flat(generator, -limit, limit);
+}
 
 static void put_launch(Dataset *dataset, int i, const Launch *launch) {
     dataset->launch_x[i] = launch->x;
@@ -241,9 +245,9 @@ static void draw_launches(const DatasetOptions *options, const Scene *scene, con
         if (k < options->bomb_x.count) {
             out[k].x = range_value(&options->bomb_x, k);
         } else {
-            out[k].x = draw(generator, random_x);
-            out[k].rotation = draw(generator, random_rotation);
-            out[k].spin = draw(generator, random_spin);
+            out[k].x = dataset_draw(generator, random_x);
+            out[k].rotation = dataset_draw(generator, random_rotation);
+            out[k].spin = dataset_draw(generator, random_spin);
         }
     }
 }
@@ -285,7 +289,7 @@ static bool put_launches(Dataset *dataset, const DatasetOptions *options, Scene 
 }
 
 /* Draws the held-out launches. */
-static bool split(Dataset *dataset, int launches_per_scene, const gsl_rng *generator) {
+static bool dataset_split(Dataset *dataset, int launches_per_scene, const gsl_rng *generator) {
     int *order = malloc((size_t)launches_per_scene * sizeof *order);
     if (order == NULL) return false;
     for (int scene = 0; scene < dataset->scene_count; scene++) {
@@ -299,12 +303,12 @@ static bool split(Dataset *dataset, int launches_per_scene, const gsl_rng *gener
 }
 
 /* The split is drawn first, so that it does not depend on later draws. */
-static bool fill(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
+static bool dataset_fill(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
     gsl_set_error_handler_off(); /* its default aborts */
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     if (generator == NULL) return error_memory(error, "dataset");
     gsl_rng_set(generator, (unsigned long)options->seed);
-    bool ok = split(dataset, dataset_launches_each(options), generator) || error_memory(error, "dataset");
+    bool ok = dataset_split(dataset, dataset_launches_each(options), generator) || error_memory(error, "dataset");
     ok = ok && put_launches(dataset, options, scenes, generator, error);
     gsl_rng_free(generator);
     return ok;
@@ -320,7 +324,7 @@ Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes
     for (int i = 0; i < options->scene_count; i++) strcpy(dataset->scenes[i], scenes[i]->name);
     if ((dataset_make_launches(dataset, options->scene_count * dataset_launches_each(options)) ||
          error_memory(error, "dataset")) &&
-        fill(dataset, options, scenes, error))
+        dataset_fill(dataset, options, scenes, error))
         return dataset;
     dataset_destroy(dataset);
     return NULL;

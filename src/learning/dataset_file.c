@@ -150,7 +150,7 @@ static bool read_sizes(void *of, NpzFile *npz, Error *error) {
     return true;
 }
 
-static bool create(void *of, Error *error) {
+static bool dataset_file_create(void *of, Error *error) {
     const DatasetFile *file = of;
     return (dataset_make_launches(file->dataset, file->dataset->launches) &&
             dataset_make_rows(file->dataset, file->dataset->rows, file->context)) ||
@@ -198,7 +198,8 @@ static bool check_contents(void *of, const char *path, Error *error) {
            check_context(dataset, path, error) && check_split(dataset, path, error);
 }
 
-static const NetFileKind kind = {"dataset", DATASET_VERSION, list_fields, read_sizes, create, check_contents};
+static const NetFileKind kind = {"dataset",  DATASET_VERSION,     list_fields,
+                                 read_sizes, dataset_file_create, check_contents};
 
 int dataset_arrays(const Dataset *dataset, DatasetArrays *arrays) {
     DatasetFile file = {(Dataset *)dataset, dataset->context != NULL, arrays->scenes};

@@ -22,7 +22,7 @@ typedef struct Recording {
 } Recording;
 
 /* Drops and frees the other rows now: those of many launches would exceed memory. */
-static void thin(LaunchRows *launch, size_t every) {
+static void dataset_record_thin(LaunchRows *launch, size_t every) {
     size_t kept = 0;
     for (size_t row = 0; row < launch->count; row += every) launch->rows[kept++] = launch->rows[row];
     launch->count = kept;
@@ -35,7 +35,7 @@ static bool record_launch(void *context, int i, Error *error) {
     const Scene scene = dataset_launch(recording->dataset, recording->scenes, i);
     LaunchRows *launch = &recording->launches[i];
     if (!dataset_record_rows(recording->dataset, &scene, launch, error)) return false;
-    if (recording->options->every > 1) thin(launch, (size_t)recording->options->every);
+    if (recording->options->every > 1) dataset_record_thin(launch, (size_t)recording->options->every);
     return true;
 }
 
@@ -56,7 +56,7 @@ static void place_rows(const Dataset *dataset, LaunchRows *launch, int i, size_t
 }
 
 /* Concatenates the rows of the launches, in order. */
-static bool gather(const Recording *recording, Error *error) {
+static bool dataset_record_gather(const Recording *recording, Error *error) {
     Dataset *dataset = recording->dataset;
     LaunchRows *launches = recording->launches;
     size_t rows = 0;
@@ -77,7 +77,7 @@ static bool record_launches(Recording *recording, const Progress *progress, Erro
     recording->launches = calloc((size_t)count, sizeof *recording->launches);
     if (recording->launches == NULL) return error_memory(error, "dataset");
     const ParallelWork work = {record_launch, recording};
-    return parallel_for(&work, count, "recorded launches", progress, error) && gather(recording, error);
+    return parallel_for(&work, count, "recorded launches", progress, error) && dataset_record_gather(recording, error);
 }
 
 static bool check_rows(const Dataset *dataset, Error *error) {
@@ -148,7 +148,7 @@ typedef struct Work {
     const Method *method;
 } Work;
 
-static void record(const LaunchRuns *runs, const World *world, BodyPose *poses) {
+static void dataset_record_poses(const LaunchRuns *runs, const World *world, BodyPose *poses) {
     const Body *bodies = world_bodies(world);
     const int count = world_body_count(world);
     for (int i = 0; i < runs->bodies; i++)
@@ -161,10 +161,10 @@ typedef struct LaunchRun {
     BodyPose *poses; /* [frames, bodies] */
 } LaunchRun;
 
-static bool observe(void *context, int frame, const World *world, Error *error) {
+static bool dataset_record_observe(void *context, int frame, const World *world, Error *error) {
     (void)error;
     const LaunchRun *run = context;
-    record(run->runs, world, run->poses + (size_t)frame * (size_t)run->runs->bodies);
+    dataset_record_poses(run->runs, world, run->poses + (size_t)frame * (size_t)run->runs->bodies);
     return true;
 }
 
@@ -172,11 +172,11 @@ static bool run_launch(void *context, int i, Error *error) {
     const Work *work = context;
     const LaunchRuns *runs = work->runs;
     LaunchRun run = {runs, runs->poses + (size_t)i * (size_t)runs->frames * (size_t)runs->bodies};
-    const StepObserver observer = {observe, &run};
+    const StepObserver observer = {dataset_record_observe, &run};
     const Scene launched = launch_scene(work->scene, &runs->launches[i]);
     World *start = scene_world(&launched, error);
     if (start == NULL) return false;
-    record(runs, start, run.poses);
+    dataset_record_poses(runs, start, run.poses);
     world_destroy(start);
     return simulate_observed(&launched, work->method, &observer, error);
 }

@@ -173,7 +173,7 @@ typedef struct Measured {
     float fastest, strongest;
 } Measured;
 
-static void measure(Measured *sum, const GnsExample *example) {
+static void gns_training_measure(Measured *sum, const GnsExample *example) {
     for (int i = 0; i < gns_particle_count(&example->particles); i++) {
         const Vec2 velocity = example->particles.velocity[i][GNS_HISTORY - 1];
         const float *target = example->targets + (ptrdiff_t)GNS_OUTPUTS * i;
@@ -191,7 +191,7 @@ static bool find_scales(const GnsExamples *examples, float radius, GnsScales *sc
     bool ok = true;
     for (uint64_t i = 0; ok && i < SCALE_EXAMPLES; i++) {
         ok = gns_example_make(&example, examples, i);
-        if (ok) measure(&sum, &example);
+        if (ok) gns_training_measure(&sum, &example);
     }
     gns_example_free(&example);
     if (!ok) return error_memory(error, "gns");
@@ -203,7 +203,7 @@ static bool find_scales(const GnsExamples *examples, float radius, GnsScales *sc
     return true;
 }
 
-static bool record(Trainer *trainer, Error *error) {
+static bool gns_training_record(Trainer *trainer, Error *error) {
     const GnsTraining *training = trainer->training;
     Method method;
     bool ok = method_parse(&method, gns_teacher, error);
@@ -224,7 +224,7 @@ static void use_weights(Trainer *trainer) {
     for (int64_t i = 0; i < adam->count; i++) trainer->net->parameters[i] = (float)adam->weights[i];
 }
 
-static bool step(void *context, Adam *adam, double *loss, Error *error) {
+static bool gns_training_step(void *context, Adam *adam, double *loss, Error *error) {
     Trainer *trainer = context;
     const GnsTraining *training = trainer->training;
     double *slopes = trainer->batches.mean_gradient, batch_loss;
@@ -237,7 +237,7 @@ static bool step(void *context, Adam *adam, double *loss, Error *error) {
     return true;
 }
 
-static bool score(Trainer *trainer, double loss, Error *error) {
+static bool gns_training_score(Trainer *trainer, double loss, Error *error) {
     GnsScore result = {.steps = (int)trainer->fit.adam.steps, .loss = loss};
     for (int i = 0; i < HELD_OUT_BATCHES; i++) {
         double held_out = 0;
@@ -255,14 +255,14 @@ static bool score_some(void *context, double loss, int64_t steps, Error *error) 
     const int64_t now = trainer->fit.adam.steps, all = trainer->training->steps;
     if (now * SCORES / all == (now - steps) * SCORES / all) return true;
     const double begin = clock_seconds();
-    if (!score(trainer, loss / (double)steps, error)) return false;
+    if (!gns_training_score(trainer, loss / (double)steps, error)) return false;
     trainer->scoring += clock_seconds() - begin;
     return true;
 }
 
 static bool run_steps(Trainer *trainer, Error *error) {
     GnsTraining *training = trainer->training;
-    const FitSteps steps = {training->steps, EPOCH, step, score_some, trainer};
+    const FitSteps steps = {training->steps, EPOCH, gns_training_step, score_some, trainer};
     const double begin = clock_seconds();
     const int64_t before = trainer->fit.adam.steps;
     double loss;
@@ -290,7 +290,7 @@ bool gns_training_time_pass(const GnsNet *net, const GnsRuns *runs, double *seco
     return ok || error_memory(error, "gns");
 }
 
-static bool begin(Trainer *trainer, Error *error) {
+static bool gns_training_begin(Trainer *trainer, Error *error) {
     const GnsTraining *training = trainer->training;
     const GnsLayout *layout = &trainer->net->layout;
     bool found;
@@ -318,17 +318,17 @@ static bool take_gravity(const GnsTraining *training, GnsNet *net, Error *error)
     return true;
 }
 
-static bool run(Trainer *trainer, Error *error) {
+static bool run_gns_training(Trainer *trainer, Error *error) {
     const GnsTraining *training = trainer->training;
     trainer->examples.noise = training->noise;
     trainer->examples.seed = training->seed << 32;
     const bool begun = gns_net_create(trainer->net, training->width, training->rounds, error) &&
-                       take_gravity(training, trainer->net, error) && begin(trainer, error);
+                       take_gravity(training, trainer->net, error) && gns_training_begin(trainer, error);
     if (!begun) {
         destroy_scenes(training);
         return false;
     }
-    if (!record(trainer, error)) return false;
+    if (!gns_training_record(trainer, error)) return false;
     trainer->held_out = trainer->examples;
     trainer->held_out.seed = ~trainer->examples.seed;
     progress_next_stage(&trainer->fit.share, 1 - record_share);
@@ -351,7 +351,7 @@ bool gns_training_run(GnsTraining *training, GnsNet *net, const Progress *progre
     trainer->training = training;
     trainer->net = net;
     fit_init(&trainer->fit, training->command, training->state_path, progress);
-    const bool ok = run(trainer, error);
+    const bool ok = run_gns_training(trainer, error);
     gns_fit_free(&trainer->batches);
     gns_examples_free(&trainer->examples);
     fit_free(&trainer->fit);

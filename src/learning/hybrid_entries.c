@@ -77,7 +77,7 @@ static void find_neighbours(NewEntry *fit, const HybridMemory *memory, const Hyb
 }
 
 /* Inverts a symmetric positive definite matrix in place, by Gauss and Jordan. */
-static void invert(double matrix[HYBRID_NEAR][HYBRID_NEAR], int count) {
+static void hybrid_entries_invert(double matrix[HYBRID_NEAR][HYBRID_NEAR], int count) {
     for (int p = 0; p < count; p++) {
         const double pivot = 1 / matrix[p][p];
         matrix[p][p] = 1;
@@ -101,7 +101,7 @@ static void fit_weights(NewEntry *fit, int key_size) {
             trace += n == m ? normal[n][n] : 0;
         }
     for (int n = 0; n < fit->count; n++) normal[n][n] += ridge * trace / fit->count + 1e-12;
-    invert(normal, fit->count);
+    hybrid_entries_invert(normal, fit->count);
     for (int n = 0; n < HYBRID_NEAR; n++)
         for (int i = 0; i < key_size; i++) {
             double sum = 0;
@@ -157,7 +157,7 @@ static void make_metric(NewEntry *fit, const HybridMemory *memory) {
         }
 }
 
-static bool add(HybridMemory *memory, const SolvedStep *step, Error *error) {
+static bool hybrid_entries_add(HybridMemory *memory, const SolvedStep *step, Error *error) {
     NewEntry fit;
     find_neighbours(&fit, memory, &step->query);
     for (int n = fit.count; n < HYBRID_NEAR; n++) fit.near[n] = -1;
@@ -197,7 +197,7 @@ bool entry_learn(HybridMemory *memory, const SolvedStep *step, size_t limit, Con
         hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, step->query.contacts) > limit)
         return true;
     *lesson = LESSON_ADDED;
-    return add(memory, step, error);
+    return hybrid_entries_add(memory, step, error);
 }
 
 float entry_check(HybridMemory *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
@@ -269,7 +269,7 @@ void asked_steps_free(AskedSteps *steps) {
 }
 
 /* A copy in the block; *at moves on. */
-static void *keep(char **at, const void *data, size_t size) {
+static void *hybrid_entries_keep(char **at, const void *data, size_t size) {
     void *to = *at;
     if (size > 0) memcpy(to, data, size);
     *at += size;
@@ -291,11 +291,11 @@ static bool see(void *context, const HybridStep *step, Error *error) {
                contacts * (sizeof(ContactPoint) + sizeof(ContactImpulse)) + numbers * sizeof(float));
     if (at == NULL) return error_memory(error, "hybrid");
     steps->count++;
-    copy->problem.bodies = keep(&at, step->problem->bodies, bodies * sizeof(ProblemBody));
-    copy->problem.contacts = keep(&at, step->problem->contacts, contacts * sizeof(ContactPoint));
-    copy->solution.velocities = keep(&at, step->solution->velocities, bodies * sizeof(BodyVelocity));
-    copy->solution.impulses = keep(&at, step->solution->impulses, contacts * sizeof(ContactImpulse));
-    copy->others = keep(&at, step->others, numbers * sizeof(float));
+    copy->problem.bodies = hybrid_entries_keep(&at, step->problem->bodies, bodies * sizeof(ProblemBody));
+    copy->problem.contacts = hybrid_entries_keep(&at, step->problem->contacts, contacts * sizeof(ContactPoint));
+    copy->solution.velocities = hybrid_entries_keep(&at, step->solution->velocities, bodies * sizeof(BodyVelocity));
+    copy->solution.impulses = hybrid_entries_keep(&at, step->solution->impulses, contacts * sizeof(ContactImpulse));
+    copy->others = hybrid_entries_keep(&at, step->others, numbers * sizeof(float));
     memcpy(copy->bomb, step->bomb, sizeof copy->bomb);
     steps->seconds += clock_thread_seconds() - begin;
     return true;

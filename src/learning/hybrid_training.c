@@ -36,7 +36,7 @@ typedef struct Trainer {
     HybridMemory *memory;         /* NULL until the directions are fitted */
 } Trainer;
 
-static float draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
+static float hybrid_training_draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
     const double share = random_unit(state);
     return scene_span_at(scene_span_varies(span) ? span : otherwise, share);
 }
@@ -47,9 +47,9 @@ Launch hybrid_launch(const Scene *scene, uint64_t seed, int i, bool turns) {
     uint64_t state = seed;
     state = split_mix(&state) + (uint64_t)i;
     Launch launch = launch_of(scene);
-    launch.x = draw(&state, &bomb->x, &bomb->x);
-    launch.rotation = draw(&state, &bomb->rotation, turns ? &turned : &bomb->rotation);
-    launch.spin = draw(&state, &bomb->spin, turns ? &spinning : &bomb->spin);
+    launch.x = hybrid_training_draw(&state, &bomb->x, &bomb->x);
+    launch.rotation = hybrid_training_draw(&state, &bomb->rotation, turns ? &turned : &bomb->rotation);
+    launch.spin = hybrid_training_draw(&state, &bomb->spin, turns ? &spinning : &bomb->spin);
     return launch;
 }
 
@@ -82,7 +82,7 @@ static bool fit_keys(Trainer *trainer, Error *error) {
     return ok;
 }
 
-static bool check(Trainer *trainer, SolvedStep *step, int entry, HybridLaunch *launch, Error *error) {
+static bool hybrid_training_check(Trainer *trainer, SolvedStep *step, int entry, HybridLaunch *launch, Error *error) {
     if (!pair_moment_reserve(&trainer->converged, step->problem)) return error_memory(error, "hybrid");
     ContactSolution converged = pair_moment_solution(&trainer->converged),
                     answer = pair_moment_solution(&trainer->answer);
@@ -99,7 +99,7 @@ static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, Hy
     hybrid_memory_key(trainer->memory, asked->bomb, asked->others, key);
     SolvedStep step = {&asked->problem, &asked->solution, {asked->hash, asked->problem.contact_count, key}};
     if (!pair_moment_reserve(&trainer->answer, &asked->problem)) return error_memory(error, "hybrid");
-    if (asked->entry >= 0) return !checks || check(trainer, &step, asked->entry, launch, error);
+    if (asked->entry >= 0) return !checks || hybrid_training_check(trainer, &step, asked->entry, launch, error);
     ContactSolution answer = pair_moment_solution(&trainer->answer);
     Lesson lesson;
     if (!entry_learn(trainer->memory, &step, trainer->training->limit, &answer, &lesson, error)) return false;
@@ -154,13 +154,13 @@ static bool resume(Trainer *trainer, Error *error) {
     return true;
 }
 
-static bool store(const Trainer *trainer, Error *error) {
+static bool hybrid_training_store(const Trainer *trainer, Error *error) {
     const HybridMemory *memory = trainer->memory;
     if (trainer->training->state_path == NULL || memory == NULL || memory->entry_count == 0) return true;
     return hybrid_memory_write(memory, trainer->training->state_path, error);
 }
 
-static bool train(Trainer *trainer, const Progress *progress, Error *error) {
+static bool hybrid_training_train(Trainer *trainer, const Progress *progress, Error *error) {
     const int launches = trainer->training->launches;
     if (!launches_check(trainer->scene, trainer->launches, launches, error) || !resume(trainer, error)) return false;
     trainer->prefix = hybrid_prefix(trainer->scene, error);
@@ -168,7 +168,7 @@ static bool train(Trainer *trainer, const Progress *progress, Error *error) {
     for (int i = trainer->memory != NULL ? trainer->memory->launches : 0; i < launches; i++) {
         if (!do_launch(trainer, i, error)) return false;
         const bool goes_on = progress_report(progress, i + 1, launches);
-        if ((!goes_on || (i + 1) % STORE_EVERY == 0) && !store(trainer, error)) return false;
+        if ((!goes_on || (i + 1) % STORE_EVERY == 0) && !hybrid_training_store(trainer, error)) return false;
         if (!goes_on) break;
     }
     return trainer->memory != NULL || error_interrupted(error, "hybrid", "stopped before anything was learned");
@@ -183,7 +183,7 @@ HybridMemory *hybrid_training_run(const Scene *scene, const HybridTraining *trai
     bool ok = trainer.launches != NULL || error_memory(error, "hybrid");
     if (ok) {
         draw_launches(&trainer);
-        ok = train(&trainer, progress, error);
+        ok = hybrid_training_train(&trainer, progress, error);
     }
     world_destroy(trainer.prefix);
     solver_destroy(&trainer.interior);

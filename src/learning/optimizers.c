@@ -275,8 +275,8 @@ static double loss_of(const Trainer *trainer, const gsl_vector *f) {
 }
 
 /* Ends early, without an error, if no damping lowers the loss. */
-static bool run(Trainer *trainer, gsl_multilarge_nlinear_workspace *work, GaussNewton *gauss_newton, double *parameters,
-                Error *error) {
+static bool optimizers_run(Trainer *trainer, gsl_multilarge_nlinear_workspace *work, GaussNewton *gauss_newton,
+                           double *parameters, Error *error) {
     LeastSquares problem = {trainer, gauss_newton};
     gsl_multilarge_nlinear_fdf function = {
         .f = residuals, .df = derivatives, .n = work->n, .p = work->p, .params = &problem};
@@ -307,7 +307,7 @@ static bool lm_minimize(Trainer *trainer, double *parameters, Error *error) {
     gsl_multilarge_nlinear_workspace *work = gsl_multilarge_nlinear_alloc(gsl_multilarge_nlinear_trust, &settings,
                                                                           residual_count, (size_t)trainer->parameters);
     GaussNewton *gauss_newton = gauss_newton_create(trainer->network, error);
-    bool ok = work != NULL && gauss_newton != NULL ? run(trainer, work, gauss_newton, parameters, error)
+    bool ok = work != NULL && gauss_newton != NULL ? optimizers_run(trainer, work, gauss_newton, parameters, error)
                                                    : error_memory(error, "training");
     gauss_newton_destroy(gauss_newton);
     gsl_multilarge_nlinear_free(work);
@@ -339,7 +339,7 @@ static void gradient_only(const gsl_vector *x, void *context, gsl_vector *gradie
 }
 
 /* One step. If the line search fails, restarts once along the gradient. False if that fails too. */
-static bool iterate(gsl_multimin_fdfminimizer *minimizer) {
+static bool optimizers_iterate(gsl_multimin_fdfminimizer *minimizer) {
     if (gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS) return true;
     return gsl_multimin_fdfminimizer_restart(minimizer) == GSL_SUCCESS &&
            gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS;
@@ -355,7 +355,7 @@ static bool bfgs_minimize(Trainer *trainer, double *parameters, Error *error) {
     gsl_multimin_fdfminimizer_set(minimizer, &function, &start.vector, first_step, line_search_accuracy);
     bool ok;
     do ok = trainer_visit(trainer, minimizer->x->data, minimizer->f, error);
-    while (ok && !trainer->finished && iterate(minimizer));
+    while (ok && !trainer->finished && optimizers_iterate(minimizer));
     gsl_multimin_fdfminimizer_free(minimizer);
     return ok;
 }

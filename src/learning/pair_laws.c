@@ -133,7 +133,7 @@ static void label_change(const Dataset *dataset, int64_t row, double change[PAIR
     for (int k = 0; k < PAIR_CHANGES; k++) change[k] = (double)dataset->changes[row * PAIR_CHANGES + k];
 }
 
-static void fill(Laws *laws, const Dataset *dataset, const LawNumbers *weights) {
+static void pair_laws_fill(Laws *laws, const Dataset *dataset, const LawNumbers *weights) {
     double change[PAIR_CHANGES], slope[PAIR_CHANGES], squares[LAWS] = {0};
     int64_t count = 0;
     for (int64_t row = 0; row < dataset->rows; row++) {
@@ -161,7 +161,7 @@ Laws *laws_create(const Dataset *dataset, const Network *network, const LawNumbe
     if (laws == NULL || rows == NULL) return error_memory(error, "training"), free(laws), free(rows), NULL;
     laws->network = network;
     laws->rows = rows;
-    fill(laws, dataset, weights);
+    pair_laws_fill(laws, dataset, weights);
     return laws;
 }
 
@@ -203,8 +203,8 @@ static void predicted_change(const Dataset *dataset, const Network *network, int
     for (int k = 0; k < PAIR_CHANGES; k++) change[k] = (double)output[k];
 }
 
-static bool measure(const Dataset *dataset, const Network *network, float *scratch, LawNumbers *violations,
-                    Error *error) {
+static bool pair_laws_measure(const Dataset *dataset, const Network *network, float *scratch, LawNumbers *violations,
+                              Error *error) {
     double change[PAIR_CHANGES], slope[PAIR_CHANGES];
     int64_t count = 0;
     *violations = (LawNumbers){{0}};
@@ -227,12 +227,12 @@ bool laws_measure(const Dataset *dataset, const Network *network, LawNumbers *vi
     const LawNumbers none = {{0}};
     if (!laws_check(dataset, network != NULL ? network->widths[network->layers] : PAIR_CHANGES, &none, error))
         return false;
-    if (network == NULL) return measure(dataset, NULL, NULL, violations, error);
+    if (network == NULL) return pair_laws_measure(dataset, NULL, NULL, violations, error);
     if (strcmp(network->inputs, pair_views[dataset->view].inputs) != 0)
         return error_input(error, "laws", "the network has other inputs (%.80s)", network->inputs);
     float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch);
     if (scratch == NULL) return error_memory(error, "laws");
-    const bool ok = measure(dataset, network, scratch, violations, error);
+    const bool ok = pair_laws_measure(dataset, network, scratch, violations, error);
     free(scratch);
     return ok;
 }

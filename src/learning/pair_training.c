@@ -88,7 +88,7 @@ void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Networ
 }
 
 /* The same float32 expression as in network_predict(), so that training and inference see the same inputs. */
-static float normalise(const Normalisation *normalisation, int column, float x) {
+static float pair_training_normalise(const Normalisation *normalisation, int column, float x) {
     return (x - normalisation->offset[column]) * normalisation->scale[column];
 }
 
@@ -96,10 +96,10 @@ static void store_row(Samples *samples, int64_t to, const Dataset *dataset, int6
     int64_t b = to / BLOCK_ROWS, r = to % BLOCK_ROWS;
     for (int i = 0; i < samples->inputs; i++)
         samples->x[(b * samples->inputs + i) * BLOCK_ROWS + r] =
-            normalise(&network->input, i, input_at(dataset, row, i));
+            pair_training_normalise(&network->input, i, input_at(dataset, row, i));
     for (int k = 0; k < samples->outputs; k++)
         samples->y[(b * samples->outputs + k) * BLOCK_ROWS + r] =
-            normalise(&network->output, k, target_at(dataset, row, samples->outputs, k));
+            pair_training_normalise(&network->output, k, target_at(dataset, row, samples->outputs, k));
 }
 
 Samples *samples_create(const Dataset *dataset, const Network *network, bool test, Error *error) {
@@ -150,7 +150,7 @@ static const Word scale_words[] = {{"minmax", SCALE_MINMAX}, {"standard", SCALE_
 static const Word loss_words[] = {{"mse", LOSS_MSE}, {"smooth-l1", LOSS_SMOOTH_L1}, {NULL, 0}};
 
 /* If name is NULL, value keeps its default. */
-static bool choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
+static bool pair_training_choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
     if (name == NULL) return true;
     NameList known = {0};
     for (int i = 0; words[i].name != NULL; i++) {
@@ -163,7 +163,7 @@ static bool choose(const char *option, const char *name, const Word *words, int 
 /* ERROR_INPUT: an unknown word. */
 static bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Error *error) {
     int loss = LOSS_MSE;
-    if (!choose("loss", options->loss, loss_words, &loss, error)) return false;
+    if (!pair_training_choose("loss", options->loss, loss_words, &loss, error)) return false;
     *kind = (LossKind)loss;
     return true;
 }
@@ -173,11 +173,11 @@ static bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Erro
 static bool network_config_parse(NetworkConfig *config, const TrainingOptions *options, Error *error) {
     bool two = options->widths[options->layers] == 2;
     int hidden = ACTIVATION_SIGMOID, output = two ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;
-    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
-        !choose("output activation", options->output_activation, output_words, &output, error))
+    if (!pair_training_choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !pair_training_choose("output activation", options->output_activation, output_words, &output, error))
         return false;
     int scale = output == ACTIVATION_LINEAR ? SCALE_STANDARD : SCALE_MINMAX;
-    if (!choose("scale", options->scale, scale_words, &scale, error)) return false;
+    if (!pair_training_choose("scale", options->scale, scale_words, &scale, error)) return false;
     if (output == ACTIVATION_SIGMOID && scale == SCALE_STANDARD)
         return error_input(error, "scale", "standard needs linear outputs: a sigmoid stays between 0 and 1");
     *config = (NetworkConfig){(Activation)hidden, (Activation)output, (OutputScale)scale};
@@ -188,8 +188,8 @@ bool network_config_matches(const Network *start, const TrainingOptions *options
     if (options->scale != NULL)
         return error_input(error, "scale", "the start network keeps its own scale; omit this option");
     int last = start->layers - 1, hidden = ACTIVATION_SIGMOID, output = (int)start->activations[last];
-    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
-        !choose("output activation", options->output_activation, output_words, &output, error))
+    if (!pair_training_choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !pair_training_choose("output activation", options->output_activation, output_words, &output, error))
         return false;
     for (int l = 0; options->hidden != NULL && l < last; l++)
         if (start->activations[l] != (Activation)hidden)
@@ -325,8 +325,8 @@ static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *netw
     return ok;
 }
 
-static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer, const TrainingOptions *options,
-                  const Progress *progress, Error *error) {
+static bool pair_training_train(Network *network, const Dataset *dataset, const Optimizer *optimizer,
+                                const TrainingOptions *options, const Progress *progress, Error *error) {
     const bool with_laws = law_weights_any(&options->laws);
     Laws *laws = with_laws ? laws_create(dataset, network, &options->laws, error) : NULL;
     LossKind kind = LOSS_MSE;
@@ -360,7 +360,7 @@ Network *training_run(const Dataset *dataset, const TrainingOptions *options, co
     if (optimizer == NULL || !training_check(dataset, options, error)) return NULL;
     Network *network =
         options->start != NULL ? network_copy(options->start, error) : new_network(dataset, options, error);
-    if (network != NULL && !train(network, dataset, optimizer, options, progress, error)) {
+    if (network != NULL && !pair_training_train(network, dataset, optimizer, options, progress, error)) {
         network_destroy(network);
         network = NULL;
     }

@@ -178,7 +178,7 @@ static bool fit_make(Principal *fit, const SparseRows *rows, int wanted, Error *
     return true;
 }
 
-static void start(Principal *fit, uint64_t seed) {
+static void principal_start(Principal *fit, uint64_t seed) {
     gsl_rng_set(fit->generator, (unsigned long)((seed ^ seed >> 32) & UINT32_MAX)); /* it takes 32 bits */
     for (size_t i = 0; i < fit->columns * fit->width; i++) fit->basis[i] = gsl_ran_gaussian_ziggurat(fit->generator, 1);
 }
@@ -257,7 +257,7 @@ static void write_components(const Principal *fit, Projection *projection) {
 }
 
 static bool fit_components(Principal *fit, uint64_t seed) {
-    start(fit, seed);
+    principal_start(fit, seed);
     for (int pass = 0; pass <= POWER_ITERATIONS; pass++) {
         if (pass > 0) memcpy(fit->basis, fit->image, fit->columns * fit->width * sizeof *fit->basis);
         orthonormalise(fit);

@@ -60,7 +60,7 @@ typedef struct Inputs {
     const float *low, *high;
 } Inputs;
 
-static void normalise(double *values, int row, const float *numbers, int count, const Inputs *inputs) {
+static void sain_fit_normalise(double *values, int row, const float *numbers, int count, const Inputs *inputs) {
     for (int i = 0; i < count; i++) {
         float x = numbers[i];
         if (inputs->low != NULL) x = x < inputs->low[i] ? inputs->low[i] : x > inputs->high[i] ? inputs->high[i] : x;
@@ -85,8 +85,8 @@ static void fill_rows(SainLoss *loss, const SainPart *part) {
     for (int i = 0; i < part->count; i++) {
         const SainSample *sample = &part->samples->items[part->items[i]];
         for (int k = 0; k < sample->rows; k++, r++)
-            normalise(loss->relation[r / BLOCK_ROWS]->values[0], r % BLOCK_ROWS,
-                      part->samples->rows[sample->first + k].numbers, SAIN_PAIR_INPUTS, &inputs);
+            sain_fit_normalise(loss->relation[r / BLOCK_ROWS]->values[0], r % BLOCK_ROWS,
+                               part->samples->rows[sample->first + k].numbers, SAIN_PAIR_INPUTS, &inputs);
     }
 }
 
@@ -99,7 +99,7 @@ static void fill_objects(SainLoss *loss, const SainPart *part) {
     int r = 0;
     for (int i = 0; i < part->count; i++) {
         const SainSample *sample = &part->samples->items[part->items[i]];
-        normalise(values, i, sample->body, SAIN_BODY_INPUTS, &inputs);
+        sain_fit_normalise(values, i, sample->body, SAIN_BODY_INPUTS, &inputs);
         for (int e = 0; e < SAIN_EFFECTS; e++) {
             const int at = SAIN_BODY_INPUTS + e;
             double sum = 0;
@@ -121,7 +121,7 @@ static bool sain_loss_forward(SainLoss *loss, const SainPart *part, const double
     return true;
 }
 
-static double smooth(double error, double *slope) {
+static double sain_fit_smooth(double error, double *slope) {
     const double size = fabs(error);
     if (size >= smooth_below) {
         *slope = error > 0 ? smooth_below : -smooth_below;
@@ -132,7 +132,7 @@ static double smooth(double error, double *slope) {
 }
 
 /* Fills the slopes of the outputs; 0 in unused rows. */
-static double judge(SainLoss *loss, const SainPart *part) {
+static double sain_fit_judge(SainLoss *loss, const SainPart *part) {
     const int last = loss->object->shape->layers;
     double *deltas = loss->object->deltas[last - 1], sum = 0;
     const double *outputs = loss->object->values[last];
@@ -143,7 +143,7 @@ static double judge(SainLoss *loss, const SainPart *part) {
         for (int o = 0; o < SAIN_OUTPUTS; o++) {
             double slope;
             const double by = 1 / (scale + slow);
-            sum += smooth(by * (scale * outputs[o * BLOCK_ROWS + i] - (double)sample->target[o]), &slope);
+            sum += sain_fit_smooth(by * (scale * outputs[o * BLOCK_ROWS + i] - (double)sample->target[o]), &slope);
             deltas[o * BLOCK_ROWS + i] = by * scale * slope;
         }
     }
@@ -151,7 +151,7 @@ static double judge(SainLoss *loss, const SainPart *part) {
 }
 
 /* From the slopes of the sums to those of each row's effects. */
-static void spread(SainLoss *loss, const SainPart *part, int blocks) {
+static void sain_fit_spread(SainLoss *loss, const SainPart *part, int blocks) {
     const Normalisation *by = &loss->network->object->input;
     const int last = loss->network->relation->layers - 1;
     for (int b = 0; b < blocks; b++)
@@ -168,11 +168,11 @@ bool sain_loss_add(SainLoss *loss, const SainPart *part, const double *weights, 
     const int object = network_parameter_count(loss->network->relation),
               blocks = (row_count(part) + BLOCK_ROWS - 1) / BLOCK_ROWS;
     if (!sain_loss_forward(loss, part, weights)) return false;
-    *sum += judge(loss, part);
+    *sum += sain_fit_judge(loss, part);
     network_backward(loss->object, weights + object);
     network_add_gradient(loss->object, gradient + object);
     network_backward_to_inputs(loss->object, weights + object, loss->slopes);
-    spread(loss, part, blocks);
+    sain_fit_spread(loss, part, blocks);
     for (int b = 0; b < blocks; b++) {
         network_backward(loss->relation[b], weights);
         network_add_gradient(loss->relation[b], gradient);
@@ -290,7 +290,7 @@ void sain_fit_free(SainFit *fit) {
 }
 
 /* Drawn with replacement: what a step draws depends on no other step. */
-static void draw(SainFit *fit, uint64_t seed, int64_t number) {
+static void sain_fit_draw(SainFit *fit, uint64_t seed, int64_t number) {
     uint64_t state = seed + (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
     split_mix(&state);
     for (int i = 0; i < fit->batch; i++)
@@ -301,7 +301,7 @@ bool sain_fit_step(SainFit *fit, Adam *adam, uint64_t seed, int64_t number, doub
     const size_t weights = (size_t)adam->count;
     double sums[SAIN_PARTS] = {0};
     bool ok = true;
-    draw(fit, seed, number);
+    sain_fit_draw(fit, seed, number);
     memset(fit->gradients, 0, SAIN_PARTS * weights * sizeof *fit->gradients);
 #pragma omp parallel for schedule(dynamic, 1) reduction(&& : ok)
     for (int p = 0; p < SAIN_PARTS; p++) {

@@ -31,20 +31,20 @@ typedef struct Engine {
     SainView view;
 } Engine;
 
-static void end(Engine *engine) {
+static void sain_training_end(Engine *engine) {
     solver_destroy(&engine->solver);
     pair_moment_free(&engine->moment);
     sain_view_free(&engine->view);
 }
 
-static bool look(Engine *engine, const ContactProblem *problem, SainForm form, Error *error) {
+static bool sain_training_look(Engine *engine, const ContactProblem *problem, SainForm form, Error *error) {
     if (!pair_moment_reserve(&engine->moment, problem)) return error_memory(error, "sain");
     ContactSolution solution = pair_moment_solution(&engine->moment);
     return solver_engine.solve(engine->solver.state, problem, &solution, error) &&
            (sain_view_make(&engine->view, problem, solution.velocities, form) || error_memory(error, "sain"));
 }
 
-static bool reserve(SainSamples *samples, const SainView *view) {
+static bool sain_training_reserve(SainSamples *samples, const SainView *view) {
     return array_reserve((void **)&samples->items, &samples->item_capacity,
                          samples->count + (size_t)view->body_count + 1, sizeof *samples->items) &&
            array_reserve((void **)&samples->rows, &samples->row_capacity,
@@ -71,13 +71,13 @@ bool sain_samples_add(SainSamples *samples, const ImpactProblems *problems, bool
     for (size_t p = 0; ok && p < problems->count; p++) {
         const ImpactProblem *item = &problems->items[p];
         if (impacts_only && !item->impact) continue;
-        ok = look(&engine, &item->problem, samples->form, error) &&
-             (reserve(samples, &engine.view) || error_memory(error, "sain"));
+        ok = sain_training_look(&engine, &item->problem, samples->form, error) &&
+             (sain_training_reserve(samples, &engine.view) || error_memory(error, "sain"));
         for (int b = 0; ok && b < engine.view.body_count; b++)
             add_body(samples, &engine.view, b, &item->reference[engine.view.bodies[b].body]);
         samples->problems += engine.view.body_count > 0;
     }
-    end(&engine);
+    sain_training_end(&engine);
     return ok;
 }
 
@@ -102,7 +102,7 @@ typedef struct Run {
     bool driven; /* by a network, which may fail: the run ends there */
 } Run;
 
-static bool keep(Run *run, const ContactProblem *problem, int frame, Error *error) {
+static bool sain_training_keep(Run *run, const ContactProblem *problem, int frame, Error *error) {
     const Phase phase = phase_next(&run->tracker, problem, frame);
     const bool wanted = phase == PHASE_IMPACT ||
                         (phase == PHASE_AFTER ? (frame - run->tracker.touch) % AFTER_STEP : frame % REST_EVERY) == 0;
@@ -125,7 +125,7 @@ static bool run_world(Run *run, const Scene *scene, World *world, const ContactS
         Error failure = {0};
         if (!world_step(world, solver->kind->solve, solver->state, scene->dt, &failure))
             return (run->driven && failure.failure != FAILURE_NONE) || (*error = failure, false);
-        if (!keep(run, world_problem(world), frame, error)) return false;
+        if (!sain_training_keep(run, world_problem(world), frame, error)) return false;
         if (frame == scene->bomb.frame && !scene_add_bomb(scene, world, error)) return false;
     }
     return true;
@@ -237,7 +237,7 @@ static bool record_round(Trainer *trainer, int form, int round, Error *error) {
     return true;
 }
 
-static bool report(Trainer *trainer, double loss, Error *error) {
+static bool sain_training_report(Trainer *trainer, double loss, Error *error) {
     const SainTraining *training = trainer->training;
     const int form = stage_form(trainer);
     SainScore score = {.form = (SainForm)form,
@@ -255,7 +255,7 @@ static bool report(Trainer *trainer, double loss, Error *error) {
 }
 
 /* The rate falls from the first to 0 in equal steps; each round begins with half that of the round before. */
-static bool step(void *context, Adam *adam, double *loss, Error *error) {
+static bool sain_training_step(void *context, Adam *adam, double *loss, Error *error) {
     Trainer *trainer = context;
     const SainTraining *training = trainer->training;
     const uint64_t seed = training->seed + (uint64_t)(trainer->fit.stage + 1) * 1000003;
@@ -268,11 +268,11 @@ static bool step(void *context, Adam *adam, double *loss, Error *error) {
 
 static bool fit_round(Trainer *trainer, Error *error) {
     const SainTraining *training = trainer->training;
-    const FitSteps steps = {training->steps, training->saved, step, NULL, trainer};
+    const FitSteps steps = {training->steps, training->saved, sain_training_step, NULL, trainer};
     const int64_t at = (int64_t)set_at(trainer, stage_form(trainer), 0);
     double loss;
     return fit_run(&trainer->fit, at, trainer->weights, &steps, &loss, error) &&
-           report(trainer, loss / training->saved, error);
+           sain_training_report(trainer, loss / training->saved, error);
 }
 
 static bool run_stage(Trainer *trainer, Error *error) {
@@ -299,7 +299,7 @@ static bool begin_stage(Trainer *trainer, int stage, Error *error) {
 }
 
 /* The samples of the rounds of a form up to this one, and the form's network as it was. */
-static bool gather(Trainer *trainer, int form, int last, Error *error) {
+static bool sain_training_gather(Trainer *trainer, int form, int last, Error *error) {
     sain_samples_free(&trainer->samples);
     sain_samples_free(&trainer->held_out_samples);
     for (int round = 0; round <= last; round++)
@@ -316,7 +316,7 @@ static bool record_first(Trainer *trainer, Error *error) {
            sain_launches_record(&others, &trainer->held_out, &trainer->fit.progress, error);
 }
 
-static bool begin(Trainer *trainer, Error *error) {
+static bool sain_training_begin(Trainer *trainer, Error *error) {
     Fit *fit = &trainer->fit;
     bool found;
     for (int f = 0; f < SAIN_FORMS; f++)
@@ -334,14 +334,14 @@ static bool begin(Trainer *trainer, Error *error) {
 
 /* A form whose training is over before this run: its network follows from samples and weights. */
 static bool restore_form(Trainer *trainer, int form, Error *error) {
-    if (!gather(trainer, form, trainer->training->rounds - 1, error)) return false;
+    if (!sain_training_gather(trainer, form, trainer->training->rounds - 1, error)) return false;
     sain_set_weights(&trainer->networks->forms[form], trainer->fit.adam.weights + set_at(trainer, form, 0));
     return true;
 }
 
-static bool run(Trainer *trainer, Error *error) {
+static bool run_sain_training(Trainer *trainer, Error *error) {
     const int rounds = trainer->training->rounds, stages = SAIN_FORMS * rounds;
-    if (!begin(trainer, error)) return false;
+    if (!sain_training_begin(trainer, error)) return false;
     for (int form = 0; form < stage_form(trainer); form++)
         if (!restore_form(trainer, form, error)) return false;
     const double share = 0.95 / (stages - trainer->fit.stage);
@@ -349,7 +349,7 @@ static bool run(Trainer *trainer, Error *error) {
     for (;;) {
         progress_next_stage(&trainer->fit.share, 0.2 * share);
         if (stage_round(trainer) == 0 || !gathered) {
-            if (!gather(trainer, stage_form(trainer), stage_round(trainer), error)) return false;
+            if (!sain_training_gather(trainer, stage_form(trainer), stage_round(trainer), error)) return false;
         } else if (!record_round(trainer, stage_form(trainer), stage_round(trainer), error)) {
             return false;
         }
@@ -365,7 +365,7 @@ bool sain_training_run(const SainTraining *training, SainNetworks *networks, con
     Trainer trainer = {.training = training, .networks = networks};
     fit_init(&trainer.fit, training->command, training->state_path, progress);
     *networks = (SainNetworks){0};
-    const bool ok = run(&trainer, error);
+    const bool ok = run_sain_training(&trainer, error);
     fit_free(&trainer.fit);
     sain_samples_free(&trainer.samples);
     sain_samples_free(&trainer.held_out_samples);

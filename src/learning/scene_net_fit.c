@@ -23,7 +23,7 @@
        Pt' = clamp(Pt - m_t (J_t v + c dPn), +-mu Pn')    Pt'* into m_t J_t v, c dPn, Pt or into mu Pn'
        v'  = v + W (J_n^T dPn + J_t^T dPt)                w*  += W (J_n^T (J_n v)* + J_t^T (J_t v)*)
 
-   w* behaves like a velocity, so both passes share velocity_along() and push(). */
+   w* behaves like a velocity, so both passes share velocity_along() and scene_net_fit_push(). */
 
 /* The piece that the clamps took: 3 if the normal impulse is above 0, plus 0, 1 or 2 for a tangent impulse at the lower
    limit of the cone, inside, or at the upper limit. With a limit of 0 there is no inside. */
@@ -116,8 +116,8 @@ static inline double velocity_along(const double row[4], const double *a, const 
     return row[0] * (b[0] - a[0]) + row[1] * (b[1] - a[1]) + (row[2] * a[2] + row[3] * b[2]);
 }
 
-static inline void push(const UnrolledProblem *problem, const UnrolledContact *contact, double *velocities,
-                        double normal, double tangent) {
+static inline void scene_net_fit_push(const UnrolledProblem *problem, const UnrolledContact *contact,
+                                      double *velocities, double normal, double tangent) {
     double *a = velocities + 3 * contact->a, *b = velocities + 3 * contact->b;
     double effect[4];
     for (int i = 0; i < 4; i++) effect[i] = normal * contact->normal[i] + tangent * contact->tangent[i];
@@ -131,15 +131,15 @@ static inline void push(const UnrolledProblem *problem, const UnrolledContact *c
 }
 
 /* One contact update; returns the piece. */
-static inline uint8_t visit(const UnrolledProblem *problem, const UnrolledContact *contact, double *velocities,
-                            double *impulse) {
+static inline uint8_t scene_net_fit_visit(const UnrolledProblem *problem, const UnrolledContact *contact,
+                                          double *velocities, double *impulse) {
     const double *a = velocities + 3 * contact->a, *b = velocities + 3 * contact->b;
     const double normal = impulse[0] - contact->mass_normal * (velocity_along(contact->normal, a, b) - contact->bias);
     const double pushed = normal > 0 ? normal : 0, by_normal = pushed - impulse[0];
     const double sliding = velocity_along(contact->tangent, a, b) + contact->coupling * by_normal;
     const double tangent = impulse[1] - contact->mass_tangent * sliding, limit = contact->friction * pushed;
     const double dragged = clamp(tangent, limit);
-    push(problem, contact, velocities, by_normal, dragged - impulse[1]);
+    scene_net_fit_push(problem, contact, velocities, by_normal, dragged - impulse[1]);
     impulse[0] = pushed;
     impulse[1] = dragged;
     return piece_of(normal, tangent, limit);
@@ -155,7 +155,7 @@ static inline void visit_back(const UnrolledProblem *problem, const UnrolledCont
     const double by_sliding = -contact->mass_tangent * inside;
     const double by_normal = along_normal + contact->coupling * by_sliding;
     const double pushed = pushes[piece] * (impulse[0] + by_normal + side[piece] * contact->friction * dragged);
-    push(problem, contact, velocities, -contact->mass_normal * pushed, by_sliding);
+    scene_net_fit_push(problem, contact, velocities, -contact->mass_normal * pushed, by_sliding);
     impulse[0] = pushed - by_normal;
     impulse[1] = inside - along_tangent;
 }
@@ -178,7 +178,7 @@ static void unrolled_begin(Unrolled *unrolled, const UnrolledProblem *problem, c
         impulses[2 * i] = normal;
         impulses[2 * i + 1] = clamp(start[2 * i + 1], limit);
         unrolled->pieces[i] = piece_of(start[2 * i], start[2 * i + 1], limit);
-        push(problem, contact, velocities, impulses[2 * i], impulses[2 * i + 1]);
+        scene_net_fit_push(problem, contact, velocities, impulses[2 * i], impulses[2 * i + 1]);
     }
 }
 
@@ -204,7 +204,7 @@ bool unrolled_run(Unrolled *unrolled, const UnrolledProblem *problem, const doub
         double *impulses = next + 3 * problem->body_count;
         for (size_t i = 0; i < contacts; i++) {
             const int32_t at = problem->visits[i];
-            pieces[at] = visit(problem, &problem->contacts[at], next, impulses + 2 * at);
+            pieces[at] = scene_net_fit_visit(problem, &problem->contacts[at], next, impulses + 2 * at);
         }
     }
     unrolled->sweeps = sweeps;
@@ -277,7 +277,7 @@ void scene_net_loss_free(SceneNetLoss *loss) {
     *loss = (SceneNetLoss){0};
 }
 
-static bool reserve(SceneNetLoss *loss, const SceneNetSample *sample) {
+static bool scene_net_fit_reserve(SceneNetLoss *loss, const SceneNetSample *sample) {
     const size_t contacts = (size_t)sample->problem.contact_count, bodies = (size_t)sample->problem.body_count;
     return array_reserve((void **)&loss->outputs, &loss->output_capacity, 2 * contacts + 2, sizeof(float)) &&
            array_reserve((void **)&loss->by_outputs, &loss->by_output_capacity, 2 * contacts + 2, sizeof(float)) &&
@@ -285,7 +285,7 @@ static bool reserve(SceneNetLoss *loss, const SceneNetSample *sample) {
 }
 
 /* Smooth L1 and its derivative. */
-static double smooth(double x, double *by) {
+static double scene_net_fit_smooth(double x, double *by) {
     const double size = fabs(x);
     *by = size < linear_from ? x / linear_from : copysign(1, x);
     return size < linear_from ? x * x / (2 * linear_from) : size - linear_from / 2;
@@ -302,7 +302,7 @@ static double impulse_loss(const SceneNet *network, const SceneNetSample *sample
         const double goal[2] = {(double)sample->goal[contact].normal, (double)sample->goal[contact].tangent};
         for (int k = 0; k < 2; k++) {
             double by;
-            sum += share * smooth((start[2 * contact + k] - goal[k]) / scale, &by);
+            sum += share * scene_net_fit_smooth((start[2 * contact + k] - goal[k]) / scale, &by);
             by_outputs[2 * i + k] = (float)(share * by / scale);
         }
     }
@@ -348,17 +348,17 @@ static bool velocity_loss(SceneNetLoss *loss, const SceneNetSample *sample, cons
 }
 
 /* The gradient entry of a parameter. */
-static float *place(const SceneNet *network, float *gradient, const float *parameter) {
+static float *scene_net_fit_place(const SceneNet *network, float *gradient, const float *parameter) {
     return gradient + (parameter - network->parameters);
 }
 
 static void back_through_layer(const SceneNet *network, const SceneNetLayer *layer, const float *in, const float *out,
                                float *by_out, float *by_in, float *gradient) {
     const RowKernels *kernels = network->kernels;
-    float *biases = place(network, gradient, layer->biases);
+    float *biases = scene_net_fit_place(network, gradient, layer->biases);
     for (int j = 0; j < layer->to; j++) by_out[j] *= 1 - out[j] * out[j];
     for (int j = 0; j < layer->to; j++) biases[j] += by_out[j];
-    kernels->spread(place(network, gradient, layer->rows), layer->to, NULL, in, by_out, layer->from);
+    kernels->spread(scene_net_fit_place(network, gradient, layer->rows), layer->to, NULL, in, by_out, layer->from);
     if (by_in != NULL) kernels->multiply(by_in, &layer->packed, NULL, by_out, layer->from / 2);
 }
 
@@ -366,21 +366,22 @@ static void back(SceneNetLoss *loss, const SceneNet *network, const SceneNetSamp
     const SceneNetView *slots = &sample->view.slots;
     const RowKernels *kernels = network->kernels;
     const int hidden = scene_net_hidden(network), outputs = 2 * slots->slot_count;
-    float *biases = place(network, gradient, network->biases), *by = loss->by_outputs;
+    float *biases = scene_net_fit_place(network, gradient, network->biases), *by = loss->by_outputs;
     for (int i = 0; i < outputs; i++) {
         by[i] *= network->scale[slots->slots[i / 2]];
         biases[slots->impulses[i]] += by[i];
     }
     memset(loss->by_second, 0, sizeof loss->by_second);
     kernels->add(loss->by_second, &network->packed, slots->impulses, by, outputs);
-    kernels->spread(place(network, gradient, network->rows), hidden, slots->impulses, by, loss->second, outputs);
+    kernels->spread(scene_net_fit_place(network, gradient, network->rows), hidden, slots->impulses, by, loss->second,
+                    outputs);
     back_through_layer(network, &network->second, loss->first, loss->second, loss->by_second, loss->by_first, gradient);
     back_through_layer(network, &network->first, sample->inputs, loss->first, loss->by_first, NULL, gradient);
 }
 
 bool scene_net_loss(SceneNetLoss *loss, const SceneNet *network, const SceneNetSample *sample, const SceneNetTask *task,
                     float *gradient, double *by_factors, SceneNetErrors *score) {
-    if (!reserve(loss, sample)) return false;
+    if (!scene_net_fit_reserve(loss, sample)) return false;
     const SceneNetView *slots = &sample->view.slots;
     scene_net_predict(network, sample->inputs, slots, loss->first, loss->second, loss->outputs);
     double *start = loss->numbers;
@@ -491,7 +492,7 @@ static bool do_epoch(Fitter *fitter, int epoch, double *mean_loss) {
     return true;
 }
 
-static bool begin(Fitter *fitter) {
+static bool scene_net_fit_begin(Fitter *fitter) {
     const size_t parameters = fitter->network->parameter_count;
     fitter->gradients = calloc((PARTS + 2) * parameters, sizeof *fitter->gradients);
     fitter->order = malloc(((size_t)fitter->samples->count + 1) * sizeof *fitter->order);
@@ -505,7 +506,7 @@ static bool begin(Fitter *fitter) {
     return true;
 }
 
-static bool run(Fitter *fitter, gsl_rng *generator, const Progress *progress, Error *error) {
+static bool scene_net_fit_run(Fitter *fitter, gsl_rng *generator, const Progress *progress, Error *error) {
     for (int epoch = 0; epoch < fitter->fit->epochs; epoch++) {
         double loss;
         gsl_ran_shuffle(generator, fitter->order, (size_t)fitter->samples->count, sizeof *fitter->order);
@@ -527,9 +528,9 @@ bool scene_net_fit(SceneNet *network, const SceneNetSamples *samples, const Scen
         fitter->network = network;
         fitter->samples = samples;
         fitter->fit = fit;
-        ok = begin(fitter);
+        ok = scene_net_fit_begin(fitter);
     }
-    ok = ok ? run(fitter, generator, progress, error) : error_memory(error, "scene-net");
+    ok = ok ? scene_net_fit_run(fitter, generator, progress, error) : error_memory(error, "scene-net");
     for (int part = 0; fitter != NULL && part < PARTS; part++) scene_net_loss_free(&fitter->loss[part]);
     if (fitter != NULL) {
         free(fitter->gradients);

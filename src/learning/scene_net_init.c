@@ -101,7 +101,7 @@ static bool make_numbers(Numbers *numbers, const SceneNetSamples *samples, size_
     return numbers->begin != NULL && numbers->column != NULL && numbers->value != NULL;
 }
 
-static void append(Numbers *numbers, int column, float value) {
+static void scene_net_init_append(Numbers *numbers, int column, float value) {
     numbers->column[numbers->count] = column;
     numbers->value[numbers->count++] = value;
 }
@@ -150,7 +150,8 @@ static bool fit_body_projections(SceneNet *network, const SceneNetSamples *sampl
         for (int i = 0; i < samples->count; i++) {
             const SceneView *view = &samples->items[i].view;
             numbers->begin[i] = numbers->count;
-            for (int k = 0; k < count; k++) append(numbers, k, units[k] * (p == 0 ? view->bomb[k] : view->state[k]));
+            for (int k = 0; k < count; k++)
+                scene_net_init_append(numbers, k, units[k] * (p == 0 ? view->bomb[k] : view->state[k]));
         }
         bool ok = fit(numbers, samples, seed, projections[p], error);
         for (int k = 0; k < count; k++) weigh_row(projections[p], k, units[k]);
@@ -166,7 +167,7 @@ static bool fit_contact_projections(SceneNet *network, const SceneNetSamples *sa
         const SceneNetView *slots = &samples->items[i].view.slots;
         numbers->begin[i] = numbers->count;
         for (int k = 0; k < slots->slot_count; k++)
-            append(numbers, slots->slots[k], touches_bomb(network, slots->slots[k]) ? bomb_weight : 1);
+            scene_net_init_append(numbers, slots->slots[k], touches_bomb(network, slots->slots[k]) ? bomb_weight : 1);
     }
     if (!fit(numbers, samples, seed, &network->present, error)) return false;
     for (int slot = 0; slot < network->slot_count; slot++)
@@ -174,7 +175,8 @@ static bool fit_contact_projections(SceneNet *network, const SceneNetSamples *sa
     for (int i = 0; i < samples->count; i++) {
         const SceneNetView *slots = &samples->items[i].view.slots;
         numbers->begin[i] = numbers->count;
-        for (int k = 0; k < 2 * slots->slot_count; k++) append(numbers, slots->impulses[k], slots->warm[k]);
+        for (int k = 0; k < 2 * slots->slot_count; k++)
+            scene_net_init_append(numbers, slots->impulses[k], slots->warm[k]);
     }
     return fit(numbers, samples, seed, &network->warm, error);
 }
@@ -195,7 +197,7 @@ static bool find_projections(SceneNet *network, const SceneNetSamples *samples, 
     return ok;
 }
 
-static void draw(float *numbers, size_t count, double spread, gsl_rng *generator) {
+static void scene_net_init_draw(float *numbers, size_t count, double spread, gsl_rng *generator) {
     for (size_t i = 0; i < count; i++) numbers[i] = (float)gsl_ran_gaussian(generator, spread);
 }
 
@@ -207,9 +209,9 @@ static bool draw_weights(SceneNet *network, uint64_t seed) {
     if (generator == NULL) return false;
     gsl_rng_set(generator, (unsigned long)seed);
     const size_t inputs = (size_t)scene_net_inputs(network), hidden = (size_t)scene_net_hidden(network);
-    draw(network->first.rows, inputs * hidden, 1 / sqrt((double)inputs), generator);
-    draw(network->second.rows, hidden * hidden, 1 / sqrt((double)hidden), generator);
-    draw(network->rows, 2 * (size_t)network->slot_count * hidden, 0.1 / sqrt((double)hidden), generator);
+    scene_net_init_draw(network->first.rows, inputs * hidden, 1 / sqrt((double)inputs), generator);
+    scene_net_init_draw(network->second.rows, hidden * hidden, 1 / sqrt((double)hidden), generator);
+    scene_net_init_draw(network->rows, 2 * (size_t)network->slot_count * hidden, 0.1 / sqrt((double)hidden), generator);
     gsl_rng_free(generator);
     return true;
 }

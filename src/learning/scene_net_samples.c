@@ -48,20 +48,20 @@ void scene_net_samples_free(SceneNetSamples *samples) {
     *samples = (SceneNetSamples){0};
 }
 
-static bool reserve(SceneNetSamples *samples, int count) {
+static bool scene_net_samples_reserve(SceneNetSamples *samples, int count) {
     return array_reserve((void **)&samples->items, &samples->capacity, (size_t)samples->count + (size_t)count,
                          sizeof *samples->items);
 }
 
 bool scene_net_samples_add(SceneNetSamples *samples, const ContactProblem *problem, int launch, int since) {
-    if (!reserve(samples, 1)) return false;
+    if (!scene_net_samples_reserve(samples, 1)) return false;
     SceneNetSample *sample = &samples->items[samples->count++];
     *sample = (SceneNetSample){.launch = launch, .since = since};
     return problem_copy(&sample->problem, problem);
 }
 
 bool scene_net_samples_move(SceneNetSamples *samples, SceneNetSamples *from) {
-    if (!reserve(samples, from->count + 1)) return false;
+    if (!scene_net_samples_reserve(samples, from->count + 1)) return false;
     for (int i = 0; i < from->count; i++) samples->items[samples->count++] = from->items[i];
     samples->unconverged += from->unconverged;
     free(from->items);
@@ -86,7 +86,7 @@ static bool begin_label(SceneNetSample *sample, const ReferenceVelocity *velocit
     return true;
 }
 
-static bool label(void *context, int i, Error *error) {
+static bool label_scene_net_samples(void *context, int i, Error *error) {
     const Labels *labels = context;
     SceneNetSample *sample = &labels->items[i];
     Reference *reference = &labels->references[omp_get_thread_num()];
@@ -115,7 +115,7 @@ bool scene_net_samples_label(SceneNetSamples *samples, int first, const Progress
     Reference *references = calloc((size_t)threads, sizeof *references);
     if (references == NULL) return error_memory(error, "labels");
     Labels labels = {samples->items + first, references};
-    const ParallelWork work = {label, &labels};
+    const ParallelWork work = {label_scene_net_samples, &labels};
     bool ok = parallel_for(&work, samples->count - first, "labels", progress, error);
     for (int i = 0; i < threads; i++) reference_free(&references[i]);
     free(references);
@@ -139,8 +139,8 @@ bool scene_net_samples_compute_inputs(SceneNetSamples *samples, int first, const
 }
 
 /* *finite: false if the new state is NaN or infinite. */
-static bool step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem, bool *finite,
-                 Error *error) {
+static bool scene_net_samples_step(const Scene *scene, const ContactSolver *solver, World *world,
+                                   ContactProblem *problem, bool *finite, Error *error) {
     ContactSolution *solution;
     if (!world_begin_step(world, scene->dt, problem, &solution, error) ||
         !solver->kind->solve(solver->state, problem, solution, error))
@@ -159,7 +159,7 @@ World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *err
     bool ok = world != NULL, finite = true;
     for (int frame = 1; ok && frame <= scene->bomb.frame; frame++) {
         ContactProblem problem;
-        ok = step(scene, solver, world, &problem, &finite, error) &&
+        ok = scene_net_samples_step(scene, solver, world, &problem, &finite, error) &&
              (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
     }
     if (ok) return world;
@@ -178,7 +178,7 @@ bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, c
     for (int frame = launched.bomb.frame + 1; ok && finite && phase != PHASE_AFTER && frame <= launched.frames;
          frame++) {
         ContactProblem problem;
-        ok = step(scene, solver, world, &problem, &finite, error);
+        ok = scene_net_samples_step(scene, solver, world, &problem, &finite, error);
         if (!ok) break;
         phase = phase_next(&tracker, &problem, frame);
         ok = see(context, &problem, phase, frame - tracker.touch, error);

@@ -59,7 +59,7 @@ static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
 /* The setting `near` (residual) of scene-net in the runs that record training samples. */
 static const float rollout_near = 0.05f; /* m/s */
 
-static float draw(const SceneRecording *recording, const SceneSpan *span, const SceneSpan *otherwise) {
+static float scene_recording_draw(const SceneRecording *recording, const SceneSpan *span, const SceneSpan *otherwise) {
     return scene_span_at(scene_span_varies(span) ? span : otherwise, gsl_rng_uniform(recording->generator));
 }
 
@@ -68,10 +68,10 @@ static void draw_launches(const SceneRecording *recording, Launch *launches, int
     const SceneBomb *bomb = &recording->scene->bomb;
     for (int i = 0; i < count; i++) {
         Launch launch = launch_of(recording->scene);
-        launch.x = draw(recording, &bomb->x, &bomb->x);
+        launch.x = scene_recording_draw(recording, &bomb->x, &bomb->x);
         if (i % 2 == 1) {
-            launch.rotation = draw(recording, &bomb->rotation, &turned);
-            launch.spin = draw(recording, &bomb->spin, &spinning);
+            launch.rotation = scene_recording_draw(recording, &bomb->rotation, &turned);
+            launch.spin = scene_recording_draw(recording, &bomb->spin, &spinning);
         }
         launches[i] = launch;
     }
@@ -107,8 +107,8 @@ static bool make_driver(void *context, ContactSolver *solver, Error *error) {
 }
 
 /* Runs launches first to end - 1 and labels their samples. */
-static bool run(const SceneRecording *recording, Driver driver, int first, int end, SceneNetSamples *samples,
-                const Progress *progress, Error *error) {
+static bool scene_recording_run(const SceneRecording *recording, Driver driver, int first, int end,
+                                SceneNetSamples *samples, const Progress *progress, Error *error) {
     const SceneNetRollout rollout = {.scene = recording->scene,
                                      .launches = recording->launches + first,
                                      .launch_count = end - first,
@@ -123,8 +123,8 @@ static bool run(const SceneRecording *recording, Driver driver, int first, int e
 
 bool scene_recording_take(const SceneRecording *recording, SceneSet set, SceneNetSamples *samples,
                           const Progress *progress, Error *error) {
-    return run(recording, (Driver){set, NULL}, recording->first[set], recording->first[set + 1], samples, progress,
-               error);
+    return scene_recording_run(recording, (Driver){set, NULL}, recording->first[set], recording->first[set + 1],
+                               samples, progress, error);
 }
 
 bool scene_recording_next(SceneRecording *recording, const SceneNet *network, SceneNetSamples *samples,
@@ -132,8 +132,8 @@ bool scene_recording_next(SceneRecording *recording, const SceneNet *network, Sc
     const int first = recording->first[SCENE_BY_MOMENTUM];
     recording->round++;
     draw_launches(recording, round_launches(recording), recording->training->launches);
-    return run(recording, (Driver){SCENE_BY_MOMENTUM, network}, first, recording->first[SCENE_SETS], samples, progress,
-               error);
+    return scene_recording_run(recording, (Driver){SCENE_BY_MOMENTUM, network}, first, recording->first[SCENE_SETS],
+                               samples, progress, error);
 }
 
 static bool check_scene(const Scene *scene, Error *error) {

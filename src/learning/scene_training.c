@@ -62,8 +62,8 @@ static int sweeps_of(double seconds, double few, double many) {
     return (int)fmin(fmax(sweeps, 1), MOST_SWEEPS);
 }
 
-static bool measure(ContactSolver rivals[3], const SceneNetSamples *samples, PairMoment *space,
-                    SceneNetVerdict *verdict, Error *error) {
+static bool scene_training_measure(ContactSolver rivals[3], const SceneNetSamples *samples, PairMoment *space,
+                                   SceneNetVerdict *verdict, Error *error) {
     double seconds[3] = {INFINITY, INFINITY, INFINITY}, mean[3];
     for (int pass = 0; pass < PASSES; pass++)
         for (int i = 0; i < 3; i++)
@@ -85,7 +85,8 @@ static bool scene_net_verdict(const SceneNet *network, const SceneNetSamples *he
     *verdict = (SceneNetVerdict){.samples = 0};
     bool ok = held_out->count == 0 ||
               (scene_net_make(&rivals[0], network, never, error) && make_momentum(&rivals[1], FEW_SWEEPS, error) &&
-               make_momentum(&rivals[2], MANY_SWEEPS, error) && measure(rivals, held_out, &space, verdict, error));
+               make_momentum(&rivals[2], MANY_SWEEPS, error) &&
+               scene_training_measure(rivals, held_out, &space, verdict, error));
     for (int i = 0; i < 3; i++) solver_destroy(&rivals[i]);
     pair_moment_free(&space);
     return ok;
@@ -126,7 +127,7 @@ typedef struct Trainer {
     Progress progress; /* of the stage */
 } Trainer;
 
-static bool take(Trainer *trainer, SceneSet set, SceneNetSamples *samples, double share, Error *error) {
+static bool scene_training_take(Trainer *trainer, SceneSet set, SceneNetSamples *samples, double share, Error *error) {
     progress_next_stage(&trainer->stage, share);
     return scene_recording_take(&trainer->recording, set, samples, &trainer->progress, error);
 }
@@ -147,8 +148,8 @@ static void find_bounds(SceneNet *network, const SceneNetSamples *samples) {
 
 static bool first_round(Trainer *trainer, Error *error) {
     const SceneTraining *training = trainer->training;
-    if (!take(trainer, SCENE_BY_MOMENTUM, &trainer->samples, 0.1, error) ||
-        !take(trainer, SCENE_BY_REFERENCE, &trainer->samples, 0.1, error))
+    if (!scene_training_take(trainer, SCENE_BY_MOMENTUM, &trainer->samples, 0.1, error) ||
+        !scene_training_take(trainer, SCENE_BY_REFERENCE, &trainer->samples, 0.1, error))
         return false;
     trainer->network = scene_net_from_samples(&trainer->samples, &training->widths, training->seed, error);
     if (trainer->network == NULL) return false;
@@ -169,7 +170,7 @@ static bool next_round(Trainer *trainer, double share, Error *error) {
            scene_net_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
 }
 
-static bool score(const Trainer *trainer, int round, Error *error) {
+static bool scene_training_score(const Trainer *trainer, int round, Error *error) {
     SceneNetScore result = {.round = round,
                             .unconverged = trainer->samples.unconverged + trainer->held_out.unconverged};
     if (!scene_net_score(trainer->network, &trainer->samples, &trainer->held_out, &result, error)) return false;
@@ -189,14 +190,15 @@ static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
     progress_next_stage(&trainer->stage, share);
     if (!scene_net_fit(trainer->network, &trainer->samples, &fit, &trainer->progress, error)) return false;
     find_bounds(trainer->network, &trainer->samples);
-    return score(trainer, round, error);
+    return scene_training_score(trainer, round, error);
 }
 
-static bool train(Trainer *trainer, Error *error) {
+static bool scene_training_train(Trainer *trainer, Error *error) {
     const int rounds = trainer->training->rounds;
     const double share = 0.78 / rounds;
     if (!scene_recording_begin(&trainer->recording, trainer->scene, trainer->training, error) ||
-        !take(trainer, SCENE_HELD_OUT, &trainer->held_out, 0.02, error) || !first_round(trainer, error) ||
+        !scene_training_take(trainer, SCENE_HELD_OUT, &trainer->held_out, 0.02, error) ||
+        !first_round(trainer, error) ||
         !scene_net_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error) ||
         !fit_round(trainer, 0, share, error))
         return false;
@@ -216,7 +218,7 @@ SceneNet *scene_training_run(const Scene *scene, const SceneTraining *training, 
                              Error *error) {
     Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
     trainer.progress = (Progress){progress_stage, &trainer.stage};
-    bool ok = train(&trainer, error);
+    bool ok = scene_training_train(&trainer, error);
     if (ok && training->verdict != NULL)
         ok = scene_net_verdict(trainer.network, &trainer.held_out, training->verdict, error);
     scene_recording_end(&trainer.recording);

@@ -53,17 +53,17 @@ static void run_launch(Subspace *subspace, const PoseRows *rows, int launch, Kin
     }
 }
 
-static int compare(const void *a, const void *b) {
+static int subspace_training_compare(const void *a, const void *b) {
     const int x = ((const LaunchErrors *)a)->frames, y = ((const LaunchErrors *)b)->frames;
     return (x > y) - (x < y);
 }
 
 /* Sums the launches in their order. */
-static SubspaceErrors total(const PoseRows *rows, LaunchErrors *errors) {
+static SubspaceErrors subspace_training_total(const PoseRows *rows, LaunchErrors *errors) {
     double squares = 0;
     const double bodies = rows->numbers / SUBSPACE_POSE;
     for (int i = 0; i < rows->launches; i++) squares += errors[i].squares;
-    qsort(errors, (size_t)rows->launches, sizeof *errors, compare);
+    qsort(errors, (size_t)rows->launches, sizeof *errors, subspace_training_compare);
     return (SubspaceErrors){sqrt(squares / (bodies * (rows->states - 2) * rows->launches)),
                             (double)errors[rows->launches / 2].frames};
 }
@@ -75,7 +75,7 @@ static bool score_kind(const SubspaceNet *net, const SubspacePredictor *predicto
     const bool ok = subspace_make(&subspace, net, predictor, kind == NET, error) &&
                     (errors != NULL || error_memory(error, "subspace"));
     for (int i = 0; ok && i < rows->launches; i++) run_launch(&subspace, rows, i, kind, &errors[i]);
-    if (ok) *result = total(rows, errors);
+    if (ok) *result = subspace_training_total(rows, errors);
     subspace_free(&subspace);
     free(errors);
     return ok;
@@ -102,7 +102,7 @@ bool subspace_distance(const PoseRows *rows, const PoseRows *others, SubspaceErr
             launches[i].frames += near;
         }
     }
-    *errors = total(rows, launches);
+    *errors = subspace_training_total(rows, launches);
     free(launches);
     return true;
 }
@@ -143,7 +143,7 @@ bool subspace_record(PoseRows *rows, const Scene *scene, const char *method, con
     return ok;
 }
 
-static bool record(Trainer *trainer, PoseRows *rows, bool scoring, int count, Error *error) {
+static bool subspace_training_record(Trainer *trainer, PoseRows *rows, bool scoring, int count, Error *error) {
     Launch *launches = malloc((size_t)count * sizeof *launches);
     bool ok = launches != NULL || error_memory(error, "subspace");
     ok = ok && (scoring ? launches_for_scoring : launches_for_training)(trainer->scene, count, launches, error) &&
@@ -250,7 +250,7 @@ static double rate_at(const SubspaceTraining *training, int64_t steps) {
     return first_rate * left * left;
 }
 
-static bool step(void *context, Adam *adam, double *loss, Error *error) {
+static bool subspace_training_step(void *context, Adam *adam, double *loss, Error *error) {
     Trainer *trainer = context;
     const SubspaceTraining *training = trainer->training;
     const int i = trainer->fit.stage;
@@ -262,7 +262,7 @@ static bool step(void *context, Adam *adam, double *loss, Error *error) {
     return true;
 }
 
-static bool score(Trainer *trainer, int i, double loss, Error *error) {
+static bool subspace_training_score(Trainer *trainer, int i, double loss, Error *error) {
     SubspacePredictor *predictor = &trainer->net->predictors[i];
     SubspaceScore result;
     window_scales_store(&trainer->data[i], window_fit_scales(trainer->fits[i]),
@@ -276,7 +276,8 @@ static bool score(Trainer *trainer, int i, double loss, Error *error) {
 /* The time of an epoch grows with the weights. */
 static bool fit_networks(Trainer *trainer, Error *error) {
     const SubspaceTraining *training = trainer->training;
-    const FitSteps steps = {(int64_t)training->epochs * training->batches, training->batches, step, NULL, trainer};
+    const FitSteps steps = {(int64_t)training->epochs * training->batches, training->batches, subspace_training_step,
+                            NULL, trainer};
     const int begun = trainer->fit.stage, count = trainer->net->shape.predictor_count;
     const double all = 1 - trainer->fit.share.begin - trainer->fit.share.share;
     for (int i = 0; i < count; i++) {
@@ -285,21 +286,21 @@ static bool fit_networks(Trainer *trainer, Error *error) {
         progress_next_stage(&trainer->fit.share, all * (double)weights / (double)trainer->first[count]);
         if (i > begun) fit_stage(&trainer->fit, i);
         if ((i >= begun && !fit_run(&trainer->fit, first, weights, &steps, &loss, error)) ||
-            !score(trainer, i, loss, error))
+            !subspace_training_score(trainer, i, loss, error))
             return false;
     }
     return true;
 }
 
-static bool run(Trainer *trainer, Error *error) {
+static bool subspace_training_run(Trainer *trainer, Error *error) {
     const SubspaceTraining *training = trainer->training;
     progress_next_stage(&trainer->fit.share, recording_share);
-    if (!record(trainer, &trainer->rows, false, training->launches, error)) return false;
+    if (!subspace_training_record(trainer, &trainer->rows, false, training->launches, error)) return false;
     if (trainer->rows.states < WINDOW_FRAMES + 3)
         return error_input(error, trainer->scene->name, "%d frames with the bomb; training needs %d",
                            trainer->rows.states - 1, WINDOW_FRAMES + 2);
     progress_next_stage(&trainer->fit.share, recording_share / 10);
-    if (!record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error)) return false;
+    if (!subspace_training_record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error)) return false;
     return fit_components(trainer, error) && make_fits(trainer, error) && begin_fit(trainer, error) &&
            fit_networks(trainer, error);
 }
@@ -323,7 +324,7 @@ SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training
     trainer->training = training;
     fit_init(&trainer->fit, training->command, training->state_path, progress);
     SubspaceNet *net = NULL;
-    if (run(trainer, error)) {
+    if (subspace_training_run(trainer, error)) {
         net = trainer->net;
         trainer->net = NULL;
     }

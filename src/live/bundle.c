@@ -112,7 +112,7 @@ static bool nodes_are_sound(const YamlTree *tree, const Parts *parts) {
     return tree->nodes[0].end == tree->node_count;
 }
 
-static void *copy(Bundle data) {
+static void *bundle_copy(Bundle data) {
     void *bytes = malloc(data.left);
     if (bytes != NULL) memcpy(bytes, data.at, data.left);
     return bytes;
@@ -120,8 +120,8 @@ static void *copy(Bundle data) {
 
 /* Copies, because the tree of a file owns its parts. */
 static bool copy_parts(YamlTree *tree, const Parts *parts, Error *error) {
-    tree->source = (Source){(const char *)parts->path.at, copy(parts->text), parts->text.left - 1};
-    tree->texts = copy(parts->texts);
+    tree->source = (Source){(const char *)parts->path.at, bundle_copy(parts->text), parts->text.left - 1};
+    tree->texts = bundle_copy(parts->texts);
     tree->nodes = malloc((size_t)tree->node_count * sizeof *tree->nodes);
     if (tree->source.text == NULL || tree->texts == NULL || tree->nodes == NULL) return error_memory(error, "bundle");
     for (int i = 0; i < tree->node_count; i++)

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 
 /* Prints JSON into the text that was last returned. NULL when memory is short. */
-static const char *print(void (*write)(JsonWriter *json, const void *context), const void *context) {
+static const char *describe_print(void (*write)(JsonWriter *json, const void *context), const void *context) {
     static char *text;
     size_t size;
     free(text);
@@ -75,7 +75,7 @@ static void write_methods(JsonWriter *json, const void *context) {
     json_end(json);
 }
 
-const char *live_methods(void) { return print(write_methods, NULL); }
+const char *live_methods(void) { return describe_print(write_methods, NULL); }
 
 static void put_parameters(JsonWriter *json, const SceneParameter *parameters, int count, bool common) {
     for (const SceneParameter *parameter = parameters; parameter < parameters + count; parameter++) {
@@ -133,7 +133,7 @@ static void write_scene(JsonWriter *json, const void *context) {
 
 const char *live_describe(LiveScene *live, const char *settings) {
     Scene *scene = live_scene(live, settings, live_new_error());
-    const char *text = scene != NULL ? print(write_scene, scene) : NULL;
+    const char *text = scene != NULL ? describe_print(write_scene, scene) : NULL;
     scene_destroy(scene);
     return text;
 }
@@ -152,7 +152,7 @@ static void write_verdict(JsonWriter *json, const void *context) {
 
 const char *live_verdict(const LiveRun *run) {
     SimulateVerdict verdict;
-    return live_verdict_of(run, &verdict) ? print(write_verdict, &verdict) : NULL;
+    return live_verdict_of(run, &verdict) ? describe_print(write_verdict, &verdict) : NULL;
 }
 
 static void write_framing(JsonWriter *json, const void *context) {
@@ -161,4 +161,4 @@ static void write_framing(JsonWriter *json, const void *context) {
     camera_frame_put(json, NULL, &frame);
 }
 
-const char *live_framing(const LiveRun *run) { return print(write_framing, live_trajectory(run)); }
+const char *live_framing(const LiveRun *run) { return describe_print(write_framing, live_trajectory(run)); }

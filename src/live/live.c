@@ -84,8 +84,8 @@ Scene *live_scene(LiveScene *live, const char *settings, Error *error) {
     return scene_of_tree(&live->tree, values.items, values.count, error);
 }
 
-static bool begin(LiveRun *run, LiveScene *live, const char *settings, const char *method, bool contacts,
-                  Error *error) {
+static bool begin_live(LiveRun *run, LiveScene *live, const char *settings, const char *method, bool contacts,
+                       Error *error) {
     run->scene = live_scene(live, settings, error);
     if (run->scene == NULL || !method_parse(&run->method, method, error)) return false;
     run->trajectory = trajectory_of_scene(run->scene, &run->method, run->scene->frames + 1, error);
@@ -103,7 +103,7 @@ LiveRun *live_begin(LiveScene *scene, const char *settings, const char *method, 
     bundle_use(scene->bundle);
     if (run == NULL)
         error_memory(error, "run");
-    else if (begin(run, scene, settings, method, contacts != 0, error))
+    else if (begin_live(run, scene, settings, method, contacts != 0, error))
         return run;
     live_end(run);
     return NULL;
@@ -118,7 +118,7 @@ void live_end(LiveRun *run) {
     free(run);
 }
 
-static bool step(LiveRun *run, Error *error) {
+static bool step_live(LiveRun *run, Error *error) {
     const int frame = run->frame + 1;
     Trajectory *trajectory = run->trajectory;
     const World *world = run->simulation.world;
@@ -132,7 +132,7 @@ static bool step(LiveRun *run, Error *error) {
 
 int live_step(LiveRun *run, int count) {
     for (; count > 0 && run->frame < run->scene->frames && run->failure.kind == ERROR_NONE; count--)
-        if (!step(run, &run->failure)) break;
+        if (!step_live(run, &run->failure)) break;
     return run->frame;
 }
 

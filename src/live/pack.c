@@ -34,7 +34,7 @@ typedef struct Writer {
     bool failed;
 } Writer;
 
-static char *put(Writer *writer, const void *data, size_t size) {
+static char *put_pack(Writer *writer, const void *data, size_t size) {
     void *bytes = writer->bytes;
     writer->failed = writer->failed || size > UINT32_MAX - writer->size ||
                      !array_reserve(&bytes, &writer->capacity, writer->size + size + 1, 1);
@@ -49,15 +49,15 @@ static char *put(Writer *writer, const void *data, size_t size) {
 static void put_word(Writer *writer, uint32_t word) {
     const unsigned char bytes[] = {(unsigned char)word, (unsigned char)(word >> 8), (unsigned char)(word >> 16),
                                    (unsigned char)(word >> 24)};
-    put(writer, bytes, sizeof bytes);
+    put_pack(writer, bytes, sizeof bytes);
 }
 
 /* Room for the data of a piece, or the data itself. */
 static char *put_piece(Writer *writer, const char *name, const void *data, size_t size) {
     put_word(writer, (uint32_t)strlen(name) + 1);
     put_word(writer, (uint32_t)size);
-    put(writer, name, strlen(name) + 1);
-    return put(writer, data, size);
+    put_pack(writer, name, strlen(name) + 1);
+    return put_pack(writer, data, size);
 }
 
 static void put_nodes(Writer *writer, const YamlTree *tree) {
@@ -139,8 +139,8 @@ static bool put_network_of(Writer *writer, const Views *views, const char *text,
     return there != NULL && (bundle_find(packed, there, &found) || put_network(writer, there, path, error));
 }
 
-static bool pack(Writer *writer, YamlTree *tree, const char *path, const char *const *methods, int count,
-                 Error *error) {
+static bool pack_scene(Writer *writer, YamlTree *tree, const char *path, const char *const *methods, int count,
+                       Error *error) {
     Views views = {.here = scene_of_tree(tree, NULL, 0, error)};
     tree->source.path = path_is_standard(path) ? path : path + file_folder_length(path);
     views.there = views.here != NULL ? scene_of_tree(tree, NULL, 0, error) : NULL;
@@ -156,7 +156,7 @@ bool live_pack(const char *scene, const char *const *methods, int count, void **
     Writer writer = {0};
     YamlTree tree;
     if (!yaml_read(&tree, scene, error)) return false;
-    const bool ok = pack(&writer, &tree, scene, methods, count, error);
+    const bool ok = pack_scene(&writer, &tree, scene, methods, count, error);
     yaml_tree_free(&tree);
     if (ok) {
         *bundle = writer.bytes;

@@ -220,7 +220,7 @@ static bool greet(Adapter *adapter, const Greeting *greeting, double until) {
 }
 
 /* argv of the words, which are ended by NUL in *text. */
-static bool split(char *text, const char *argv[WORDS_MAX + 1]) {
+static bool adapter_split(char *text, const char *argv[WORDS_MAX + 1]) {
     int count = 0;
     char *rest = text;
     for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL;) {
@@ -231,12 +231,12 @@ static bool split(char *text, const char *argv[WORDS_MAX + 1]) {
     return count > 0;
 }
 
-static Adapter *start(const Greeting *greeting, const char *key, double seconds, char why[], size_t size) {
+static Adapter *adapter_start(const Greeting *greeting, const char *key, double seconds, char why[], size_t size) {
     char program[SETTING_VALUE_SIZE];
     const char *argv[WORDS_MAX + 1];
     Adapter *adapter = calloc(1, sizeof *adapter);
     snprintf(program, sizeof program, "%s", settings_get(greeting->settings, "program"));
-    if (adapter == NULL || !split(program, argv)) {
+    if (adapter == NULL || !adapter_split(program, argv)) {
         snprintf(why, size, adapter == NULL ? "out of memory" : "has no words, or more than %d", WORDS_MAX);
         free(adapter);
         return NULL;
@@ -263,5 +263,5 @@ Adapter *adapter_take(const MethodDescription *method, const Settings *settings,
     }
     for (Adapter *adapter; (adapter = take_from_pool(key)) != NULL; adapter_end(adapter))
         if (talk_is_quiet(&adapter->talk)) return adapter;
-    return start(&(Greeting){method, settings}, key, seconds, why, size);
+    return adapter_start(&(Greeting){method, settings}, key, seconds, why, size);
 }

@@ -38,7 +38,7 @@ _Static_assert(sizeof(RequestHead) == 36 && sizeof(FrameHead) == 24, "no padding
 
 static void skip_space(const char **at) { *at += strspn(*at, " \t\r"); }
 
-static bool take(const char **at, char c) {
+static bool adapter_protocol_take(const char **at, char c) {
     skip_space(at);
     if (**at != c) return false;
     ++*at;
@@ -78,7 +78,7 @@ static bool take_escape(const char **at, uint32_t *character) {
 
 bool line_take_text(const char **at, char *text, size_t size) {
     size_t length = 0;
-    if (!take(at, '"')) return false;
+    if (!adapter_protocol_take(at, '"')) return false;
     for (; **at != '"';) {
         char bytes[4] = {**at};
         size_t count = 1;
@@ -108,11 +108,12 @@ bool line_take_number(const char **at, double *number) {
 }
 
 bool line_take_key(const char **at, bool first, char *key, size_t size) {
-    return take(at, first ? '{' : ',') && line_take_text(at, key, size) && take(at, ':');
+    return adapter_protocol_take(at, first ? '{' : ',') && line_take_text(at, key, size) &&
+           adapter_protocol_take(at, ':');
 }
 
 bool line_take_end(const char **at) {
-    const bool end = take(at, '}');
+    const bool end = adapter_protocol_take(at, '}');
     skip_space(at);
     return end && **at == '\0';
 }
@@ -135,8 +136,8 @@ bool adapter_not_understood(Adapter *adapter, const char *what, const char *line
 
 /* Requests. */
 
-static bool put(Adapter *adapter, const char *format, ...) PRINTF_LIKE(2, 3);
-static bool put(Adapter *adapter, const char *format, ...) {
+static bool adapter_protocol_put(Adapter *adapter, const char *format, ...) PRINTF_LIKE(2, 3);
+static bool adapter_protocol_put(Adapter *adapter, const char *format, ...) {
     enum { MOST = 256 };
     va_list list;
     if (!array_reserve((void **)&adapter->request, &adapter->request_capacity, adapter->request_size + MOST, 1))
@@ -166,25 +167,25 @@ static void list_numbers(const BodyDef *body, float numbers[BODY_NUMBERS]) {
 /* The numbers of an item of an array, behind its "[" and perhaps others. */
 static bool put_numbers(Adapter *adapter, const float *numbers, int count, bool first) {
     for (int i = 0; i < count; i++)
-        if (!put(adapter, "%s%.9g", i > 0 || !first ? ", " : "", (double)numbers[i])) return false;
-    return put(adapter, "]");
+        if (!adapter_protocol_put(adapter, "%s%.9g", i > 0 || !first ? ", " : "", (double)numbers[i])) return false;
+    return adapter_protocol_put(adapter, "]");
 }
 
 static bool put_text_body(Adapter *adapter, const BodyDef *body, bool first) {
     float numbers[BODY_NUMBERS];
     list_numbers(body, numbers);
-    return put(adapter, first ? "[" : ", [") && put_numbers(adapter, numbers, BODY_NUMBERS, true);
+    return adapter_protocol_put(adapter, first ? "[" : ", [") && put_numbers(adapter, numbers, BODY_NUMBERS, true);
 }
 
 static bool put_text(Adapter *adapter, const AdapterRequest *request) {
-    bool done = put(adapter, "{\"scene\": %u, \"frame\": %d, ", adapter->scene, request->frame);
+    bool done = adapter_protocol_put(adapter, "{\"scene\": %u, \"frame\": %d, ", adapter->scene, request->frame);
     if (request->frame == 0)
-        done = done &&
-               put(adapter, "\"gravity\": [%.9g, %.9g], \"dt\": %.9g, \"iterations\": %d, ", (double)request->gravity.x,
-                   (double)request->gravity.y, (double)request->dt, request->iterations);
-    done = done && put(adapter, "\"remove\": %d, \"add\": [", request->removed);
+        done = done && adapter_protocol_put(adapter, "\"gravity\": [%.9g, %.9g], \"dt\": %.9g, \"iterations\": %d, ",
+                                            (double)request->gravity.x, (double)request->gravity.y, (double)request->dt,
+                                            request->iterations);
+    done = done && adapter_protocol_put(adapter, "\"remove\": %d, \"add\": [", request->removed);
     for (int i = 0; done && i < request->added; i++) done = put_text_body(adapter, &request->add[i], i == 0);
-    return done && put(adapter, "], \"steps\": %d}\n", request->steps);
+    return done && adapter_protocol_put(adapter, "], \"steps\": %d}\n", request->steps);
 }
 
 static bool put_binary(Adapter *adapter, const AdapterRequest *request) {
@@ -206,24 +207,26 @@ static bool put_binary(Adapter *adapter, const AdapterRequest *request) {
 }
 
 static bool put_problem(Adapter *adapter, const ContactProblem *problem) {
-    bool done = put(adapter, "{\"problem\": %u, \"dt\": %.9g, \"bodies\": [", adapter->scene, (double)problem->dt);
+    bool done = adapter_protocol_put(adapter, "{\"problem\": %u, \"dt\": %.9g, \"bodies\": [", adapter->scene,
+                                     (double)problem->dt);
     for (int i = 0; done && i < problem->body_count; i++) {
         const ProblemBody *b = &problem->bodies[i];
         const float numbers[PROBLEM_BODY_NUMBERS] = {b->inv_mass,   b->inv_inertia,     b->size.x, b->size.y,
                                                      b->position.x, b->position.y,      b->angle,  b->velocity.x,
                                                      b->velocity.y, b->angular_velocity};
-        done = put(adapter, i > 0 ? ", [" : "[") && put_numbers(adapter, numbers, PROBLEM_BODY_NUMBERS, true);
+        done = adapter_protocol_put(adapter, i > 0 ? ", [" : "[") &&
+               put_numbers(adapter, numbers, PROBLEM_BODY_NUMBERS, true);
     }
-    done = done && put(adapter, "], \"contacts\": [");
+    done = done && adapter_protocol_put(adapter, "], \"contacts\": [");
     for (int i = 0; done && i < problem->contact_count; i++) {
         const ContactPoint *c = &problem->contacts[i];
         const float numbers[CONTACT_NUMBERS] = {c->normal.x, c->normal.y,    c->arm_a.x,     c->arm_a.y,
                                                 c->arm_b.x,  c->arm_b.y,     c->separation,  c->friction,
                                                 c->bias,     c->warm_normal, c->warm_tangent};
-        done = put(adapter, "%s[%d, %d", i > 0 ? ", " : "", c->a, c->b) &&
+        done = adapter_protocol_put(adapter, "%s[%d, %d", i > 0 ? ", " : "", c->a, c->b) &&
                put_numbers(adapter, numbers, CONTACT_NUMBERS, false);
     }
-    return done && put(adapter, "]}\n");
+    return done && adapter_protocol_put(adapter, "]}\n");
 }
 
 /* With the C locale's decimal point; one of the two. */
@@ -288,8 +291,9 @@ typedef struct Answer {
 static bool take_numbers(Adapter *adapter, const AnswerForm *form, int items, const char **at) {
     const int wanted = items * form->each;
     int count = 0;
-    if (!take(at, '[')) return adapter_failed(adapter, "has not answered with an array of %s", form->key);
-    for (bool more = !take(at, ']'); more; count++) {
+    if (!adapter_protocol_take(at, '['))
+        return adapter_failed(adapter, "has not answered with an array of %s", form->key);
+    for (bool more = !adapter_protocol_take(at, ']'); more; count++) {
         const char *name = form->names[count % form->each];
         double number;
         skip_space(at);
@@ -298,8 +302,8 @@ static bool take_numbers(Adapter *adapter, const AnswerForm *form, int items, co
             return adapter_failed(adapter, "%s %d: its %s is no finite number: '%.*s'", form->item, count / form->each,
                                   name, (int)strcspn(text, ",] "), text);
         if (count < wanted) adapter->numbers[count] = (float)number;
-        more = take(at, ',');
-        if (!more && !take(at, ']'))
+        more = adapter_protocol_take(at, ',');
+        if (!more && !adapter_protocol_take(at, ']'))
             return adapter_failed(adapter, "%s %d: no ',' or ']' behind its %s", form->item, count / form->each, name);
     }
     if (count == wanted) return true;

@@ -15,12 +15,12 @@ static const SettingSpec settings[] = {
     STOPPING_SETTINGS("iterations"),
     {0}};
 
-static void *create(const Settings *chosen, Error *error) {
+static void *admm_create(const Settings *chosen, Error *error) {
     static const Admm standard = {.rule.k = 10};
     return stopping_make(chosen, settings, &standard, sizeof standard, "admm", error);
 }
 
-static void destroy(void *state) {
+static void admm_destroy(void *state) {
     Admm *admm = state;
     if (admm == NULL) return;
     sweeps_free(&admm->sweeps);
@@ -45,7 +45,7 @@ typedef struct Spectrum {
     double penalty, step;
 } Spectrum;
 
-static Spectrum look(Admm *admm, const AdmmKernels *kernels) {
+static Spectrum admm_look(Admm *admm, const AdmmKernels *kernels) {
     const double largest = kernels->largest(admm), condition = largest / admm_proximal;
     return (Spectrum){share * sqrt(largest * admm_proximal) * rounded_power(condition, start_power),
                       rounded_power(condition, step_power)};
@@ -78,17 +78,17 @@ static bool is_last(Admm *admm, int iterations) {
     return done >= rule->more || !(admm->interior.residual >= (double)rule->near);
 }
 
-static bool load(Admm *admm, const ContactProblem *problem) {
+static bool admm_load(Admm *admm, const ContactProblem *problem) {
     Interior *s = &admm->interior;
     return sweeps_begin(&admm->sweeps, sweeps_best_kernel(), problem, true) &&
            interior_load(s, interior_best(), &admm->sweeps, problem) &&
            ARRAY_BLOCK_RESERVE(&admm->memory, ARRAY_PART(admm->groups, s->group_count));
 }
 
-static void iterate(Admm *admm) {
+static void admm_iterate(Admm *admm) {
     const AdmmKernels *kernels = best_kernels();
     kernels->begin(admm);
-    const Spectrum first = look(admm, kernels);
+    const Spectrum first = admm_look(admm, kernels);
     admm->penalty = first.penalty;
     kernels->factorize(admm);
     for (int iterations = 1;; iterations++) {
@@ -98,11 +98,11 @@ static void iterate(Admm *admm) {
     }
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool admm_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     static const SequentialOptions options = {.accumulate = true, .warm = true};
     Admm *admm = state;
-    if (!load(admm, problem)) return error_memory(error, "admm");
-    iterate(admm);
+    if (!admm_load(admm, problem)) return error_memory(error, "admm");
+    admm_iterate(admm);
     if (interior_end(&admm->interior, &admm->sweeps, problem, solution)) return true;
     sequential_impulses_solve(problem, &options, admm->rule.k, solution);
     solution->fallbacks.by_sweeps = 1;
@@ -120,6 +120,6 @@ const ContactSolverKind solver_admm = {
                                          "k=2,near=0.0002,more=10000"),
                     .chart_quick = METHOD_RUNS("k=20", "k=2,near=0.02,more=400"),
                     .stability = METHOD_RUNS("", "k=50")},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = admm_create,
+    .solve = admm_solve,
+    .destroy = admm_destroy};

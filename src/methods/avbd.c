@@ -80,7 +80,7 @@ typedef struct Avbd {
 
 /* The start of a step: where bodies and contacts begin, with what forces and penalties. */
 
-static bool reserve(Avbd *avbd, const ContactProblem *problem) {
+static bool avbd_reserve(Avbd *avbd, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     return array_reserve((void **)&avbd->before, &avbd->before_capacity, bodies, sizeof *avbd->before) &&
            array_reserve((void **)&avbd->last, &avbd->last_capacity, contacts, sizeof *avbd->last) &&
@@ -179,9 +179,9 @@ static void list_visits(Avbd *avbd) {
 }
 
 /* Fills the state for a step of the world that has begun. False when memory is short. */
-static bool begin(Avbd *avbd, const BegunStep *begun) {
+static bool avbd_begin(Avbd *avbd, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
-    if (!step_memory_match(&avbd->memory, begun->world, begun->step) || !reserve(avbd, problem)) return false;
+    if (!step_memory_match(&avbd->memory, begun->world, begun->step) || !avbd_reserve(avbd, problem)) return false;
     avbd->body_count = problem->body_count;
     avbd->contact_count = problem->contact_count;
     for (int i = 0; i < avbd->body_count; i++)
@@ -319,7 +319,7 @@ static const SettingSpec settings[] = {
     {"gamma", "share of a penalty that the next step begins with (default: 0.99)", SETTING_FLOAT(Avbd, gamma, 0, 1)},
     {0}};
 
-static void destroy(void *state) {
+static void avbd_destroy(void *state) {
     Avbd *avbd = state;
     step_memory_free(&avbd->memory);
     free(avbd->arrays.memory);
@@ -328,14 +328,14 @@ static void destroy(void *state) {
     free(avbd);
 }
 
-static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *avbd_create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Avbd standard = {.iterations = 10, .alpha = -1, .beta = 1e5f, .gamma = 0.99f};
     (void)scene;
     return settings_make(chosen, settings, &standard, sizeof standard, "avbd", error);
 }
 
 /* The momentum that no contact force accounts for: 0 once the passes have converged. */
-static void measure(void *state, const BegunStep *begun) {
+static void avbd_measure(void *state, const BegunStep *begun) {
     const Avbd *avbd = state;
     const ContactProblem *problem = begun->problem;
     ContactSolution *solution = begun->solution;
@@ -357,7 +357,7 @@ static void measure(void *state, const BegunStep *begun) {
 }
 
 /* False if an impulse is NaN or infinite. */
-static bool end(Avbd *avbd, const ContactProblem *problem, ContactSolution *solution) {
+static bool avbd_end(Avbd *avbd, const ContactProblem *problem, ContactSolution *solution) {
     bool finite = true;
     for (int i = 0; i < avbd->body_count; i++) {
         const Vec3 *moved = &avbd->bodies[i].moved;
@@ -373,16 +373,16 @@ static bool end(Avbd *avbd, const ContactProblem *problem, ContactSolution *solu
     return finite;
 }
 
-static bool solve(void *state, BegunStep *begun, Error *error) {
+static bool avbd_solve(void *state, BegunStep *begun, Error *error) {
     Avbd *avbd = state;
-    if (!begin(avbd, begun)) return error_memory(error, "avbd");
+    if (!avbd_begin(avbd, begun)) return error_memory(error, "avbd");
     make_passes(avbd, begun->step, begun->problem, begun->solution);
     begun->poses = avbd->poses;
-    return end(avbd, begun->problem, begun->solution) ||
+    return avbd_end(avbd, begun->problem, begun->solution) ||
            error_failure(error, FAILURE_NOT_FINITE, "avbd", "an impulse is NaN or infinite");
 }
 
-static void keep(void *state, const World *world) {
+static void avbd_keep(void *state, const World *world) {
     Avbd *avbd = state;
     for (int i = 0; i < avbd->contact_count; i++) avbd->last[i] = avbd->contacts[i];
     for (int i = 0; i < avbd->body_count; i++) avbd->before[i] = avbd->bodies[i].start;
@@ -399,8 +399,8 @@ const SteppingKind stepping_avbd = {
                     .chart = METHOD_RUNS("k=2,beta=1e6", "k=2,beta=1e6,gamma=0.95", "k=10", "k=20", "k=50"),
                     .chart_quick = METHOD_RUNS("k=10"),
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .measure = measure,
-    .keep = keep,
-    .destroy = destroy};
+    .create = avbd_create,
+    .solve = avbd_solve,
+    .measure = avbd_measure,
+    .keep = avbd_keep,
+    .destroy = avbd_destroy};

@@ -19,7 +19,7 @@ void block_lu_free(BlockLu *lu) {
     *lu = (BlockLu){0};
 }
 
-static bool reserve(BlockLu *lu, int count, int edge_count) {
+static bool block_lu_reserve(BlockLu *lu, int count, int edge_count) {
     const size_t nodes = (size_t)count + 2, edges = (size_t)edge_count + 1;
     return ARRAY_BLOCK_RESERVE(&lu->graph, ARRAY_PART(lu->column, nodes), ARRAY_PART(lu->position, nodes),
                                ARRAY_PART(lu->order, nodes), ARRAY_PART(lu->start, nodes),
@@ -29,7 +29,7 @@ static bool reserve(BlockLu *lu, int count, int edge_count) {
 }
 
 /* Lists of neighbours, without the repeated ones. */
-static void connect(BlockLu *lu, int edge_count) {
+static void block_lu_connect(BlockLu *lu, int edge_count) {
     int32_t *start = lu->start;
     memset(start, 0, ((size_t)lu->count + 2) * sizeof *start);
     for (int i = 0; i < edge_count; i++) {
@@ -123,10 +123,10 @@ bool block_lu_analyse(BlockLu *lu, int count, const BlockEdge *edges, int edge_c
         (size == 0 || memcmp(lu->edges, edges, size) == 0))
         return true;
     lu->edge_count = -1; /* until the new analysis is complete */
-    if (!reserve(lu, count, edge_count)) return false;
+    if (!block_lu_reserve(lu, count, edge_count)) return false;
     lu->count = count;
     if (size > 0) memcpy(lu->edges, edges, size);
-    connect(lu, edge_count);
+    block_lu_connect(lu, edge_count);
     const BlockNeighbours neighbours = {count, lu->start, lu->neighbour};
     if (!block_order_choose(&lu->choice, &neighbours, lu->order)) return false;
     for (int k = 0; k < count; k++) lu->position[lu->order[k]] = k;

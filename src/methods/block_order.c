@@ -175,7 +175,7 @@ static void chain(Quotient *q, int node, int follower) {
 }
 
 /* Moves the nodes of a list into that of the new element, and out of the lists by degree. Returns their weight. */
-static int collect(Quotient *q, int64_t from, int64_t end, int64_t *to) {
+static int block_order_collect(Quotient *q, int64_t from, int64_t end, int64_t *to) {
     int weight = 0;
     for (; from < end; from++) {
         const int node = q->list[from], mine = q->weight[node];
@@ -206,10 +206,10 @@ static bool make_element(Quotient *q, int pivot) {
     q->weight[pivot] = -q->weight[pivot];
     for (int i = 0; i < q->elements[pivot]; i++) {
         const int element = q->list[own + i];
-        weight += collect(q, q->start[element], q->start[element] + q->length[element], &end);
+        weight += block_order_collect(q, q->start[element], q->start[element] + q->length[element], &end);
         q->seen[element] = 0;
     }
-    weight += collect(q, own + q->elements[pivot], own + q->length[pivot], &end);
+    weight += block_order_collect(q, own + q->elements[pivot], own + q->length[pivot], &end);
     if (begin != own) q->used = (size_t)end;
     q->start[pivot] = begin;
     q->length[pivot] = (int32_t)(end - begin);
@@ -232,7 +232,7 @@ static void measure_elements(Quotient *q, int pivot) {
 
 /* Removes what is absorbed or connected by the pivot from a node's list, and adds the pivot as its first element. Returns the
    weight that it has beyond the pivot; 0: it is eliminated with the pivot. */
-static int shorten(Quotient *q, int node, int pivot, uint32_t *sum) {
+static int block_order_shorten(Quotient *q, int node, int pivot, uint32_t *sum) {
     int32_t *list = q->list + q->start[node];
     int kept = 0, weight = 0;
     for (int k = 0; k < q->elements[node]; k++) {
@@ -263,7 +263,7 @@ static void update_nodes(Quotient *q, int pivot) {
     for (int i = 0; i < q->length[pivot]; i++) {
         const int node = q->list[q->start[pivot] + i];
         uint32_t sum = 0;
-        const int weight = shorten(q, node, pivot, &sum);
+        const int weight = block_order_shorten(q, node, pivot, &sum);
         if (weight == 0) {
             q->degree[pivot] += q->weight[node];
             q->weight[pivot] += q->weight[node];

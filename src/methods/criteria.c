@@ -57,12 +57,14 @@ static double kinetic(const ProblemBody *body, Motion motion) {
     return twice / 2;
 }
 
-static BodyVelocity before(const ProblemBody *body) { return (BodyVelocity){body->velocity, body->angular_velocity}; }
+static BodyVelocity criteria_before(const ProblemBody *body) {
+    return (BodyVelocity){body->velocity, body->angular_velocity};
+}
 
 static double energy_added(const ContactProblem *problem, const BodyVelocity *velocities) {
     double sum = 0;
     for (int i = 0; i < problem->body_count; i++) {
-        const BodyVelocity freely = before(&problem->bodies[i]);
+        const BodyVelocity freely = criteria_before(&problem->bodies[i]);
         sum +=
             kinetic(&problem->bodies[i], motion_of(&velocities[i])) - kinetic(&problem->bodies[i], motion_of(&freely));
     }

@@ -28,19 +28,19 @@ static const SettingSpec settings[] = {
     KEEP_SETTING(SETTING_OWN),
     {0}};
 
-static void destroy(void *state) {
+static void engine_destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     sweeps_free(&solver->sweeps);
     free(solver);
 }
 
-static void *create(const Settings *chosen, Error *error) {
+static void *engine_create(const Settings *chosen, Error *error) {
     static const State standard = {.rule.k = 10, .options = {.accumulate = true, .warm = true}};
     return stopping_make(chosen, settings, &standard, sizeof standard, "engine", error);
 }
 
-static bool sweep(State *solver, const ContactProblem *problem) {
+static bool engine_sweep(State *solver, const ContactProblem *problem) {
     const StoppingRule *rule = &solver->rule;
     Sweeps *sweeps = &solver->sweeps;
     sweeps->block = rule->more > 0 ? STOPPING_BLOCK : 0;
@@ -56,11 +56,12 @@ static void solve_scalar(const State *solver, const ContactProblem *problem, Con
         for (int i = 0; i < STOPPING_BLOCK; i++) sequential_impulses_sweep(problem, &solver->options, solution);
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool engine_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const SequentialOptions *options = &solver->options;
     if (options->accumulate) {
-        if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, options->warm) || !sweep(solver, problem))
+        if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, options->warm) ||
+            !engine_sweep(solver, problem))
             return error_memory(error, "engine");
         if (sweeps_end(&solver->sweeps, solution)) return true;
     }
@@ -80,6 +81,6 @@ const ContactSolverKind solver_engine = {
                     .chart_quick = METHOD_RUNS("k=4", "k=10", "k=50"),
                     .stability = METHOD_RUNS("k=4", "", "k=50"),
                     .stability_place = 1},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = engine_create,
+    .solve = engine_solve,
+    .destroy = engine_destroy};

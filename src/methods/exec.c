@@ -43,7 +43,7 @@ static const SettingSpec settings[] = {
     {0}};
 
 /* Programs start with the first step, so that one that cannot is a result of the run, as any later failure is. */
-static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *exec_create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Exec standard = {.step_limit = 10, .run_limit = 600};
     (void)scene;
     Exec *exec = settings_make(chosen, settings, &standard, sizeof standard, "exec", error);
@@ -63,7 +63,7 @@ static void leave(Exec *exec) {
     exec->adapter = NULL;
 }
 
-static void destroy(void *state) {
+static void exec_destroy(void *state) {
     Exec *exec = state;
     leave(exec);
     free(exec->added);
@@ -71,7 +71,7 @@ static void destroy(void *state) {
     free(exec);
 }
 
-static bool fail(Exec *exec, Error *error, const char *why) {
+static bool exec_fail(Exec *exec, Error *error, const char *why) {
     if (clock_seconds() >= exec->end) why = "the run has taken longer than its run_limit";
     error_failure(error, FAILURE_ADAPTER, exec->where, "adapter failed: %s", why);
     program_failed(error->message);
@@ -86,7 +86,7 @@ static bool begin_run(Exec *exec, Error *error) {
     exec->bodies = exec->frame = 0;
     exec->adapter = adapter_take(&stepping_exec.description, &exec->settings, (double)exec->step_limit, exec->why,
                                  sizeof exec->why);
-    return exec->adapter != NULL || fail(exec, error, exec->why);
+    return exec->adapter != NULL || exec_fail(exec, error, exec->why);
 }
 
 /* Steps until the scene ends, or adds or removes a body; but not more than `most`. */
@@ -99,7 +99,7 @@ static int steps_ahead(const Scene *scene, int frame, int most) {
 }
 
 /* The next steps, with the bodies that the world has now. */
-static bool ask(Exec *exec, const BegunStep *begun, double until, Error *error) {
+static bool exec_ask(Exec *exec, const BegunStep *begun, double until, Error *error) {
     const Scene *scene = begun->step->scene;
     const int count = begun->problem->body_count, before = exec->bodies;
     const int ahead = AHEAD_BYTES / ((int)sizeof(float) * ADAPTER_NUMBERS * (count + 1)) + 1;
@@ -115,7 +115,7 @@ static bool ask(Exec *exec, const BegunStep *begun, double until, Error *error) 
     for (int i = 0; i < request.added; i++)
         exec->added[i] = before + i < scene->body_count ? scene->bodies[before + i] : scene_bomb_body(scene);
     exec->bodies = count;
-    return adapter_ask(exec->adapter, &request, until) || fail(exec, error, adapter_why(exec->adapter));
+    return adapter_ask(exec->adapter, &request, until) || exec_fail(exec, error, adapter_why(exec->adapter));
 }
 
 static bool next_frame(Exec *exec, const BegunStep *begun, AdapterFrame *frame, Error *error) {
@@ -125,17 +125,17 @@ static bool next_frame(Exec *exec, const BegunStep *begun, AdapterFrame *frame, 
         return error_input(error, exec->where, "runs whole scenes, step after step; it cannot begin with step %d",
                            number);
     const double now = clock_seconds(), step_end = now + (double)exec->step_limit;
-    if (now >= exec->end) return fail(exec, error, "");
+    if (now >= exec->end) return exec_fail(exec, error, "");
     const double until = step_end < exec->end ? step_end : exec->end;
-    if (adapter_frames_left(exec->adapter) == 0 && !ask(exec, begun, until, error)) return false;
+    if (adapter_frames_left(exec->adapter) == 0 && !exec_ask(exec, begun, until, error)) return false;
     if (begun->problem->body_count != exec->bodies)
         return error_input(error, exec->where, "cannot add or remove a body in step %d", number);
-    if (!adapter_read(exec->adapter, frame, until)) return fail(exec, error, adapter_why(exec->adapter));
+    if (!adapter_read(exec->adapter, frame, until)) return exec_fail(exec, error, adapter_why(exec->adapter));
     exec->frame = number;
     return true;
 }
 
-static bool solve(void *state, BegunStep *begun, Error *error) {
+static bool exec_solve(void *state, BegunStep *begun, Error *error) {
     Exec *exec = state;
     const ContactProblem *problem = begun->problem;
     const size_t count = (size_t)problem->body_count;
@@ -171,6 +171,6 @@ const SteppingKind stepping_exec = {
                     .chart = METHOD_NO_RUNS,
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = exec_create,
+    .solve = exec_solve,
+    .destroy = exec_destroy};

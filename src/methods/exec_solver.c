@@ -32,7 +32,7 @@ static const SettingSpec settings[] = {{"name", "what pictures call it (default:
                                        {"*", "all other settings are passed to the program", SETTING_OWN},
                                        {0}};
 
-static void *create(const Settings *chosen, Error *error) {
+static void *exec_solver_create(const Settings *chosen, Error *error) {
     static const ExecSolver standard = {.step_limit = 10};
     ExecSolver *solver = settings_make(chosen, settings, &standard, sizeof standard, "exec-solver", error);
     if (solver == NULL) return NULL;
@@ -41,13 +41,13 @@ static void *create(const Settings *chosen, Error *error) {
     return solver;
 }
 
-static void destroy(void *state) {
+static void exec_solver_destroy(void *state) {
     ExecSolver *solver = state;
     adapter_give(solver->adapter);
     free(solver);
 }
 
-static bool fail(ExecSolver *solver, Error *error, const char *why) {
+static bool exec_solver_fail(ExecSolver *solver, Error *error, const char *why) {
     error_failure(error, FAILURE_ADAPTER, solver->where, "adapter failed: %s", why);
     program_failed(error->message);
     adapter_end(solver->adapter);
@@ -56,26 +56,26 @@ static bool fail(ExecSolver *solver, Error *error, const char *why) {
 }
 
 /* A program that has failed is started again: its failure ended another run. */
-static bool ask(ExecSolver *solver, const ContactProblem *problem, ContactImpulse *impulses, Error *error) {
+static bool exec_solver_ask(ExecSolver *solver, const ContactProblem *problem, ContactImpulse *impulses, Error *error) {
     char why[TALK_WHY_SIZE];
     const double limit = (double)solver->step_limit;
     if (solver->adapter == NULL)
         solver->adapter = adapter_take(&solver_exec_solver.description, &solver->settings, limit, why, sizeof why);
-    if (solver->adapter == NULL) return fail(solver, error, why);
+    if (solver->adapter == NULL) return exec_solver_fail(solver, error, why);
     return adapter_solve(solver->adapter, problem, impulses, &solver->ns, clock_seconds() + limit) ||
-           fail(solver, error, adapter_why(solver->adapter));
+           exec_solver_fail(solver, error, adapter_why(solver->adapter));
 }
 
 static bool is_finite(const BodyVelocity *velocity) {
     return isfinite(velocity->linear.x) && isfinite(velocity->linear.y) && isfinite(velocity->angular);
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool exec_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     ExecSolver *solver = state;
     solver->ns = 0;
     contact_solution_begin(problem, solution);
     if (problem->contact_count == 0) return true;
-    if (!ask(solver, problem, solution->impulses, error)) return false;
+    if (!exec_solver_ask(solver, problem, solution->impulses, error)) return false;
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         const ContactImpulse *impulse = &solution->impulses[i];
@@ -84,7 +84,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
         char why[TALK_WHY_SIZE];
         snprintf(why, sizeof why, "contact %d: its impulse (%g, %g) N s makes a velocity infinite", i,
                  (double)impulse->normal, (double)impulse->tangent);
-        return fail(solver, error, why);
+        return exec_solver_fail(solver, error, why);
     }
     return true;
 }
@@ -101,7 +101,7 @@ const ContactSolverKind solver_exec_solver = {
                     .chart = METHOD_NO_RUNS,
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy,
+    .create = exec_solver_create,
+    .solve = exec_solver_solve,
+    .destroy = exec_solver_destroy,
     .reported = reported};

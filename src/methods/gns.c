@@ -56,7 +56,7 @@ static const SettingSpec settings[] = {
     {"rigid", "off: particles are not put back to rigid boxes (default: on)", SETTING_BOOL(Gns, rigid)},
     {0}};
 
-static void destroy(void *state) {
+static void gns_destroy(void *state) {
     Gns *gns = state;
     gns_net_free(&gns->net);
     free(gns->arrays.memory);
@@ -69,7 +69,7 @@ static void destroy(void *state) {
     free(gns);
 }
 
-static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *gns_create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Gns standard = {.uses_net = true, .rigid = true};
     Gns *gns = settings_make(chosen, settings, &standard, sizeof standard, "gns", error);
     if (gns == NULL || !gns->uses_net) return gns;
@@ -78,11 +78,11 @@ static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     if (path != NULL ? gns_net_read(&gns->net, path, error)
                      : error_input(error, "gns", "needs a network: network=FILE, or the scene's `networks`"))
         return gns;
-    destroy(gns);
+    gns_destroy(gns);
     return NULL;
 }
 
-static bool reserve(Gns *gns, int bodies) {
+static bool gns_reserve(Gns *gns, int bodies) {
     const size_t count = (size_t)bodies, particles = count * BOX_PARTICLES;
     GnsParticles *now = &gns->particles, *last = &gns->last;
     return array_reserve((void **)&gns->place, &gns->place_capacity, count, sizeof *gns->place) &&
@@ -117,9 +117,9 @@ static void take_past(Gns *gns, int i, int place) {
 }
 
 /* Particles of all bodies that move, and the boxes that do not. */
-static bool begin(Gns *gns, const BegunStep *begun) {
+static bool gns_begin(Gns *gns, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
-    if (!reserve(gns, problem->body_count + 1) || !step_memory_match(&gns->memory, begun->world, begun->step))
+    if (!gns_reserve(gns, problem->body_count + 1) || !step_memory_match(&gns->memory, begun->world, begun->step))
         return false;
     const Body *bodies = world_bodies(begun->world);
     gns->particles.bodies = gns->ground_count = 0;
@@ -191,16 +191,16 @@ static void end_body(Gns *gns, int i, const ContactProblem *problem, ContactSolu
         (BodyVelocity){vec2_scale(per, vec2_sub(pose->position, before.position)), per * (pose->angle - before.angle)};
 }
 
-static bool predict(Gns *gns) {
+static bool gns_predict(Gns *gns) {
     return gns_graph_build(&gns->graph, &gns->particles, gns->ground, gns->ground_count, &gns->net.scales) &&
            gns_forward(&gns->pass, &gns->net.layout, gns->net.parameters, &gns->graph);
 }
 
-static bool solve(void *state, BegunStep *begun, Error *error) {
+static bool gns_solve(void *state, BegunStep *begun, Error *error) {
     Gns *gns = state;
     const ContactProblem *problem = begun->problem;
     ContactSolution *solution = begun->solution;
-    if (!begin(gns, begun) || (gns->uses_net && !predict(gns))) return error_memory(error, "gns");
+    if (!gns_begin(gns, begun) || (gns->uses_net && !gns_predict(gns))) return error_memory(error, "gns");
     const Vec2 gravity = begun->step->scene->gravity;
     const bool other_gravity = gravity.x != gns->net.gravity[0] || gravity.y != gns->net.gravity[1];
     solution->fallbacks.beyond_training += gns->uses_net && (gns->graph.beyond || other_gravity);
@@ -214,11 +214,11 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
     return true;
 }
 
-static void measure(void *state, const BegunStep *begun) {
+static void gns_measure(void *state, const BegunStep *begun) {
     begun->solution->momentum_error = free_flight_momentum(begun->problem, begun->solution, ((Gns *)state)->touched);
 }
 
-static void keep(void *state, const World *world) {
+static void gns_keep(void *state, const World *world) {
     Gns *gns = state;
     const size_t count = (size_t)gns_particle_count(&gns->particles);
     memcpy(gns->last.position, gns->particles.position, count * sizeof *gns->last.position);
@@ -249,8 +249,8 @@ const SteppingKind stepping_gns = {
                     .chart = METHOD_RUNS("", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .measure = measure,
-    .keep = keep,
-    .destroy = destroy};
+    .create = gns_create,
+    .solve = gns_solve,
+    .measure = gns_measure,
+    .keep = gns_keep,
+    .destroy = gns_destroy};

@@ -72,7 +72,7 @@ void gns_pass_free(GnsPass *pass) {
     *pass = (GnsPass){.tape = pass->tape};
 }
 
-static float *take(float *numbers, size_t *used, size_t count) {
+static float *gns_graph_take(float *numbers, size_t *used, size_t count) {
     float *at = numbers != NULL ? numbers + *used : NULL;
     *used += (count + 7) & ~(size_t)7;
     return at;
@@ -80,34 +80,34 @@ static float *take(float *numbers, size_t *used, size_t count) {
 
 static GnsLayerTape take_layer(float *numbers, size_t *used, size_t rows, size_t width) {
     GnsLayerTape layer;
-    layer.first = take(numbers, used, rows * width);
-    layer.second = take(numbers, used, rows * width);
-    layer.normalised = take(numbers, used, rows * width);
-    layer.inverse = take(numbers, used, rows);
+    layer.first = gns_graph_take(numbers, used, rows * width);
+    layer.second = gns_graph_take(numbers, used, rows * width);
+    layer.normalised = gns_graph_take(numbers, used, rows * width);
+    layer.inverse = gns_graph_take(numbers, used, rows);
     return layer;
 }
 
 /* Places the arrays in `numbers`, or with NULL only counts them. */
-static size_t place(GnsPass *pass, float *numbers, const GnsLayout *layout, const GnsGraph *graph) {
+static size_t gns_graph_place(GnsPass *pass, float *numbers, const GnsLayout *layout, const GnsGraph *graph) {
     const size_t nodes = (size_t)graph->nodes, edges = (size_t)graph->edges, width = (size_t)layout->width;
     const bool tape = pass->tape;
     size_t used = 0;
     for (int m = 0; m <= layout->rounds; m++) {
         const bool own = tape || m == 0;
-        pass->node[m] = own ? take(numbers, &used, nodes * width) : pass->node[0];
-        pass->edge[m] = own ? take(numbers, &used, edges * width) : pass->edge[0];
+        pass->node[m] = own ? gns_graph_take(numbers, &used, nodes * width) : pass->node[0];
+        pass->edge[m] = own ? gns_graph_take(numbers, &used, edges * width) : pass->edge[0];
         if (m == layout->rounds) break;
-        pass->sum[m] = own ? take(numbers, &used, nodes * width) : pass->sum[0];
+        pass->sum[m] = own ? gns_graph_take(numbers, &used, nodes * width) : pass->sum[0];
         pass->edge_rounds[m] = own ? take_layer(numbers, &used, tape ? edges : TILE, width) : pass->edge_rounds[0];
         pass->node_rounds[m] = tape ? take_layer(numbers, &used, nodes, width) : pass->edge_rounds[0];
     }
     pass->nodes = tape ? take_layer(numbers, &used, nodes, width) : pass->edge_rounds[0];
     pass->edges = tape ? take_layer(numbers, &used, edges, width) : pass->edge_rounds[0];
     pass->decoder = tape ? take_layer(numbers, &used, nodes, width) : pass->edge_rounds[0];
-    pass->outputs = take(numbers, &used, nodes * GNS_OUTPUTS);
-    pass->from_receiver = take(numbers, &used, nodes * width);
-    pass->from_sender = take(numbers, &used, nodes * width);
-    pass->change = take(numbers, &used, TILE * width);
+    pass->outputs = gns_graph_take(numbers, &used, nodes * GNS_OUTPUTS);
+    pass->from_receiver = gns_graph_take(numbers, &used, nodes * width);
+    pass->from_sender = gns_graph_take(numbers, &used, nodes * width);
+    pass->change = gns_graph_take(numbers, &used, TILE * width);
     return used;
 }
 
@@ -119,8 +119,8 @@ static GnsLayerTape rows_of(const GnsPass *pass, const GnsLayerTape *layer, int 
 }
 
 /* The rest of a perceptron, from the sums of its first layer on. */
-static void finish(const GnsKernels *kernels, const GnsMlp *mlp, const float *parameters, const GnsLayerTape *tape,
-                   int rows, float *out) {
+static void gns_graph_finish(const GnsKernels *kernels, const GnsMlp *mlp, const float *parameters,
+                             const GnsLayerTape *tape, int rows, float *out) {
     const int width = mlp->width;
     float *last = mlp->gain >= 0 ? tape->normalised : out;
     kernels->relu(tape->first, rows * width);
@@ -136,18 +136,18 @@ static void finish(const GnsKernels *kernels, const GnsMlp *mlp, const float *pa
 static int tile_rows(int first, int rows) { return rows - first < TILE ? rows - first : TILE; }
 
 /* out[rows, mlp->outputs] of in[rows, mlp->inputs] */
-static void apply(const GnsPass *pass, const GnsMlp *mlp, const float *parameters, const GnsLayerTape *tape,
-                  const float *in, int rows, float *out) {
+static void gns_graph_apply(const GnsPass *pass, const GnsMlp *mlp, const float *parameters, const GnsLayerTape *tape,
+                            const float *in, int rows, float *out) {
     for (int first = 0; first < rows; first += TILE) {
         const int count = tile_rows(first, rows);
         const GnsLayerTape at = rows_of(pass, tape, first, mlp->width);
         pass->kernels->multiply(at.first, in + (ptrdiff_t)first * mlp->inputs, parameters + mlp->weights[0],
                                 parameters + mlp->biases[0], count, mlp->inputs, mlp->width);
-        finish(pass->kernels, mlp, parameters, &at, count, out + (ptrdiff_t)first * mlp->outputs);
+        gns_graph_finish(pass->kernels, mlp, parameters, &at, count, out + (ptrdiff_t)first * mlp->outputs);
     }
 }
 
-static void add(float *out, const float *a, const float *b, int count) {
+static void gns_graph_add(float *out, const float *a, const float *b, int count) {
     for (int i = 0; i < count; i++) out[i] = a[i] + b[i];
 }
 
@@ -171,9 +171,9 @@ static void pass_messages(const GnsPass *pass, const GnsMlp *mlp, const float *p
         kernels->add_rows(tape.first, pass->from_receiver, graph->receiver + first, count, width);
         kernels->add_rows(tape.first, pass->from_sender, graph->sender + first, count, width);
         kernels->multiply(tape.first, pass->edge[m] + at, weights, NULL, count, width, width);
-        finish(kernels, mlp, parameters, &tape, count, pass->change);
+        gns_graph_finish(kernels, mlp, parameters, &tape, count, pass->change);
         kernels->add_to_rows(pass->sum[m], pass->change, graph->receiver + first, count, width);
-        add(pass->edge[m + 1] + at, pass->edge[m] + at, pass->change, count * width);
+        gns_graph_add(pass->edge[m + 1] + at, pass->edge[m] + at, pass->change, count * width);
     }
 }
 
@@ -188,23 +188,24 @@ static void update_nodes(const GnsPass *pass, const GnsMlp *mlp, const float *pa
                           count, width, width);
         kernels->multiply(tape.first, pass->sum[m] + at, parameters + mlp->weights[0] + (ptrdiff_t)width * width, NULL,
                           count, width, width);
-        finish(kernels, mlp, parameters, &tape, count, pass->change);
-        add(pass->node[m + 1] + at, pass->node[m] + at, pass->change, count * width);
+        gns_graph_finish(kernels, mlp, parameters, &tape, count, pass->change);
+        gns_graph_add(pass->node[m + 1] + at, pass->node[m] + at, pass->change, count * width);
     }
 }
 
 bool gns_forward(GnsPass *pass, const GnsLayout *layout, const float *parameters, const GnsGraph *graph) {
-    const size_t needed = place(pass, NULL, layout, graph);
+    const size_t needed = gns_graph_place(pass, NULL, layout, graph);
     if (!array_reserve((void **)&pass->numbers, &pass->capacity, needed, sizeof *pass->numbers)) return false;
-    place(pass, pass->numbers, layout, graph);
+    gns_graph_place(pass, pass->numbers, layout, graph);
     if (pass->kernels == NULL) pass->kernels = &kernels_best()->gns;
-    apply(pass, &layout->nodes, parameters, &pass->nodes, graph->node_inputs, graph->nodes, pass->node[0]);
-    apply(pass, &layout->edges, parameters, &pass->edges, graph->edge_inputs, graph->edges, pass->edge[0]);
+    gns_graph_apply(pass, &layout->nodes, parameters, &pass->nodes, graph->node_inputs, graph->nodes, pass->node[0]);
+    gns_graph_apply(pass, &layout->edges, parameters, &pass->edges, graph->edge_inputs, graph->edges, pass->edge[0]);
     for (int m = 0; m < layout->rounds; m++) {
         pass_messages(pass, &layout->edge_rounds[m], parameters, graph, m);
         update_nodes(pass, &layout->node_rounds[m], parameters, graph->nodes, m);
     }
-    apply(pass, &layout->decoder, parameters, &pass->decoder, pass->node[layout->rounds], graph->nodes, pass->outputs);
+    gns_graph_apply(pass, &layout->decoder, parameters, &pass->decoder, pass->node[layout->rounds], graph->nodes,
+                    pass->outputs);
     return true;
 }
 
@@ -223,7 +224,7 @@ static int list_count(int nodes) {
     return count;
 }
 
-static bool reserve(GnsGraph *graph, int nodes) {
+static bool gns_graph_reserve(GnsGraph *graph, int nodes) {
     const size_t count = (size_t)nodes, edges = count * GNS_NEIGHBOURS;
     return ARRAY_BLOCK_RESERVE(&graph->arrays, ARRAY_PART(graph->node_inputs, count * GNS_NODE_INPUTS),
                                ARRAY_PART(graph->edge_inputs, edges * GNS_EDGE_INPUTS),
@@ -336,7 +337,7 @@ static void fill_node(GnsGraph *graph, const GnsParticles *particles, int i, con
 
 bool gns_graph_build(GnsGraph *graph, const GnsParticles *particles, const Box *ground, int count,
                      const GnsScales *scales) {
-    if (!reserve(graph, gns_particle_count(particles))) return false;
+    if (!gns_graph_reserve(graph, gns_particle_count(particles))) return false;
     graph->nodes = gns_particle_count(particles);
     graph->edges = 0;
     graph->beyond = false;

@@ -65,7 +65,7 @@ static const SettingSpec settings[] = {
      SETTING_BOOL(Hybrid, retrieves)},
     {0}};
 
-static void destroy(void *state) {
+static void hybrid_destroy(void *state) {
     Hybrid *hybrid = state;
     if (hybrid == NULL) return;
     hybrid_memory_destroy(hybrid->own);
@@ -75,7 +75,7 @@ static void destroy(void *state) {
     free(hybrid);
 }
 
-static Hybrid *make(Error *error) {
+static Hybrid *make_hybrid(Error *error) {
     Settings converged;
     const MethodDescription *interior = &solver_interior.description;
     if (!settings_parse(&converged, CONVERGED, interior->settings, interior->name, error)) return NULL;
@@ -87,12 +87,12 @@ static Hybrid *make(Error *error) {
     hybrid->retrieves = true;
     hybrid->interior = solver_interior.create(&converged, error);
     if (hybrid->interior != NULL) return hybrid;
-    destroy(hybrid);
+    hybrid_destroy(hybrid);
     return NULL;
 }
 
-static void *create(const Settings *chosen, Error *error) {
-    Hybrid *hybrid = make(error);
+static void *hybrid_create(const Settings *chosen, Error *error) {
+    Hybrid *hybrid = make_hybrid(error);
     const char *path = settings_get(chosen, "network");
     if (hybrid == NULL) return NULL;
     bool ok = settings_read(chosen, settings, hybrid, error);
@@ -100,12 +100,12 @@ static void *create(const Settings *chosen, Error *error) {
         ok = ((hybrid->path = strdup(path)) != NULL || error_memory(error, "hybrid")) &&
              (hybrid->memory = hybrid->own = hybrid_memory_read(path, error)) != NULL;
     if (ok) return hybrid;
-    destroy(hybrid);
+    hybrid_destroy(hybrid);
     return NULL;
 }
 
 bool hybrid_make(ContactSolver *solver, const HybridMemory *memory, const HybridWatch *watch, Error *error) {
-    Hybrid *hybrid = make(error);
+    Hybrid *hybrid = make_hybrid(error);
     *solver = (ContactSolver){&solver_hybrid, hybrid};
     if (hybrid == NULL) return false;
     hybrid->memory = memory;
@@ -114,7 +114,7 @@ bool hybrid_make(ContactSolver *solver, const HybridMemory *memory, const Hybrid
 }
 
 /* Before the bomb appears there is one body less. */
-static bool fits(const Hybrid *hybrid, const ContactProblem *problem, Error *error) {
+static bool hybrid_fits(const Hybrid *hybrid, const ContactProblem *problem, Error *error) {
     const HybridMemory *memory = hybrid->memory;
     const char *where = hybrid->path != NULL ? hybrid->path : "hybrid";
     const int bodies = problem->bomb < 0 ? memory->body_count - 1 : memory->body_count;
@@ -126,7 +126,7 @@ static bool fits(const Hybrid *hybrid, const ContactProblem *problem, Error *err
                        memory->scene, memory->bomb, problem->bomb);
 }
 
-static bool reserve(Hybrid *hybrid, const ContactProblem *problem) {
+static bool hybrid_reserve(Hybrid *hybrid, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     const size_t words = bodies * sizeof(BodyWords) + sizeof problem->dt + contacts * sizeof(ContactWords);
     return ARRAY_BLOCK_RESERVE(&hybrid->arrays, ARRAY_PART(hybrid->others, bodies * HYBRID_NUMBERS),
@@ -224,13 +224,13 @@ static bool converge(Hybrid *hybrid, const ContactProblem *problem, ContactSolut
     return true;
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool hybrid_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Hybrid *hybrid = state;
-    if (hybrid->memory != NULL && !fits(hybrid, problem, error)) return false;
+    if (hybrid->memory != NULL && !hybrid_fits(hybrid, problem, error)) return false;
     solution->fallbacks = (NetworkFallbacks){0};
     const bool asks = hybrid->retrieves && (hybrid->memory != NULL || hybrid->watch.see != NULL);
     if (!asks || !is_impact(hybrid, problem, solution)) return converge(hybrid, problem, solution, error);
-    if (!reserve(hybrid, problem)) return error_memory(error, "hybrid");
+    if (!hybrid_reserve(hybrid, problem)) return error_memory(error, "hybrid");
     const HybridQuery query = make_query(hybrid, problem);
     HybridStep step = {problem, solution, query, hybrid->bomb, hybrid->others, -1};
     if (hybrid->memory != NULL) step.entry = hybrid_memory_find(hybrid->memory, &step.query);
@@ -258,6 +258,6 @@ const ContactSolverKind solver_hybrid = {
                     .chart = METHOD_RUNS("", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = hybrid_create,
+    .solve = hybrid_solve,
+    .destroy = hybrid_destroy};

@@ -12,7 +12,7 @@
 
 enum { LEAST_TABLE = 64 };
 
-static void put(HybridMemory *memory, int set) {
+static void hybrid_memory_put(HybridMemory *memory, int set) {
     size_t at = (size_t)memory->set_hash[set] & (memory->table_size - 1);
     while (memory->table[at] >= 0) at = (at + 1) & (memory->table_size - 1);
     memory->table[at] = set;
@@ -28,7 +28,7 @@ static bool grow_table(HybridMemory *memory) {
     memory->table = table;
     memory->table_size = size;
     for (size_t i = 0; i < size; i++) table[i] = -1;
-    for (int set = 0; set < memory->set_count; set++) put(memory, set);
+    for (int set = 0; set < memory->set_count; set++) hybrid_memory_put(memory, set);
     return true;
 }
 
@@ -62,7 +62,7 @@ int hybrid_memory_add_set(HybridMemory *memory, uint64_t hash, int contacts) {
     memory->set_hash[set] = hash;
     memory->set_contacts[set] = contacts;
     memory->set_lists[set] = (HybridList){0};
-    put(memory, set);
+    hybrid_memory_put(memory, set);
     return set;
 }
 
@@ -141,7 +141,7 @@ void hybrid_memory_key(const HybridMemory *memory, const float *bomb, const floa
 }
 
 /* product[i] = row i of M times `from`; returns from^T M from. */
-static float apply(const HybridMemory *memory, int entry, const float *from, float *product) {
+static float hybrid_memory_apply(const HybridMemory *memory, int entry, const float *from, float *product) {
     const float *metric = memory->metrics + (size_t)entry * (size_t)memory->metric_size;
     float sum = 0;
     for (int i = 0; i < memory->key_size; i++) product[i] = 0;
@@ -171,7 +171,7 @@ static float take_away(const HybridMemory *memory, int entry, const float *key, 
 float hybrid_memory_distance(const HybridMemory *memory, int entry, const float *key) {
     float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
     take_away(memory, entry, key, from);
-    return apply(memory, entry, from, product);
+    return hybrid_memory_apply(memory, entry, from, product);
 }
 
 /* The most central of the entries, at most `least` from the query. */
@@ -182,7 +182,7 @@ static int search(const HybridMemory *memory, const HybridQuery *query, float ra
     const bool inside = least <= 1;
     for (int i = 0; i < count; i++) {
         if (take_away(memory, entries[i], query->key, from) > memory->reach[entries[i]] && inside) continue;
-        const float distance = apply(memory, entries[i], from, product);
+        const float distance = hybrid_memory_apply(memory, entries[i], from, product);
         if (distance > least) continue;
         least = distance;
         best = entries[i];
@@ -224,7 +224,8 @@ void hybrid_memory_answer(const HybridMemory *memory, int entry, const float *ke
    has. For s > 1 this is the smallest ellipsoid that contains the old one and d (Pope 1997, 3.4). */
 void hybrid_memory_stretch(HybridMemory *memory, int entry, const float *key) {
     float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
-    const float length = take_away(memory, entry, key, from), distance = apply(memory, entry, from, product);
+    const float length = take_away(memory, entry, key, from),
+                distance = hybrid_memory_apply(memory, entry, from, product);
     if (!(distance > FLT_MIN)) return;
     const float factor = (1 - distance) / (distance * distance);
     float *metric = memory->metrics + (size_t)entry * (size_t)memory->metric_size;

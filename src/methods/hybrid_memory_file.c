@@ -77,7 +77,7 @@ static bool read_sizes(void *of, NpzFile *file, Error *error) {
 }
 
 /* One block: the hashes, then integers, then floats. */
-static bool create(void *of, Error *error) {
+static bool hybrid_memory_file_create(void *of, Error *error) {
     Contents *contents = of;
     const HybridMemory *memory = contents->memory;
     const size_t sets = (size_t)contents->sets, entries = (size_t)contents->entries, key = (size_t)memory->key_size,
@@ -154,7 +154,8 @@ static bool fill_memory(void *of, const char *path, Error *error) {
     return add_sets(of, path, error) && check_entries(of, path, error) && add_entries(of, error);
 }
 
-static const NetFileKind kind = {"hybrid", HYBRID_VERSION, list_fields, read_sizes, create, fill_memory};
+static const NetFileKind kind = {"hybrid",   HYBRID_VERSION, list_fields, read_sizes, hybrid_memory_file_create,
+                                 fill_memory};
 
 bool hybrid_memory_write(const HybridMemory *memory, const char *path, Error *error) {
     if (memory->entry_count == 0) return error_input(error, path, "the memory is empty: there is nothing to write");

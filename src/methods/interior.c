@@ -103,7 +103,7 @@ static const SettingSpec settings[] = {
     KEEP_SETTING(SETTING_OWN),
     {0}};
 
-static void destroy(void *state) {
+static void interior_destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     interior_free(&solver->interior);
@@ -119,7 +119,7 @@ static void set_factors(float *factors, int count) {
     for (int s = 0; s < count; s++) factors[s] = momentum_factor_tuned(s, count);
 }
 
-static void *create(const Settings *chosen, Error *error) {
+static void *interior_create(const Settings *chosen, Error *error) {
     static const State standard = {.near = 0.002f};
     State *solver = settings_make(chosen, settings, &standard, sizeof standard, "interior", error);
     if (solver == NULL) return NULL;
@@ -132,7 +132,7 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 /* Begins with the warm start, and with the first sweeps if the problem is calm. False when memory is short. */
-static bool start(State *solver, const ContactProblem *problem, bool calm) {
+static bool interior_start(State *solver, const ContactProblem *problem, bool calm) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     solver->left -= begin_work + (calm ? FIRST_SWEEPS : 0);
     return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) && (!calm || sweeps_run(sweeps, FIRST_SWEEPS));
@@ -165,16 +165,16 @@ static bool try_sweeps(State *solver, const ContactProblem *problem, const Inter
     if (*done || !step->many) return true;
     if (step->calm &&
         residual_of_visits_reaches(&solver->momentum.sweeps, problem->contact_count, hopeless * step->near))
-        return start(solver, problem, true);
+        return interior_start(solver, problem, true);
     return continue_sweeps(solver, problem, step, solver->many_factors, MANY_SWEEPS, solution, done) &&
-           (*done || start(solver, problem, step->calm));
+           (*done || interior_start(solver, problem, step->calm));
 }
 
 /* Of the matrix of an island. */
 static double analysis_work(const InteriorLook *step) { return fmin(2 + step->bodies / 16.0, 14); }
 
 /* False when memory is short. */
-static bool load(State *solver, const ContactProblem *problem, const InteriorLook *step) {
+static bool load_interior(State *solver, const ContactProblem *problem, const InteriorLook *step) {
     solver->left -= load_work + (solver->analysed ? 0 : analysis_work(step));
     solver->analysed = solver->loaded = true;
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
@@ -194,13 +194,13 @@ static bool load_if_cheap(State *solver, const ContactProblem *problem, const In
     const int least = !step->many ? 0 : step->calm ? LEAST_ITERATIONS_AT_REST + step->bodies / 100 : LEAST_ITERATIONS;
     *cheap = affordable(solver, step, load_work + analysis_work(step), usual) >= least;
     if (!*cheap) return true;
-    if (!load(solver, problem, step)) return false;
+    if (!load_interior(solver, problem, step)) return false;
     *cheap = affordable(solver, step, 0, solver->interior.iteration_work) >= least;
     return true;
 }
 
 /* Stores the answer of the iterations if it is the best so far. */
-static void offer(State *solver, const ContactProblem *problem, ContactSolution *solution) {
+static void interior_offer(State *solver, const ContactProblem *problem, ContactSolution *solution) {
     const Interior *interior = &solver->interior;
     if (interior->residual < solver->best && interior_end(interior, &solver->momentum.sweeps, problem, solution))
         solver->best = interior->residual;
@@ -214,20 +214,22 @@ static bool attempt(State *solver, const ContactProblem *problem, const Interior
         const double again = solver->loaded ? 0 : begin_work + FIRST_SWEEPS + load_work;
         const int most = affordable(solver, step, again, interior->iteration_work);
         if (most == 0) return true;
-        if (!solver->loaded && !(start(solver, problem, step->calm) && load(solver, problem, step))) return false;
+        if (!solver->loaded && !(interior_start(solver, problem, step->calm) && load_interior(solver, problem, step)))
+            return false;
         solver->loaded = false;
         /* What opens is not found in the next step, falls, and lands on what lies below. */
         if (close) interior_close(interior, interior_look_closing(step, solver->near), (double)problem->dt);
         interior_iterate(interior, interior_best(), &attempts[i], interior_look_speed(step), (double)near, most);
         solver->left -= interior->iterations * interior->iteration_work;
-        offer(solver, problem, solution);
+        interior_offer(solver, problem, solution);
     }
     return true;
 }
 
 /* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let them
    open: a wall that creeps once goes on. False when memory is short. */
-static bool iterate(State *solver, const ContactProblem *problem, const InteriorLook *step, ContactSolution *solution) {
+static bool iterate_interior(State *solver, const ContactProblem *problem, const InteriorLook *step,
+                             ContactSolution *solution) {
     const InteriorAttempt *as_impact = step->many                           ? at_impact_of_many
                                        : step->bodies > INTERIOR_FEW_BODIES ? at_impact
                                                                             : at_impact_of_few;
@@ -257,8 +259,8 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Inte
 
 /* Begins, and sweeps with momentum until the residual (methods/residual.h) is below `near`, or the work is done. False when
    memory is short. */
-static bool sweep(State *solver, const ContactProblem *problem, float near, const float *factors, int count) {
-    if (!start(solver, problem, false)) return false;
+static bool interior_sweep(State *solver, const ContactProblem *problem, float near, const float *factors, int count) {
+    if (!interior_start(solver, problem, false)) return false;
     const int more = (int)fmin(fmax(solver->left - count, 0), MORE_SWEEPS) / STOPPING_BLOCK * STOPPING_BLOCK;
     const StoppingRule rule = {.near = near, .more = more};
     solver->left -= count + more;
@@ -270,7 +272,7 @@ static bool sweep(State *solver, const ContactProblem *problem, float near, cons
 static bool solve_by_sweeps(State *solver, const ContactProblem *problem, float near, ContactSolution *solution,
                             Error *error) {
     solution->fallbacks.by_sweeps = 1;
-    return (sweep(solver, problem, near, solver->large_factors, LARGE_SWEEPS) &&
+    return (interior_sweep(solver, problem, near, solver->large_factors, LARGE_SWEEPS) &&
             momentum_end(&solver->momentum, solution)) ||
            error_memory(error, "interior");
 }
@@ -305,7 +307,7 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
     const bool finite = solver->best < INFINITY;
     ContactProblem from = *problem;
     if ((finite && !begin_from(solver, problem, solution, &from)) ||
-        !sweep(solver, &from, near, solver->last_factors, LAST_SWEEPS))
+        !interior_sweep(solver, &from, near, solver->last_factors, LAST_SWEEPS))
         return error_memory(error, "interior");
     const double after = residual_of(&solver->momentum.sweeps, problem->contact_count);
     solution->fallbacks.by_sweeps = 1;
@@ -321,7 +323,7 @@ static bool solve_further(State *solver, const ContactProblem *problem, const In
     bool cheap;
     if (!load_if_cheap(solver, problem, step, &cheap)) return error_memory(error, "interior");
     if (!cheap) return solve_by_sweeps(solver, problem, near, solution, error);
-    if (!interior_path_reserve(&solver->path, problem) || !iterate(solver, problem, step, solution))
+    if (!interior_path_reserve(&solver->path, problem) || !iterate_interior(solver, problem, step, solution))
         return error_memory(error, "interior");
     if (solver->best > (double)step->enough && !(step->calm && step->many) &&
         !follow_path(solver, problem, step, solution, error))
@@ -341,7 +343,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Int
     step->left = (PairResidual){0};
     solver->left = most_work(step);
     solver->analysed = solver->loaded = false;
-    if (!start(solver, problem, step->calm)) return error_memory(error, "interior");
+    if (!interior_start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
         interior_look_at_residuals(step, &solver->momentum.sweeps, NULL);
         if (interior_look_is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution))
@@ -365,7 +367,7 @@ static bool sweep_all(State *solver, const ContactProblem *problem, ContactSolut
     Sweeps *sweeps = &solver->momentum.sweeps;
     *done = false;
     if (!are_mostly_calm(solver, problem->contact_count)) return true;
-    if (!start(solver, problem, true)) return false;
+    if (!interior_start(solver, problem, true)) return false;
     interior_look_at_residuals(solver->looks, sweeps, solver->islands.island);
     *done = sweeps_end(sweeps, solution);
     return true;
@@ -389,7 +391,7 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
     return true;
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool interior_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const Islands *islands = &solver->islands;
     if (!islands_find(&solver->islands, problem) ||
@@ -417,6 +419,6 @@ const ContactSolverKind solver_interior = {
                     .chart = METHOD_RUNS("near=1", "near=0.1", "near=0.02", "near=0.002", "near=0.0005", "near=0.0001"),
                     .chart_quick = METHOD_RUNS("near=0.002"),
                     .stability_place = 2},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = interior_create,
+    .solve = interior_solve,
+    .destroy = interior_destroy};

@@ -53,7 +53,7 @@ static float tolerance(const InteriorLook *look, float near) {
     return smaller(near, look->many && !look->uneven ? many_near * look->brief : calm_near * look->pace);
 }
 
-static void decide(InteriorLook *look, float near) {
+static void interior_look_decide(InteriorLook *look, float near) {
     const float limit = look->fall + calm_below * look->pace;
     look->calm = look->fastest < limit * limit;
     look->near = tolerance(look, near);
@@ -72,7 +72,7 @@ void interior_look(InteriorLook *looks, const Islands *islands, const ContactPro
                                   .many = islands->islands[k].bodies > INTERIOR_MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++)
         if (islands->island[i] >= 0) look_at_contact(&looks[islands->island[i]], problem, i);
-    for (int k = 0; k < islands->count; k++) decide(&looks[k], near);
+    for (int k = 0; k < islands->count; k++) interior_look_decide(&looks[k], near);
 }
 
 void interior_look_at_residuals(InteriorLook *looks, const Sweeps *sweeps, const int32_t *island) {

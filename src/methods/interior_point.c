@@ -32,7 +32,7 @@ const InteriorKernels *interior_best(void) {
 static double larger(double x, double y) { return x > y ? x : y; }
 
 /* Moves the start to the inside of all bounds and returns the first tau^2. */
-static double begin(Interior *s, const InteriorRule *rule, double scale) {
+static double interior_point_begin(Interior *s, const InteriorRule *rule, double scale) {
     const double impulse = rule->impulse * scale, gap = rule->gap * scale, beyond = rule->slip * scale;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
@@ -89,7 +89,7 @@ void interior_iterate(Interior *s, const InteriorKernels *kernels, const Interio
     const InteriorRule *rule = attempt->rule;
     if (!(s->residual < speed)) drop_start(s, kernels);
     const double scale = scale_of_residual * s->residual + attempt->least_scale * speed;
-    double target = begin(s, rule, scale), best = s->residual, estimate = 0;
+    double target = interior_point_begin(s, rule, scale), best = s->residual, estimate = 0;
     most = attempt->iterations < most ? attempt->iterations : most;
     bool solved = false;
     keep_best(s);
@@ -147,7 +147,7 @@ void interior_free(Interior *interior) {
     *interior = (Interior){0};
 }
 
-static bool reserve(Interior *s, const Sweeps *sweeps) {
+static bool interior_point_reserve(Interior *s, const Sweeps *sweeps) {
     const size_t bodies = (size_t)sweeps->body_count + 1, groups = (size_t)sweeps->pair_count / BLOCK_PAIRS + 1;
     return block_graph_reserve(&s->graph, sweeps->body_count, sweeps->pair_count) &&
            ARRAY_BLOCK_RESERVE(&s->memory, ARRAY_PART(s->groups, groups), ARRAY_PART(s->pairs, BLOCK_PAIRS * groups),
@@ -191,7 +191,7 @@ static void load_slot(InteriorGroup *group, int slot, const SweepPair *pair, int
     const double friction = (double)pair->friction;
     group->mass_normal[slot] = (double)point->mass_normal;
     group->mass_tangent[slot] = (double)point->mass_tangent;
-    group->inverse_normal[slot] = point->mass_normal > 0; /* see invert() */
+    group->inverse_normal[slot] = point->mass_normal > 0; /* see interior_point_invert() */
     group->inverse_tangent[slot] = point->mass_tangent > 0;
     group->friction[slot] = friction > friction_min ? friction : friction_min;
     group->bias[slot] = (double)point->bias;
@@ -233,20 +233,20 @@ static void clear_slots(Interior *s, int i) {
 }
 
 /* The inverses were 1 for a positive mass, else 0. */
-static void invert(InteriorGroup *g) {
+static void interior_point_invert(InteriorGroup *g) {
     const Vec4 one = {1, 1, 1, 1};
     g->inverse_normal /= g->mass_normal + (one - g->inverse_normal);
     g->inverse_tangent /= g->mass_tangent + (one - g->inverse_tangent);
 }
 
 bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sweeps, const ContactProblem *problem) {
-    if (!reserve(s, sweeps) || !load_graph(s, sweeps, problem)) return false;
+    if (!interior_point_reserve(s, sweeps) || !load_graph(s, sweeps, problem)) return false;
     s->group_count = (sweeps->pair_count + BLOCK_PAIRS - 1) / BLOCK_PAIRS;
     s->contact_count = 0;
     s->rounding = 0;
     for (int i = 0; i < s->group_count; i++) clear_slots(s, i);
     for (int i = 0; i < sweeps->pair_count; i++) load_pair(s, i, sweeps, problem);
-    for (int i = 0; i < s->group_count; i++) invert(&s->groups[i]);
+    for (int i = 0; i < s->group_count; i++) interior_point_invert(&s->groups[i]);
     if (sweeps->pair_count % BLOCK_PAIRS != 0) {
         const int32_t none = s->graph.lu.count, spare = block_lu_spare(&s->graph.lu);
         s->pairs[sweeps->pair_count] = (BlockPair){.a = none, .b = none, .place = {spare, spare}};

@@ -12,7 +12,7 @@ void islands_free(Islands *islands) {
 }
 
 /* An island has at most one body that does not move for each contact. */
-static bool reserve(Islands *s, const ContactProblem *problem) {
+static bool islands_reserve(Islands *s, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count,
                  all = bodies + contacts;
     return ARRAY_BLOCK_RESERVE(&s->by_body, ARRAY_PART(s->islands, bodies), ARRAY_PART(s->parent, bodies),
@@ -26,7 +26,7 @@ static bool reserve(Islands *s, const ContactProblem *problem) {
 }
 
 /* The body that stands for the island; halves the path to it. */
-static int32_t find(int32_t *parent, int32_t body) {
+static int32_t find_islands(int32_t *parent, int32_t body) {
     while (parent[body] != body) body = parent[body] = parent[parent[body]];
     return body;
 }
@@ -36,7 +36,7 @@ static bool is_new_pair(const ContactProblem *problem, int i) {
     return i == 0 || contact[-1].a != contact->a || contact[-1].b != contact->b;
 }
 
-static void connect(Islands *s, const ContactProblem *problem) {
+static void islands_connect(Islands *s, const ContactProblem *problem) {
     int32_t *parent = s->parent;
     s->moving = 0;
     for (int i = 0; i < problem->body_count; i++) {
@@ -47,7 +47,7 @@ static void connect(Islands *s, const ContactProblem *problem) {
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         if (!is_new_pair(problem, i) || parent[contact->a] < 0 || parent[contact->b] < 0) continue;
-        const int32_t a = find(parent, contact->a), b = find(parent, contact->b);
+        const int32_t a = find_islands(parent, contact->a), b = find_islands(parent, contact->b);
         parent[b] = a;
     }
 }
@@ -58,7 +58,7 @@ static int32_t count_pair(Islands *s, const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     const bool a = s->parent[contact->a] >= 0, b = s->parent[contact->b] >= 0;
     if (!a && !b) return -1;
-    int32_t *number = &s->number[find(s->parent, a ? contact->a : contact->b)];
+    int32_t *number = &s->number[find_islands(s->parent, a ? contact->a : contact->b)];
     if (*number < 0) {
         s->islands[s->count] = (Island){.loops = 1};
         *number = s->count++;
@@ -76,12 +76,12 @@ static void count_contacts(Islands *s, const ContactProblem *problem) {
 }
 
 static int32_t island_of_body(Islands *s, int body) {
-    return s->parent[body] < 0 ? -1 : s->number[find(s->parent, body)];
+    return s->parent[body] < 0 ? -1 : s->number[find_islands(s->parent, body)];
 }
 
 bool islands_find(Islands *s, const ContactProblem *problem) {
-    if (!reserve(s, problem)) return false;
-    connect(s, problem);
+    if (!islands_reserve(s, problem)) return false;
+    islands_connect(s, problem);
     count_contacts(s, problem);
     for (int i = 0; i < problem->body_count; i++) {
         const int32_t k = island_of_body(s, i);
@@ -93,7 +93,7 @@ bool islands_find(Islands *s, const ContactProblem *problem) {
     return true;
 }
 
-static void sort(Islands *s, const ContactProblem *problem) {
+static void islands_sort(Islands *s, const ContactProblem *problem) {
     int32_t members = 0, contacts = 0;
     for (int k = 0; k < s->count; k++) {
         s->behind_members[k] = members, s->behind_contacts[k] = contacts;
@@ -126,19 +126,19 @@ static int find_fixed(Islands *s, const ContactProblem *problem, int k, const in
 }
 
 /* Sorts the island's bodies into s->bodies: `members`, and `fixed` that are behind their place there. */
-static void merge(Islands *s, const int32_t *members, int count, int fixed_count) {
+static void islands_merge(Islands *s, const int32_t *members, int count, int fixed_count) {
     const int32_t *fixed = &s->bodies[count];
     for (int i = 0, f = 0, at = 0; at < count + fixed_count; at++)
         s->bodies[at] = f < fixed_count && (i == count || fixed[f] < members[i]) ? fixed[f++] : members[i++];
 }
 
 ContactProblem islands_take(Islands *s, const ContactProblem *problem, int k, ContactSolution *room) {
-    if (!s->sorted) sort(s, problem);
+    if (!s->sorted) islands_sort(s, problem);
     const Island *island = &s->islands[k];
     const int32_t *members = &s->members[s->behind_members[k] - island->bodies];
     const int32_t *contacts = &s->contacts[s->behind_contacts[k] - island->contacts];
     const int fixed = find_fixed(s, problem, k, contacts);
-    merge(s, members, island->bodies, fixed);
+    islands_merge(s, members, island->bodies, fixed);
     ContactProblem part = {.body_count = island->bodies + fixed,
                            .contact_count = island->contacts,
                            .bomb = -1,

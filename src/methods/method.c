@@ -60,7 +60,7 @@ size_t method_name_among(char *name, size_t size, const char *const *methods, in
 size_t method_name_head(const char *name) { return strcspn(name, ":"); }
 
 /* The method in `name` or `name:key=value,...`, or NULL. */
-static const MethodKind *find(const char *text) {
+static const MethodKind *method_find(const char *text) {
     size_t length = strcspn(text, ":");
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
         if (strlen(kind->description->name) == length && strncmp(kind->description->name, text, length) == 0)
@@ -69,7 +69,7 @@ static const MethodKind *find(const char *text) {
 }
 
 const MethodDescription *method_describe(const char *text) {
-    const MethodKind *kind = find(text);
+    const MethodKind *kind = method_find(text);
     return kind != NULL ? kind->description : NULL;
 }
 
@@ -98,7 +98,7 @@ bool method_parse(Method *method, const char *text, Error *error) {
     char name[METHOD_TEXT_SIZE];
     memcpy(name, text, length);
     name[length] = '\0';
-    method->kind = find(text);
+    method->kind = method_find(text);
     if (method->kind == NULL) return unknown_method(name, error);
     if (method->kind->description->external) return parse_program(method, text + length, error);
     if (strcmp(text + length, ":") == 0) return error_input(error, "method", "'%s' has no setting behind ':'", text);
@@ -133,7 +133,7 @@ bool method_with_network(Method *method, const char *name, const char *path, Err
                                                  error_input(error, path, "the name is too long for a setting"));
 }
 
-static void trace(const ContactSolverKind *kind, const Settings *settings) {
+static void method_trace(const ContactSolverKind *kind, const Settings *settings) {
     char text[1024] = "";
     for (int i = 0; i < settings->count; i++)
         text_add(text, sizeof text, "%s%s=%s", i > 0 ? "," : ":", settings->items[i].key, settings->items[i].value);
@@ -157,7 +157,7 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
         if (!settings_default(&settings, scene_settings[i].key, scene_settings[i].value))
             return error_input(error, scene->name, "%s does not fit a setting", scene_settings[i].key);
     }
-    trace(kind, &settings);
+    method_trace(kind, &settings);
     solver->kind = kind;
     solver->state = kind->create(&settings, error);
     return solver->state != NULL;

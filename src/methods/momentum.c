@@ -33,7 +33,7 @@
 
 /* Adds factor times the change since *before to *now. A factor or change of 0 must keep all bits: + 0 turns -0 into 0,
    and x - 0 is x even for x = -0. */
-static void extrapolate(float *now, float *before, float factor) {
+static void momentum_extrapolate(float *now, float *before, float factor) {
     float next = *now - (factor * (*before - *now) + 0.0f);
     *before = *now;
     *now = next;
@@ -42,13 +42,13 @@ static void extrapolate(float *now, float *before, float factor) {
 static void extrapolate_all(const ContactProblem *problem, float factor, ContactSolution *before,
                             ContactSolution *now) {
     for (int i = 0; i < problem->body_count; i++) {
-        extrapolate(&now->velocities[i].linear.x, &before->velocities[i].linear.x, factor);
-        extrapolate(&now->velocities[i].linear.y, &before->velocities[i].linear.y, factor);
-        extrapolate(&now->velocities[i].angular, &before->velocities[i].angular, factor);
+        momentum_extrapolate(&now->velocities[i].linear.x, &before->velocities[i].linear.x, factor);
+        momentum_extrapolate(&now->velocities[i].linear.y, &before->velocities[i].linear.y, factor);
+        momentum_extrapolate(&now->velocities[i].angular, &before->velocities[i].angular, factor);
     }
     for (int i = 0; i < problem->contact_count; i++) {
-        extrapolate(&now->impulses[i].normal, &before->impulses[i].normal, factor);
-        extrapolate(&now->impulses[i].tangent, &before->impulses[i].tangent, factor);
+        momentum_extrapolate(&now->impulses[i].normal, &before->impulses[i].normal, factor);
+        momentum_extrapolate(&now->impulses[i].tangent, &before->impulses[i].tangent, factor);
     }
 }
 
@@ -192,7 +192,7 @@ static bool is_due(const MomentumIsland *course, const Run *run) {
 }
 
 /* Measures the residuals of the chosen islands, and copies the solutions of those that are better than ever. */
-static void measure(Momentum *momentum) {
+static void momentum_measure(Momentum *momentum) {
     Sweeps *sweeps = &momentum->sweeps;
     MomentumIsland *courses = momentum->courses;
     bool *chosen = momentum->chosen;
@@ -210,7 +210,7 @@ static void measure(Momentum *momentum) {
 }
 
 /* At a look. Returns true where numbers are NaN or infinite: the island goes back to what was best. */
-static bool judge(MomentumIsland *course) {
+static bool momentum_judge(MomentumIsland *course) {
     const bool lost = !(course->left < HUGE_VALF);
     if (lost) course->left = course->best;
     if (lost || course->left > risen * course->least) {
@@ -223,7 +223,7 @@ static bool judge(MomentumIsland *course) {
     return false;
 }
 
-static void look(Momentum *momentum, const Run *run) {
+static void momentum_look(Momentum *momentum, const Run *run) {
     const int groups = momentum->sweeps.groups;
     bool any_due = false, any_lost = false;
     for (int k = 0; k < groups; k++) {
@@ -231,9 +231,9 @@ static void look(Momentum *momentum, const Run *run) {
         any_due |= momentum->chosen[k];
     }
     if (!any_due) return;
-    measure(momentum);
+    momentum_measure(momentum);
     for (int k = 0; k < groups; k++) {
-        momentum->chosen[k] = is_due(&momentum->courses[k], run) && judge(&momentum->courses[k]);
+        momentum->chosen[k] = is_due(&momentum->courses[k], run) && momentum_judge(&momentum->courses[k]);
         any_lost |= momentum->chosen[k];
     }
     if (any_lost) sweeps_return(&momentum->sweeps, momentum->chosen);
@@ -260,7 +260,7 @@ static bool run_block(Momentum *momentum, Run *run, int count) {
         return false;
     for (int k = 0; k < sweeps->groups; k++) momentum->courses[k].sweeps += count;
     run->done += count;
-    look(momentum, run);
+    momentum_look(momentum, run);
     return true;
 }
 
@@ -313,7 +313,7 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
     watch(momentum);
     forget_best(momentum);
     choose_all(momentum);
-    measure(momentum);
+    momentum_measure(momentum);
     begin_all_anew(momentum);
     while (stopping_needs_more(rule, run.done, sweeps, problem))
         if (!run_block(momentum, &run, STOPPING_BLOCK)) return false;
@@ -344,7 +344,7 @@ typedef struct State {
 
 static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS("sweeps"), KEEP_SETTING(SETTING_OWN), {0}};
 
-static void destroy(void *state) {
+static void momentum_destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     momentum_free(&solver->momentum);
@@ -352,7 +352,7 @@ static void destroy(void *state) {
     free(solver);
 }
 
-static void *create(const Settings *chosen, Error *error) {
+static void *momentum_create(const Settings *chosen, Error *error) {
     static const State standard = {.rule.k = 10};
     State *solver = stopping_make(chosen, settings, &standard, sizeof standard, "momentum", error);
     if (solver == NULL) return NULL;
@@ -360,12 +360,12 @@ static void *create(const Settings *chosen, Error *error) {
     solver->momentum.rule = solver->rule;
     if (solver->rule.more > 0) solver->momentum.more_factors = momentum_factors_make(solver->rule.more);
     if (solver->factors != NULL && (solver->rule.more == 0 || solver->momentum.more_factors != NULL)) return solver;
-    destroy(solver);
+    momentum_destroy(solver);
     error_memory(error, "momentum");
     return NULL;
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve_momentum(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     return momentum_solve(&solver->momentum, problem, solver->factors, solver->rule.k, solution, error);
 }
@@ -382,6 +382,6 @@ const ContactSolverKind solver_momentum = {
                     .chart_quick = METHOD_RUNS("k=10", "k=20", "k=5,near=0.1,more=10000"),
                     .stability = METHOD_RUNS("", "k=20"),
                     .stability_place = 3},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = momentum_create,
+    .solve = solve_momentum,
+    .destroy = momentum_destroy};

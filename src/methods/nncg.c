@@ -56,12 +56,12 @@ typedef struct Nncg {
 
 static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS("sweeps"), KEEP_SETTING(SETTING_OWN), {0}};
 
-static void *create(const Settings *chosen, Error *error) {
+static void *nncg_create(const Settings *chosen, Error *error) {
     static const Nncg standard = {.rule.k = 10};
     return stopping_make(chosen, settings, &standard, sizeof standard, "nncg", error);
 }
 
-static bool reserve(Nncg *solver) {
+static bool nncg_reserve(Nncg *solver) {
     const size_t pairs = (size_t)solver->sweeps.pair_count, bodies = (size_t)solver->sweeps.body_count;
     return ARRAY_BLOCK_RESERVE(&solver->arrays, ARRAY_PART(solver->pair_before, pairs),
                                ARRAY_PART(solver->pair_direction, pairs), ARRAY_PART(solver->body_before, bodies),
@@ -85,14 +85,14 @@ static float add_up(float partial[2][4]) {
     return (partial[0][0] + partial[0][2]) + (partial[0][1] + partial[0][3]);
 }
 
-static void decide(NncgIsland *island) {
+static void nncg_decide(NncgIsland *island) {
     const float squared = add_up(island->squared);
     island->restarts = add_up(island->along) < 0.0f;
     island->beta = squared < island->before ? squared / island->before : 1.0f;
     island->before = squared;
 }
 
-static void measure(Nncg *solver) {
+static void nncg_measure(Nncg *solver) {
     const Sweeps *sweeps = &solver->sweeps;
     for (int k = 0; k < sweeps->groups; k++) solver->islands[k] = (NncgIsland){.before = solver->islands[k].before};
     for (int i = 0; i < sweeps->pair_count; i++) {
@@ -106,7 +106,7 @@ static void measure(Nncg *solver) {
             island->along[odd][k] += step * solver->pair_direction[i].values[k];
         }
     }
-    for (int k = 0; k < sweeps->groups; k++) decide(&solver->islands[k]);
+    for (int k = 0; k < sweeps->groups; k++) nncg_decide(&solver->islands[k]);
 }
 
 /* p = p' + beta d and d = beta d - g for one row; or p = p' and d = 0. */
@@ -124,7 +124,7 @@ static void extrapolate_row(void *row, NncgRow *before, NncgRow *direction, cons
     memcpy(row, &now, sizeof now);
 }
 
-static void extrapolate(Nncg *solver) {
+static void nncg_extrapolate(Nncg *solver) {
     Sweeps *sweeps = &solver->sweeps;
     for (int i = 0; i < sweeps->pair_count; i++)
         extrapolate_row(sweeps->pairs[i].sums, &solver->pair_before[i], &solver->pair_direction[i],
@@ -142,29 +142,29 @@ static bool is_last(const Nncg *solver, int sweep, const ContactProblem *problem
 }
 
 /* False when memory is short. */
-static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
-    if (!sweeps_begin(&solver->sweeps, kernel, problem, true) || !reserve(solver)) return false;
+static bool nncg_run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
+    if (!sweeps_begin(&solver->sweeps, kernel, problem, true) || !nncg_reserve(solver)) return false;
     sweeps_group(&solver->sweeps);
     begin_all(solver);
     for (int sweep = 1;; sweep++) {
         if (!sweeps_run(&solver->sweeps, 1)) return false;
         if (is_last(solver, sweep, problem)) return true;
-        measure(solver);
-        extrapolate(solver);
+        nncg_measure(solver);
+        nncg_extrapolate(solver);
     }
 }
 
 /* NaN and infinite numbers may depend on the order of visits; so they are computed one by one, the same everywhere. */
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool nncg_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Nncg *solver = state;
-    if (!run(solver, sweeps_best_kernel(), problem)) return error_memory(error, "nncg");
+    if (!nncg_run(solver, sweeps_best_kernel(), problem)) return error_memory(error, "nncg");
     if (sweeps_end(&solver->sweeps, solution) || solver->sweeps.kernel == SWEEP_ONE_BY_ONE) return true;
-    if (!run(solver, SWEEP_ONE_BY_ONE, problem)) return error_memory(error, "nncg");
+    if (!nncg_run(solver, SWEEP_ONE_BY_ONE, problem)) return error_memory(error, "nncg");
     sweeps_end(&solver->sweeps, solution);
     return true;
 }
 
-static void destroy(void *state) {
+static void nncg_destroy(void *state) {
     Nncg *solver = state;
     if (solver == NULL) return;
     sweeps_free(&solver->sweeps);
@@ -182,6 +182,6 @@ const ContactSolverKind solver_nncg = {
                                          "k=5,near=0.0002,more=10000"),
                     .chart_quick = METHOD_RUNS("k=20", "k=1,near=0.02,more=10000"),
                     .stability_place = 5},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = nncg_create,
+    .solve = nncg_solve,
+    .destroy = nncg_destroy};

@@ -12,7 +12,7 @@ void colours_free(Colours *colours) {
     *colours = (Colours){0};
 }
 
-static bool reserve(Colours *colours, size_t contacts, size_t bodies) {
+static bool order_reserve(Colours *colours, size_t contacts, size_t bodies) {
     return ARRAY_BLOCK_RESERVE(&colours->arrays, ARRAY_PART(colours->visits, contacts),
                                ARRAY_PART(colours->pairs, contacts + 1), ARRAY_PART(colours->colour, contacts),
                                ARRAY_PART(colours->taken, bodies));
@@ -27,7 +27,7 @@ static int find_pairs(Colours *colours, const ContactProblem *problem) {
 }
 
 /* points[colour + 1]: the number of contacts of that colour. Returns the number of colours. */
-static int paint(Colours *colours, const ContactProblem *problem, int pairs, int points[COLOURS + 1]) {
+static int order_paint(Colours *colours, const ContactProblem *problem, int pairs, int points[COLOURS + 1]) {
     memset(colours->taken, 0, (size_t)problem->body_count * sizeof *colours->taken);
     int most = 0;
     for (int i = pairs - 1; i >= 0; i--) {
@@ -41,9 +41,9 @@ static int paint(Colours *colours, const ContactProblem *problem, int pairs, int
 
 bool colours_order(Colours *colours, const ContactProblem *problem) {
     int begin[COLOURS + 1] = {0};
-    if (!reserve(colours, (size_t)problem->contact_count, (size_t)problem->body_count)) return false;
+    if (!order_reserve(colours, (size_t)problem->contact_count, (size_t)problem->body_count)) return false;
     const int pairs = find_pairs(colours, problem);
-    const int count = paint(colours, problem, pairs, begin);
+    const int count = order_paint(colours, problem, pairs, begin);
     for (int i = 0; i < count; i++) begin[i + 1] += begin[i];
     for (int i = 0; i < pairs; i++) {
         int32_t *visit = &colours->visits[begin[colours->colour[i]]];

@@ -95,7 +95,7 @@ static Vec2 in_contact_frame(const ContactPoint *contact, Vec2 v) {
     return vec2(vec2_dot(v, contact->normal), vec2_dot(v, vec2_cross_scalar(contact->normal, 1.0f)));
 }
 
-static float *put(float *to, Vec2 v) {
+static float *pair_put(float *to, Vec2 v) {
     *to++ = v.x;
     *to++ = v.y;
     return to;
@@ -120,11 +120,11 @@ Vec2 pair_point_velocity(const ContactPoint *contact, const BodyVelocity *a, con
 static float *put_point(float *to, const ContactProblem *problem, const PairMoment *now, int i, float inverse_mass) {
     const ContactPoint *contact = &problem->contacts[i];
     const ContactImpulse so_far = now->impulses[i];
-    to = put(to, pair_point_velocity(contact, &now->velocities[contact->a], &now->velocities[contact->b]));
+    to = pair_put(to, pair_point_velocity(contact, &now->velocities[contact->a], &now->velocities[contact->b]));
     *to++ = contact->bias;
-    to = put(to, vec2_scale(inverse_mass, vec2(so_far.normal, so_far.tangent)));
-    to = put(to, in_contact_frame(contact, contact->arm_a));
-    return put(to, in_contact_frame(contact, contact->arm_b));
+    to = pair_put(to, vec2_scale(inverse_mass, vec2(so_far.normal, so_far.tangent)));
+    to = pair_put(to, in_contact_frame(contact, contact->arm_a));
+    return pair_put(to, in_contact_frame(contact, contact->arm_b));
 }
 
 static float *contact_inputs(const ContactProblem *problem, const PairMoment *now, int first, float *inputs) {
@@ -143,7 +143,7 @@ static float *contact_inputs(const ContactProblem *problem, const PairMoment *no
 }
 
 static float *put_velocity(float *to, const ContactPoint *contact, BodyVelocity velocity) {
-    to = put(to, in_contact_frame(contact, velocity.linear));
+    to = pair_put(to, in_contact_frame(contact, velocity.linear));
     *to++ = velocity.angular;
     return to;
 }
@@ -172,12 +172,12 @@ void pair_inputs(const ContactProblem *problem, const PairMoment *now, int first
     const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
     const BodyVelocity of_a = velocity_now(problem, now, a), of_b = velocity_now(problem, now, b);
     if (view == PAIR_RELATIVE)
-        inputs = put(inputs, vec2_sub(body_b->position, body_a->position));
+        inputs = pair_put(inputs, vec2_sub(body_b->position, body_a->position));
     else
-        inputs = put(put(inputs, body_a->position), body_b->position);
-    inputs = put(put(inputs, of_a.linear), of_b.linear);
-    inputs = put(inputs, vec2(of_a.angular, of_b.angular));
-    if (view != PAIR_RAW_UNTURNED) put(inputs, vec2(body_a->angle, body_b->angle));
+        inputs = pair_put(pair_put(inputs, body_a->position), body_b->position);
+    inputs = pair_put(pair_put(inputs, of_a.linear), of_b.linear);
+    inputs = pair_put(inputs, vec2(of_a.angular, of_b.angular));
+    if (view != PAIR_RAW_UNTURNED) pair_put(inputs, vec2(body_a->angle, body_b->angle));
 }
 
 int pair_contact_count(const ContactProblem *problem, int first) {

@@ -390,7 +390,7 @@ static const SettingSpec settings[] = {{"network", "file of the trained network 
                                        PAIR_SOLVER_NET,
                                        {0}};
 
-static bool check(const PairNetwork *network, const char *path, Error *error) {
+static bool pair_net_check(const PairNetwork *network, const char *path, Error *error) {
     if (network->target == TARGET_POINTS)
         return error_input(
             error, path,
@@ -404,9 +404,9 @@ static bool check(const PairNetwork *network, const char *path, Error *error) {
     return true;
 }
 
-static void *create(const Settings *chosen, Error *error) {
+static void *pair_net_create(const Settings *chosen, Error *error) {
     PairSolver *solver = pair_solver_create("pair-net", settings, chosen, error);
-    if (solver == NULL || check(&solver->network, settings_get(chosen, "network"), error)) return solver;
+    if (solver == NULL || pair_net_check(&solver->network, settings_get(chosen, "network"), error)) return solver;
     pair_solver_destroy(solver);
     return NULL;
 }
@@ -421,6 +421,6 @@ const ContactSolverKind solver_pair_net = {
                     .chart = METHOD_RUNS("", "net=off"),
                     .chart_quick = METHOD_RUNS("", "net=off"),
                     .stability = METHOD_RUNS("", "net=off")},
-    .create = create,
+    .create = pair_net_create,
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};

@@ -36,7 +36,7 @@ static const SettingSpec settings[] = {{"launches", "recorded launches, spread o
                                         SETTING_INT(Playback, launch_count, 1, 10000)},
                                        {0}};
 
-static void destroy(void *state) {
+static void playback_destroy(void *state) {
     Playback *playback = state;
     free(playback->launches);
     free(playback->before);
@@ -45,8 +45,8 @@ static void destroy(void *state) {
 }
 
 /* Steps world from after step `first` - 1 to step `last`; out: [steps, bodies of world]. */
-static bool record(Stepper *stepper, World *world, const Scene *scene, int first, int last, BodyVelocity *out,
-                   Error *error) {
+static bool playback_record(Stepper *stepper, World *world, const Scene *scene, int first, int last, BodyVelocity *out,
+                            Error *error) {
     for (int frame = first; frame <= last; frame++) {
         const Step step = {.scene = scene, .frame = frame};
         if (!stepper_step(stepper, world, &step, error)) return false;
@@ -59,19 +59,19 @@ static bool record(Stepper *stepper, World *world, const Scene *scene, int first
 
 static bool record_launches(Playback *playback, Stepper *stepper, const Scene *scene, World *start, World *world,
                             Error *error) {
-    if (!record(stepper, start, scene, 1, playback->frames_before, playback->before, error)) return false;
+    if (!playback_record(stepper, start, scene, 1, playback->frames_before, playback->before, error)) return false;
     size_t size = (size_t)playback->frames * (size_t)playback->bodies;
     for (int i = 0; i < playback->launch_count; i++) {
         Scene launched = launch_scene(scene, &playback->launches[i]);
         if (!world_copy(world, start, error) || !scene_add_bomb(&launched, world, error) ||
-            !record(stepper, world, &launched, playback->frames_before + 1, scene->frames,
-                    playback->after + (size_t)i * size, error))
+            !playback_record(stepper, world, &launched, playback->frames_before + 1, scene->frames,
+                             playback->after + (size_t)i * size, error))
             return false;
     }
     return true;
 }
 
-static bool allocate(Playback *playback, const Scene *scene, Error *error) {
+static bool playback_allocate(Playback *playback, const Scene *scene, Error *error) {
     playback->bodies = scene->body_count + 1;
     playback->frames_before = scene->bomb.frame;
     playback->frames = scene->frames - scene->bomb.frame;
@@ -89,7 +89,7 @@ static bool allocate(Playback *playback, const Scene *scene, Error *error) {
 }
 
 /* Makes the recordings. */
-static bool fill(Playback *playback, const Scene *scene, Error *error) {
+static bool playback_fill(Playback *playback, const Scene *scene, Error *error) {
     Method method;
     Scene without = *scene;
     without.bomb.present = false;
@@ -104,18 +104,18 @@ static bool fill(Playback *playback, const Scene *scene, Error *error) {
     return ok;
 }
 
-static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *playback_create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Playback standard = {.launch_count = 100};
     Playback *playback = settings_make(chosen, settings, &standard, sizeof standard, "playback", error);
     if (playback == NULL) return NULL;
     bool ok = scene->bomb.present && scene->bomb.frame <= scene->frames;
     if (!ok) error_input(error, "playback", "scene %s has no bomb: nothing to play back", scene->name);
-    if (ok && allocate(playback, scene, error) && fill(playback, scene, error)) return playback;
-    destroy(playback);
+    if (ok && playback_allocate(playback, scene, error) && playback_fill(playback, scene, error)) return playback;
+    playback_destroy(playback);
     return NULL;
 }
 
-static float distance(const Launch *a, const Launch *b) {
+static float playback_distance(const Launch *a, const Launch *b) {
     return fabsf(a->x - b->x) + fabsf(a->rotation - b->rotation) + fabsf(a->spin - b->spin) + fabsf(a->mass - b->mass);
 }
 
@@ -125,7 +125,8 @@ static const BodyVelocity *nearest(Playback *playback, const Launch *launch) {
         return playback->last_nearest;
     int best = 0;
     for (int i = 1; i < playback->launch_count; i++)
-        if (distance(launch, &playback->launches[i]) < distance(launch, &playback->launches[best])) best = i;
+        if (playback_distance(launch, &playback->launches[i]) < playback_distance(launch, &playback->launches[best]))
+            best = i;
     playback->last = *launch;
     playback->last_nearest = playback->after + (size_t)best * (size_t)playback->frames * (size_t)playback->bodies;
     return playback->last_nearest;
@@ -144,7 +145,7 @@ static const BodyVelocity *recorded(Playback *playback, const Step *which, int *
     return run + (size_t)(frame - 1) * (size_t)*bodies;
 }
 
-static bool solve(void *state, BegunStep *begun, Error *error) {
+static bool playback_solve(void *state, BegunStep *begun, Error *error) {
     (void)error;
     int bodies;
     const BodyVelocity *velocities = recorded(state, begun->step, &bodies);
@@ -164,6 +165,6 @@ const SteppingKind stepping_playback = {
                     .chart = METHOD_RUNS("launches=25", "launches=100"),
                     .chart_quick = METHOD_RUNS("launches=25"),
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = playback_create,
+    .solve = playback_solve,
+    .destroy = playback_destroy};

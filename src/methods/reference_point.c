@@ -24,7 +24,7 @@ void reference_free(Reference *r) {
     *r = (Reference){0};
 }
 
-static bool reserve(Reference *r, const ContactProblem *problem) {
+static bool reference_point_reserve(Reference *r, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1, contacts = (size_t)problem->contact_count + 1;
     const size_t pairs = contacts + BLOCK_PAIRS, groups = pairs / BLOCK_PAIRS + 1;
     return block_graph_reserve(&r->graph, problem->body_count, problem->contact_count) &&
@@ -86,13 +86,13 @@ static void load_pair(Reference *r, int i, const ContactProblem *problem) {
 }
 
 bool reference_reserve(Reference *r, const ContactProblem *problem) {
-    if (!reserve(r, problem)) return false;
+    if (!reference_point_reserve(r, problem)) return false;
     find_pairs(r, problem);
     return block_graph_load(&r->graph, problem, r->pair_count);
 }
 
 /* The problem, without impulses. False when memory is short. */
-static bool load(Reference *r, const ContactProblem *problem) {
+static bool reference_point_load(Reference *r, const ContactProblem *problem) {
     if (!reference_reserve(r, problem)) return false;
     const int32_t none = r->graph.lu.count, spare = block_lu_spare(&r->graph.lu);
     Vec4 *const numbers[] = {r->moved, r->changes, r->first_changes, r->kept[0].moved, r->kept[1].moved};
@@ -125,7 +125,7 @@ static void set_answer(Reference *r) {
         }
 }
 
-static void store(Reference *r, const ContactProblem *problem) {
+static void reference_point_store(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < r->pair_count; i++)
         for (int x = r->first[i], slot = i % BLOCK_PAIRS * 2; x < r->first[i + 1]; x++, slot++) {
             const ReferenceGroup *group = &r->groups[i / BLOCK_PAIRS];
@@ -150,10 +150,10 @@ static const ReferenceKernels *kernels(const Reference *r) {
 }
 
 static bool solve_scaled(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
-    if (!load(r, problem)) return error_memory(error, "reference");
+    if (!reference_point_load(r, problem)) return error_memory(error, "reference");
     set_start(r, problem, start);
     kernels(r)->run(r);
-    store(r, problem);
+    reference_point_store(r, problem);
     return true;
 }
 
@@ -181,7 +181,7 @@ static double share_without_gain(const Reference *r, const ContactProblem *probl
 static bool take_without_gain(Reference *r, const ContactProblem *problem, Error *error) {
     const double share = share_without_gain(r, problem);
     r->push_out = true;
-    if (!load(r, problem)) return error_memory(error, "reference");
+    if (!reference_point_load(r, problem)) return error_memory(error, "reference");
     for (int i = 0; i < problem->contact_count; i++) {
         r->impulses[i].normal *= share;
         r->impulses[i].tangent *= share;
@@ -252,7 +252,7 @@ void reference_round(const Reference *r, const ContactProblem *problem, ContactS
 bool reference_residual(Reference *r, const ContactProblem *problem, const ContactImpulse *impulses, double *residual,
                         Error *error) {
     r->push_out = true;
-    if (!load(r, problem)) return error_memory(error, "reference");
+    if (!reference_point_load(r, problem)) return error_memory(error, "reference");
     set_start(r, problem, impulses);
     *residual = kernels(r)->residual(r);
     return true;
@@ -299,14 +299,14 @@ SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *
 /* The reference (methods/reference.h) as a contact solver, for runs of converged steps. A step that does not
    converge ends with the answer that reference.h states, and is counted. */
 
-static void *create(const Settings *chosen, Error *error) {
+static void *reference_point_create(const Settings *chosen, Error *error) {
     (void)chosen;
     Reference *reference = calloc(1, sizeof *reference);
     if (reference == NULL) error_memory(error, "reference");
     return reference;
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool reference_point_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Reference *reference = state;
     if (!reference_solve(reference, problem, NULL, error)) return false;
     reference_round(reference, problem, solution);
@@ -316,7 +316,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     return true;
 }
 
-static void destroy(void *state) {
+static void reference_point_destroy(void *state) {
     Reference *reference = state;
     if (reference == NULL) return;
     reference_free(reference);
@@ -332,6 +332,6 @@ const ContactSolverKind solver_reference = {
                     .role = METHOD_REFERENCE,
                     .settings = settings,
                     .stability_place = 6},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = reference_point_create,
+    .solve = reference_point_solve,
+    .destroy = reference_point_destroy};

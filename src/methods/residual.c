@@ -40,7 +40,8 @@ static float squared_of_visit(const SweepPair *pair, int k, Vec2 velocity) {
     return normal * normal + tangent * tangent + if_finite;
 }
 
-static inline float measure(OfPoint *of, const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
+static inline float residual_measure(OfPoint *of, const SweepPair *pair, int k, const SweepBody *a,
+                                     const SweepBody *b) {
     const SweepPoint *point = &pair->points[k];
     return of(pair, k,
               relative_velocity(vec2(b->x, b->y), b->spin, point->arm_b, vec2(a->x, a->y), a->spin, point->arm_a));
@@ -55,7 +56,7 @@ static inline bool sum_reaches(const Sweeps *sweeps, int contact_count, float li
         const SweepPair *pair = &sweeps->pairs[i];
         const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
         const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-        const float first = measure(of, pair, 0, a, b), second = measure(of, pair, 1, a, b);
+        const float first = residual_measure(of, pair, 0, a, b), second = residual_measure(of, pair, 1, a, b);
         sum += first;
         sum += sweep_pair_points(pair) == 2 ? second : 0;
         if (or_nan ? !(sum < enough) : sum >= enough) return true;
@@ -78,7 +79,7 @@ PairResidual residual_of_pair(const Sweeps *sweeps, int i) {
     PairResidual sum = {0};
     for (int k = 0; k < sweep_pair_points(pair); k++) {
         const float held = pair->sums[k].normal / pair->points[k].mass_normal;
-        sum.visit += measure(squared_of_visit, pair, k, a, b);
+        sum.visit += residual_measure(squared_of_visit, pair, k, a, b);
         sum.held += held * held;
     }
     return sum;
@@ -112,9 +113,9 @@ static float overshoot_of_pair(const Sweeps *sweeps, int i) {
     if (!sweep_pair_may_overshoot(pair)) return 0;
     const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
     const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-    const float first = measure(overshoot_of_point, pair, 0, a, b);
+    const float first = residual_measure(overshoot_of_point, pair, 0, a, b);
     if (sweep_pair_points(pair) == 1) return first;
-    const float second = measure(overshoot_of_point, pair, 1, a, b);
+    const float second = residual_measure(overshoot_of_point, pair, 1, a, b);
     return second > first ? second : first;
 }
 

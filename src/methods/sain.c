@@ -58,7 +58,7 @@ void sain_answers_free(SainAnswers *answers) {
     *answers = (SainAnswers){0};
 }
 
-static bool reserve(SainAnswers *answers, const SainNetwork *network, const SainView *view) {
+static bool sain_reserve(SainAnswers *answers, const SainNetwork *network, const SainView *view) {
     const size_t bodies = (size_t)view->body_count + 1, rows = (size_t)view->row_count + 1,
                  relation = network_batch_scratch(network->relation), object = network_batch_scratch(network->object);
     return ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * SAIN_OUTPUTS),
@@ -69,7 +69,7 @@ static bool reserve(SainAnswers *answers, const SainNetwork *network, const Sain
 }
 
 /* A NaN counts as outside, and is moved to the lower end. */
-static bool check(float *numbers, int stride, int count, const float *low, const float *high, bool clamp) {
+static bool sain_check(float *numbers, int stride, int count, const float *low, const float *high, bool clamp) {
     bool inside = true;
     for (int i = 0; i < count; i++) {
         float *x = &numbers[i * stride];
@@ -83,11 +83,11 @@ static bool check(float *numbers, int stride, int count, const float *low, const
 static void check_ranges(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
     for (int b = 0; b < view->body_count; b++) {
         const SainBody *body = &view->bodies[b];
-        bool known = check(view->body_inputs + b, view->body_count, SAIN_BODY_INPUTS, network->body_low,
-                           network->body_high, clamp);
+        bool known = sain_check(view->body_inputs + b, view->body_count, SAIN_BODY_INPUTS, network->body_low,
+                                network->body_high, clamp);
         for (int r = body->first; r < body->first + body->rows; r++)
-            known = check(view->pair_inputs + r, view->row_count, SAIN_PAIR_INPUTS, network->pair_low,
-                          network->pair_high, clamp) &&
+            known = sain_check(view->pair_inputs + r, view->row_count, SAIN_PAIR_INPUTS, network->pair_low,
+                               network->pair_high, clamp) &&
                     known;
         answers->known[b] = known;
     }
@@ -110,7 +110,7 @@ static void fill_object_inputs(SainAnswers *answers, const SainView *view) {
 }
 
 bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
-    if (!reserve(answers, network, view)) return false;
+    if (!sain_reserve(answers, network, view)) return false;
     check_ranges(answers, network, view, clamp);
     if (view->body_count == 0) return true;
     network_predict_batch(network->relation, view->pair_inputs, answers->scratch, answers->effects, view->row_count);
@@ -190,7 +190,7 @@ static const SettingSpec settings[] = {
     {"net", "on|off: off is the engine alone (default: on)", SETTING_BOOL(Sain, predicts)},
     {0}};
 
-static void destroy(void *state) {
+static void sain_destroy(void *state) {
     Sain *solver = state;
     if (solver == NULL) return;
     sain_networks_destroy(&solver->own);
@@ -200,7 +200,7 @@ static void destroy(void *state) {
     free(solver);
 }
 
-static Sain *make(Error *error) {
+static Sain *make_sain(Error *error) {
     Settings of_engine;
     Sain *solver = calloc(1, sizeof *solver);
     if (solver == NULL) {
@@ -211,7 +211,7 @@ static Sain *make(Error *error) {
     if (settings_parse(&of_engine, SAIN_ENGINE_SETTINGS, solver_engine.description.settings, "sain", error))
         solver->engine = solver_engine.create(&of_engine, error);
     if (solver->engine != NULL) return solver;
-    destroy(solver);
+    sain_destroy(solver);
     return NULL;
 }
 
@@ -228,21 +228,21 @@ static bool read_form(const Settings *chosen, SainForm *form, Error *error) {
     return error_unknown(error, "engine", name, "a form of sain", &known);
 }
 
-static void *create(const Settings *chosen, Error *error) {
+static void *sain_create(const Settings *chosen, Error *error) {
     const char *path = method_network(chosen, NULL, "sain", error);
-    Sain *solver = path != NULL ? make(error) : NULL;
+    Sain *solver = path != NULL ? make_sain(error) : NULL;
     if (solver == NULL) return NULL;
     if (read_form(chosen, &solver->form, error) && settings_read(chosen, settings, solver, error) &&
         sain_networks_read(&solver->own, path, error)) {
         solver->network = &solver->own.forms[solver->form];
         return solver;
     }
-    destroy(solver);
+    sain_destroy(solver);
     return NULL;
 }
 
 bool sain_make(ContactSolver *solver, const SainNetwork *network, SainForm form, Error *error) {
-    Sain *state = make(error);
+    Sain *state = make_sain(error);
     if (state == NULL) return false;
     state->network = network;
     state->form = form;
@@ -263,7 +263,7 @@ static float created_momentum(const ProblemBody *body, const BodyVelocity *veloc
     return body->inv_mass > 0.0f ? sqrtf(vec2_dot(change, change)) / body->inv_mass : 0.0f;
 }
 
-static void correct(Sain *solver, const ContactProblem *problem, ContactSolution *solution) {
+static void sain_correct(Sain *solver, const ContactProblem *problem, ContactSolution *solution) {
     const SainView *view = &solver->view;
     bool all_known = true;
     for (int b = 0; b < view->body_count; b++) {
@@ -282,7 +282,7 @@ static void correct(Sain *solver, const ContactProblem *problem, ContactSolution
     solution->fallbacks.beyond_training = !all_known;
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool sain_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Sain *solver = state;
     const bool alone = solver->form == SAIN_ALONE && solver->predicts;
     if (alone)
@@ -295,7 +295,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
         return error_memory(error, "sain");
     solution->momentum_error = 0;
     solution->fallbacks = (NetworkFallbacks){0};
-    correct(solver, problem, solution);
+    sain_correct(solver, problem, solution);
     return true;
 }
 
@@ -309,6 +309,6 @@ const ContactSolverKind solver_sain = {
                     .chart = METHOD_RUNS("", "engine=off", "engine=shuffled", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = sain_create,
+    .solve = sain_solve,
+    .destroy = sain_destroy};

@@ -251,7 +251,7 @@ static void fill_body(const SainView *view, const ContactProblem *problem, int b
     for (int i = 0; i < SAIN_BODY_INPUTS; i++) view->body_inputs[i * view->body_count + b] = inputs[i];
 }
 
-static bool reserve(SainView *view, const ContactProblem *problem) {
+static bool sain_view_reserve(SainView *view, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1, rows = 2 * (size_t)problem->contact_count + 1;
     return ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->bodies, bodies), ARRAY_PART(view->changed, bodies),
                                ARRAY_PART(view->warmed, bodies), ARRAY_PART(view->receivers, bodies),
@@ -260,7 +260,7 @@ static bool reserve(SainView *view, const ContactProblem *problem) {
 }
 
 bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form) {
-    if (!reserve(view, problem)) return false;
+    if (!sain_view_reserve(view, problem)) return false;
     show_engine(view, problem, engine, form);
     warm_up(view, problem);
     find_receivers(view, problem);

@@ -154,8 +154,8 @@ static bool look_in_range(ScenePrediction *prediction, const SceneNet *network, 
 
 /* After look_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
    friction cones, and counts those that were outside. NaN or infinite if the network's outputs are. */
-static void predict(ScenePrediction *prediction, const SceneNet *network, const ContactProblem *problem,
-                    NetworkFallbacks *fallbacks) {
+static void predict_scene_net(ScenePrediction *prediction, const SceneNet *network, const ContactProblem *problem,
+                              NetworkFallbacks *fallbacks) {
     const SceneView *view = &prediction->view;
     scene_net_predict(network, prediction->inputs, &view->slots, prediction->first, prediction->second,
                       prediction->outputs);
@@ -225,7 +225,7 @@ static const SettingSpec settings[] = {
      SETTING_BOOL(SceneNetChoice, predicts)},
     {0}};
 
-static void destroy(void *state) {
+static void destroy_scene_net(void *state) {
     SceneNetSolver *solver = state;
     if (solver == NULL) return;
     scene_net_destroy(solver->own);
@@ -250,7 +250,7 @@ static void choose_factors(SceneNetSolver *solver) {
                                              : 0;
 }
 
-static SceneNetSolver *make(const SceneNet *network, const SceneNetChoice *choice, Error *error) {
+static SceneNetSolver *make_scene_net(const SceneNet *network, const SceneNetChoice *choice, Error *error) {
     SceneNetSolver *solver = calloc(1, sizeof *solver);
     if (solver == NULL) {
         error_memory(error, "scene-net");
@@ -263,7 +263,7 @@ static SceneNetSolver *make(const SceneNet *network, const SceneNetChoice *choic
     solver->half_factors = momentum_factors_make(solver->half);
     solver->more_factors = momentum_factors_make(solver->choice.rule.more);
     if (solver->rest_factors == NULL || solver->half_factors == NULL || solver->more_factors == NULL) {
-        destroy(solver);
+        destroy_scene_net(solver);
         error_memory(error, "scene-net");
         return NULL;
     }
@@ -271,14 +271,14 @@ static SceneNetSolver *make(const SceneNet *network, const SceneNetChoice *choic
     return solver;
 }
 
-static void *create(const Settings *chosen, Error *error) {
+static void *create_scene_net(const Settings *chosen, Error *error) {
     const char *path = method_network(chosen, NULL, "scene-net", error);
     SceneNet *network = path != NULL ? scene_net_read(path, error) : NULL;
     if (network == NULL) return NULL;
     SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {0, near_default, STOPPING_MORE}};
     SceneNetSolver *solver =
         settings_read(chosen, settings, &choice, error) && stopping_read(&choice.rule, chosen, error)
-            ? make(network, &choice, error)
+            ? make_scene_net(network, &choice, error)
             : NULL;
     if (solver == NULL)
         scene_net_destroy(network);
@@ -288,7 +288,7 @@ static void *create(const Settings *chosen, Error *error) {
 }
 
 /* Before the bomb appears there is one body less. */
-static bool fits(const SceneNet *network, const ContactProblem *problem, Error *error) {
+static bool scene_net_fits(const SceneNet *network, const ContactProblem *problem, Error *error) {
     const int bodies = problem->bomb < 0 ? network->body_count - 1 : network->body_count;
     if (problem->body_count != bodies)
         return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
@@ -299,7 +299,7 @@ static bool fits(const SceneNet *network, const ContactProblem *problem, Error *
                        network->bomb, problem->bomb);
 }
 
-static int within(float speed) { return fabsf(speed) <= speed_max; }
+static int scene_net_within(float speed) { return fabsf(speed) <= speed_max; }
 
 /* Checks velocities, and the effect of each impulse on the lightest body: large impulses that cancel each other leave
    rounding errors, too. */
@@ -308,12 +308,13 @@ static bool is_bounded(const Sweeps *sweeps) {
     float inverse = 0; /* 1/kg, of the lightest */
     for (int i = 0; i < sweeps->body_count; i++) {
         const SweepBody *body = &sweeps->bodies[i];
-        bounded &= within(body->x) & within(body->y) & within(body->spin);
+        bounded &= scene_net_within(body->x) & scene_net_within(body->y) & scene_net_within(body->spin);
         inverse = body->inv_mass > inverse ? body->inv_mass : inverse;
     }
     for (int i = 0; i < sweeps->pair_count; i++) {
         const ContactImpulse *sums = sweeps->pairs[i].sums;
-        for (int k = 0; k < 2; k++) bounded &= within(inverse * sums[k].normal) & within(inverse * sums[k].tangent);
+        for (int k = 0; k < 2; k++)
+            bounded &= scene_net_within(inverse * sums[k].normal) & scene_net_within(inverse * sums[k].tangent);
     }
     return bounded != 0;
 }
@@ -322,7 +323,7 @@ static bool run_more(SceneNetSolver *solver, const StoppingRule *rule) {
     return momentum_run_more(&solver->momentum, rule, solver->more_factors);
 }
 
-static bool run(SceneNetSolver *solver, const ContactProblem *problem, Route route) {
+static bool run_scene_net(SceneNetSolver *solver, const ContactProblem *problem, Route route) {
     Momentum *momentum = &solver->momentum;
     const StoppingRule *rule = &solver->choice.rule;
     const StoppingRule calm = {0, calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
@@ -358,23 +359,23 @@ static bool solve_without(SceneNetSolver *solver, const ContactProblem *problem,
     return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->choice.rest, solution, error);
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool scene_net_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     SceneNetSolver *solver = state;
     Sweeps *sweeps = &solver->momentum.sweeps;
-    if (!fits(solver->network, problem, error)) return false;
+    if (!scene_net_fits(solver->network, problem, error)) return false;
     if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return error_memory(error, "scene-net");
     Route route;
     solution->fallbacks = (NetworkFallbacks){0};
     if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
     if (route == ROUTE_NETWORK && solver->choice.predicts) {
-        predict(&solver->prediction, solver->network, problem, &solution->fallbacks);
+        predict_scene_net(&solver->prediction, solver->network, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->prediction.change);
         if (!is_bounded(sweeps)) {
             solution->fallbacks.not_finite++;
             return solve_without(solver, problem, solution, error);
         }
     }
-    if (!run(solver, problem, route)) return error_memory(error, "scene-net");
+    if (!run_scene_net(solver, problem, route)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
     solution->fallbacks.not_finite += route == ROUTE_NETWORK && solver->choice.predicts;
     return solve_without(solver, problem, solution, error);
@@ -390,13 +391,13 @@ const ContactSolverKind solver_scene_net = {
                     .chart = METHOD_RUNS("", "near=3", "more=200", "net=off", "more=200,net=off"),
                     .chart_quick = METHOD_RUNS("", "net=off"),
                     .stability = METHOD_RUNS("", "net=off")},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = create_scene_net,
+    .solve = scene_net_solve,
+    .destroy = destroy_scene_net};
 
 bool scene_net_make(ContactSolver *solver, const SceneNet *network, float near, Error *error) {
     solver->kind = &solver_scene_net;
     const SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {0, near, STOPPING_MORE}};
-    solver->state = make(network, &choice, error);
+    solver->state = make_scene_net(network, &choice, error);
     return solver->state != NULL;
 }

@@ -74,7 +74,7 @@ typedef struct SoftStep {
 #define SKIN_SHARE 0.1f     /* of the smallest side */
 #define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
 
-static void push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
+static void soft_step_push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
     a->velocity = vec2_sub(a->velocity, vec2_scale(a->inv_mass, impulse));
     a->spin -= a->inv_inertia * vec2_cross(point->arm_a, impulse);
     b->velocity = vec2_add(b->velocity, vec2_scale(b->inv_mass, impulse));
@@ -106,8 +106,8 @@ static void apply_forces(SoftStep *stepping, Vec2 fall) {
             const ContactImpulse *impulse = &point->impulse;
             point->total.normal += impulse->normal;
             point->total.tangent += impulse->tangent;
-            push(&stepping->bodies[pair->a], &stepping->bodies[pair->b], point,
-                 vec2_add(vec2_scale(impulse->normal, pair->normal), vec2_scale(impulse->tangent, tangent)));
+            soft_step_push(&stepping->bodies[pair->a], &stepping->bodies[pair->b], point,
+                           vec2_add(vec2_scale(impulse->normal, pair->normal), vec2_scale(impulse->tangent, tangent)));
         }
     }
 }
@@ -125,7 +125,7 @@ static void solve_normal(const SoftPair *pair, SoftPoint *point, SoftBody *a, So
     float sum = old - point->mass_normal * (mass_share * velocity + bias) - impulse_share * old;
     point->impulse.normal = 0.0f > sum ? 0.0f : sum;
     point->total.normal += point->impulse.normal - old;
-    push(a, b, point, vec2_scale(point->impulse.normal - old, pair->normal));
+    soft_step_push(a, b, point, vec2_scale(point->impulse.normal - old, pair->normal));
 }
 
 static void solve_friction(const SoftPair *pair, SoftPoint *point, SoftBody *a, SoftBody *b) {
@@ -134,11 +134,11 @@ static void solve_friction(const SoftPair *pair, SoftPoint *point, SoftBody *a, 
     float most = pair->friction * point->impulse.normal;
     point->impulse.tangent = contact_clamp(old - point->mass_tangent * velocity, -most, most);
     point->total.tangent += point->impulse.tangent - old;
-    push(a, b, point, vec2_scale(point->impulse.tangent - old, tangent));
+    soft_step_push(a, b, point, vec2_scale(point->impulse.tangent - old, tangent));
 }
 
 /* One visit of all contacts; relaxing: without the springs, with friction. */
-static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
+static void soft_step_sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
     static const Softness rigid = {1, 0, 0};
     for (const SoftPair *pair = stepping->pairs; pair < stepping->pairs + stepping->pair_count; pair++) {
         SoftPoint *points = &stepping->points[pair->first];
@@ -153,7 +153,7 @@ static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
 
 /* The rotation by its tangent, scaled to length 1, as in Box2D: a cosine for each substep would cost more than its
    contacts. */
-static void integrate(SoftStep *stepping, float h) {
+static void soft_step_integrate(SoftStep *stepping, float h) {
     for (int i = 0; i < stepping->body_count; i++) {
         SoftBody *body = &stepping->bodies[i];
         BodyPose *pose = &stepping->poses[i];
@@ -172,9 +172,9 @@ static void take_substeps(SoftStep *stepping, Vec2 gravity, float dt) {
     const float h = dt / (float)stepping->substeps, inverse_h = 1.0f / h;
     for (int i = 0; i < stepping->substeps; i++) {
         apply_forces(stepping, vec2_scale(h, gravity));
-        sweep(stepping, false, inverse_h);
-        integrate(stepping, h);
-        sweep(stepping, true, inverse_h);
+        soft_step_sweep(stepping, false, inverse_h);
+        soft_step_integrate(stepping, h);
+        soft_step_sweep(stepping, true, inverse_h);
     }
 }
 
@@ -185,7 +185,7 @@ static const SettingSpec settings[] = {
     KEEP_SETTING(SETTING_FLOAT(SoftStep, keep, 0, 1)),
     {0}};
 
-static void destroy(void *state) {
+static void soft_step_destroy(void *state) {
     SoftStep *stepping = state;
     step_memory_free(&stepping->memory);
     free(stepping->arrays.memory);
@@ -193,7 +193,7 @@ static void destroy(void *state) {
     free(stepping);
 }
 
-static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *soft_step_create(const Settings *chosen, const Scene *scene, Error *error) {
     static const SoftStep standard = {.substeps = 4, .hertz = 30, .damping = 10};
     (void)scene;
     return settings_make(chosen, settings, &standard, sizeof standard, "soft-step", error);
@@ -213,7 +213,7 @@ static void set_softness(SoftStep *stepping, const Scene *scene, float h) {
     stepping->fixed = scene->position_correction ? make_softness(2.0f * hertz, stepping->damping, h) : rigid;
 }
 
-static bool reserve(SoftStep *stepping, const ContactProblem *problem) {
+static bool soft_step_reserve(SoftStep *stepping, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     return array_reserve((void **)&stepping->kept, &stepping->kept_capacity, contacts, sizeof *stepping->kept) &&
            ARRAY_BLOCK_RESERVE(&stepping->arrays, ARRAY_PART(stepping->bodies, bodies),
@@ -263,9 +263,10 @@ static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) 
                     .impulse = warm_start(stepping, contact, i)};
 }
 
-static bool begin(SoftStep *stepping, const BegunStep *begun) {
+static bool soft_step_begin(SoftStep *stepping, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
-    if (!step_memory_match(&stepping->memory, begun->world, begun->step) || !reserve(stepping, problem)) return false;
+    if (!step_memory_match(&stepping->memory, begun->world, begun->step) || !soft_step_reserve(stepping, problem))
+        return false;
     set_softness(stepping, begun->step->scene, problem->dt / (float)stepping->substeps);
     stepping->body_count = problem->body_count;
     stepping->point_count = problem->contact_count;
@@ -284,7 +285,7 @@ static bool begin(SoftStep *stepping, const BegunStep *begun) {
 }
 
 /* False if an impulse is NaN or infinite. */
-static bool end(SoftStep *stepping, ContactSolution *solution) {
+static bool soft_step_end(SoftStep *stepping, ContactSolution *solution) {
     bool finite = true;
     for (int i = 0; i < stepping->body_count; i++)
         solution->velocities[i] = (BodyVelocity){stepping->bodies[i].velocity, stepping->bodies[i].spin};
@@ -295,16 +296,16 @@ static bool end(SoftStep *stepping, ContactSolution *solution) {
     return finite;
 }
 
-static bool solve(void *state, BegunStep *begun, Error *error) {
+static bool soft_step_solve(void *state, BegunStep *begun, Error *error) {
     SoftStep *stepping = state;
-    if (!begin(stepping, begun)) return error_memory(error, "soft-step");
+    if (!soft_step_begin(stepping, begun)) return error_memory(error, "soft-step");
     take_substeps(stepping, begun->step->scene->gravity, begun->problem->dt);
     begun->poses = stepping->poses;
-    return end(stepping, begun->solution) ||
+    return soft_step_end(stepping, begun->solution) ||
            error_failure(error, FAILURE_NOT_FINITE, "soft-step", "an impulse is NaN or infinite");
 }
 
-static void keep(void *state, const World *world) {
+static void soft_step_keep(void *state, const World *world) {
     SoftStep *stepping = state;
     step_memory_keep(&stepping->memory, world);
     for (int i = 0; i < stepping->point_count; i++) stepping->kept[i] = stepping->points[i].impulse;
@@ -321,7 +322,7 @@ const SteppingKind stepping_soft_step = {
                                          "substeps=16", "substeps=32,hertz=60", "substeps=4,keep=0.05"),
                     .chart_quick = METHOD_RUNS("substeps=4"),
                     .stability = METHOD_RUNS("", "keep=0.05")},
-    .create = create,
-    .solve = solve,
-    .keep = keep,
-    .destroy = destroy};
+    .create = soft_step_create,
+    .solve = soft_step_solve,
+    .keep = soft_step_keep,
+    .destroy = soft_step_destroy};

@@ -32,7 +32,7 @@ void step_memory_free(StepMemory *memory) {
     *memory = (StepMemory){0};
 }
 
-static bool reserve(StepMemory *memory, size_t bodies, size_t contacts) {
+static bool steppers_reserve(StepMemory *memory, size_t bodies, size_t contacts) {
     return array_reserve((void **)&memory->bodies, &memory->body_capacity, bodies, sizeof *memory->bodies) &&
            array_reserve((void **)&memory->contacts, &memory->contact_capacity, contacts, sizeof *memory->contacts) &&
            array_reserve((void **)&memory->known, &memory->known_capacity, bodies, sizeof *memory->known) &&
@@ -66,7 +66,7 @@ bool step_memory_match(StepMemory *memory, const World *world, const Step *step)
     const Body *bodies = world_bodies(world);
     if (step->frame == 1) memory->body_count = memory->contact_count = 0;
     if (!step->scene->warm_starting) memory->contact_count = 0;
-    if (!reserve(memory, (size_t)problem->body_count, (size_t)problem->contact_count)) return false;
+    if (!steppers_reserve(memory, (size_t)problem->body_count, (size_t)problem->contact_count)) return false;
     for (int i = 0; i < problem->body_count; i++)
         memory->known[i] = i < memory->body_count && same_body(&bodies[i], &memory->bodies[i]);
     match_contacts(memory, problem);

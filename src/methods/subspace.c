@@ -72,7 +72,7 @@ void subspace_pose_numbers(Vec2 size, Vec2 position, float angle, float numbers[
     numbers[3] = radius * turn.column1.x;
 }
 
-static void destroy(void *state) {
+static void subspace_destroy(void *state) {
     SubspaceStepper *method = state;
     if (method == NULL) return;
     subspace_free(&method->subspace);
@@ -113,7 +113,7 @@ static bool check_scene(const SubspaceNet *net, const Scene *scene, const char *
                        scene->name);
 }
 
-static bool prepare(SubspaceStepper *method, const char *path, const Scene *scene, Error *error) {
+static bool subspace_prepare(SubspaceStepper *method, const char *path, const Scene *scene, Error *error) {
     const int components = method->components;
     if (components != 8 && components != 32 && components != 128)
         return error_input(error, "subspace", "components must be 8, 32 or 128 (got %d)", components);
@@ -127,13 +127,13 @@ static bool prepare(SubspaceStepper *method, const char *path, const Scene *scen
                          error);
 }
 
-static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *subspace_create(const Settings *chosen, const Scene *scene, Error *error) {
     static const SubspaceStepper standard = {.components = 32, .corrects = true};
     const char *path = method_network(chosen, scene, "subspace", error);
     SubspaceStepper *method =
         path != NULL ? settings_make(chosen, settings, &standard, sizeof standard, "subspace", error) : NULL;
-    if (method == NULL || prepare(method, path, scene, error)) return method;
-    destroy(method);
+    if (method == NULL || subspace_prepare(method, path, scene, error)) return method;
+    subspace_destroy(method);
     return NULL;
 }
 
@@ -144,7 +144,7 @@ static bool goes_on(const SubspaceStepper *method, const Body *bodies, int count
 }
 
 /* Projects the poses of the world and those one step before. */
-static void start(SubspaceStepper *method, const Body *bodies, int count, float dt) {
+static void start_subspace(SubspaceStepper *method, const Body *bodies, int count, float dt) {
     float *last = method->start, *now = last + SUBSPACE_POSE * method->net->shape.bodies;
     for (int i = 0; i < count; i++) {
         const Body *body = &bodies[i];
@@ -174,13 +174,13 @@ static int pose_bodies(SubspaceStepper *method, const Body *bodies, int body_cou
 }
 
 /* Poses after a step in which the bomb is there. */
-static NetworkFallbacks predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
-                                const Step *which) {
+static NetworkFallbacks subspace_predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
+                                         const Step *which) {
     Subspace *subspace = &method->subspace;
     float launch[SUBSPACE_LAUNCH];
     const Scene *scene = which->scene;
     if (!goes_on(method, bodies, problem->body_count, which->frame))
-        start(method, bodies, problem->body_count, problem->dt);
+        start_subspace(method, bodies, problem->body_count, problem->dt);
     subspace_launch(scene, launch);
     const SubspaceReport report = subspace_step(subspace, launch);
     subspace_reconstruct(subspace);
@@ -191,7 +191,7 @@ static NetworkFallbacks predict(SubspaceStepper *method, const Body *bodies, con
 }
 
 /* Poses after a step before the bomb appears; after the end of the recorded run, its last. */
-static void repeat(SubspaceStepper *method, const Body *bodies, int body_count, int frame) {
+static void subspace_repeat(SubspaceStepper *method, const Body *bodies, int body_count, int frame) {
     const SubspaceShape *shape = &method->net->shape;
     if (shape->frames_before == 0) return;
     const int row = (frame <= shape->frames_before ? frame : shape->frames_before) - 1;
@@ -204,8 +204,8 @@ static void repeat(SubspaceStepper *method, const Body *bodies, int body_count, 
 }
 
 /* Velocities from the poses. */
-static void fill(const SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
-                 ContactSolution *solution) {
+static void subspace_fill(const SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
+                          ContactSolution *solution) {
     const float rate = 1 / problem->dt;
     for (int i = 0; i < problem->body_count; i++) {
         const BodyPose *pose = &method->poses[i];
@@ -215,7 +215,7 @@ static void fill(const SubspaceStepper *method, const Body *bodies, const Contac
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
 }
 
-static bool reserve(SubspaceStepper *method, size_t bodies, Error *error) {
+static bool subspace_reserve(SubspaceStepper *method, size_t bodies, Error *error) {
     return (array_reserve((void **)&method->after, &method->after_capacity, bodies, sizeof *method->after) &&
             ARRAY_BLOCK_RESERVE(&method->arrays, ARRAY_PART(method->poses, bodies),
                                 ARRAY_PART(method->touched, bodies))) ||
@@ -232,28 +232,28 @@ static bool check_world(const SubspaceStepper *method, const Body *bodies, const
                        moving, method->net->shape.bodies);
 }
 
-static bool solve(void *state, BegunStep *begun, Error *error) {
+static bool subspace_solve(void *state, BegunStep *begun, Error *error) {
     SubspaceStepper *method = state;
     const ContactProblem *problem = begun->problem;
     const Body *bodies = world_bodies(begun->world);
-    if (!reserve(method, (size_t)problem->body_count, error) || !check_world(method, bodies, problem, error))
+    if (!subspace_reserve(method, (size_t)problem->body_count, error) || !check_world(method, bodies, problem, error))
         return false;
     for (int i = 0; i < problem->body_count; i++) method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
     if (problem->bomb >= 0)
-        begun->solution->fallbacks = predict(method, bodies, problem, begun->step);
+        begun->solution->fallbacks = subspace_predict(method, bodies, problem, begun->step);
     else
-        repeat(method, bodies, problem->body_count, begun->step->frame);
-    fill(method, bodies, problem, begun->solution);
+        subspace_repeat(method, bodies, problem->body_count, begun->step->frame);
+    subspace_fill(method, bodies, problem, begun->solution);
     begun->poses = method->poses;
     return true;
 }
 
-static void measure(void *state, const BegunStep *begun) {
+static void subspace_measure(void *state, const BegunStep *begun) {
     bool *touched = ((SubspaceStepper *)state)->touched;
     begun->solution->momentum_error = free_flight_momentum(begun->problem, begun->solution, touched);
 }
 
-static void keep(void *state, const World *world) {
+static void subspace_keep(void *state, const World *world) {
     SubspaceStepper *method = state;
     const ContactProblem *problem = world_problem(world);
     method->after_count = problem->bomb >= 0 ? problem->body_count : 0;
@@ -273,8 +273,8 @@ const SteppingKind stepping_subspace = {
                     .chart = METHOD_RUNS("", "components=8", "components=128", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = create,
-    .solve = solve,
-    .measure = measure,
-    .keep = keep,
-    .destroy = destroy};
+    .create = subspace_create,
+    .solve = subspace_solve,
+    .measure = subspace_measure,
+    .keep = subspace_keep,
+    .destroy = subspace_destroy};

@@ -36,20 +36,20 @@ static const SettingSpec settings[] = {
     {"k", "sweeps per small step (default: 1)", SETTING_INT(Substepping, sweeps_each, 1, SWEEPS_MAX)},
     {0}};
 
-static void destroy(void *state) {
+static void substepping_destroy(void *state) {
     Substepping *stepping = state;
     sweeps_free(&stepping->sweeps);
     free(stepping->arrays.memory);
     free(stepping);
 }
 
-static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *substepping_create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Substepping standard = {.substeps = 4, .sweeps_each = 1};
     (void)scene;
     return settings_make(chosen, settings, &standard, sizeof standard, "substepping", error);
 }
 
-static bool reserve(Substepping *stepping, const ContactProblem *problem) {
+static bool substepping_reserve(Substepping *stepping, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     return ARRAY_BLOCK_RESERVE(&stepping->arrays, ARRAY_PART(stepping->poses, bodies),
                                ARRAY_PART(stepping->pushes, bodies), ARRAY_PART(stepping->share, contacts),
@@ -75,8 +75,9 @@ static void find_pushes(Substepping *stepping, Vec2 gravity) {
 }
 
 /* Bodies before gravity, plus the push of the first small step; contacts from the collision pass. */
-static bool begin(Substepping *stepping, const World *world, const ContactProblem *problem, Vec2 gravity) {
-    if (!reserve(stepping, problem) || !sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false))
+static bool substepping_begin(Substepping *stepping, const World *world, const ContactProblem *problem, Vec2 gravity) {
+    if (!substepping_reserve(stepping, problem) ||
+        !sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false))
         return false;
     const Body *now = world_bodies(world);
     for (int i = 0; i < problem->body_count; i++) {
@@ -95,7 +96,7 @@ static bool begin(Substepping *stepping, const World *world, const ContactProble
 }
 
 /* Applies gravity and warm start of one more small step. */
-static void push(Substepping *stepping) {
+static void substepping_push(Substepping *stepping) {
     Sweeps *sweeps = &stepping->sweeps;
     for (int i = 0; i < sweeps->body_count; i++) {
         SweepBody *body = &sweeps->bodies[i];
@@ -111,7 +112,7 @@ static void push(Substepping *stepping) {
         }
 }
 
-static void integrate(Substepping *stepping, float dt) {
+static void substepping_integrate(Substepping *stepping, float dt) {
     for (int i = 0; i < stepping->sweeps.body_count; i++) {
         const SweepBody *body = &stepping->sweeps.bodies[i];
         BodyPose *pose = &stepping->poses[i];
@@ -138,16 +139,16 @@ static void update_biases(Substepping *stepping, const ContactProblem *problem, 
         }
 }
 
-static bool solve(void *state, BegunStep *begun, Error *error) {
+static bool substepping_solve(void *state, BegunStep *begun, Error *error) {
     Substepping *stepping = state;
     const Scene *scene = begun->step->scene;
     const ContactProblem *problem = begun->problem;
     const float dt = problem->dt / (float)stepping->substeps;
-    if (!begin(stepping, begun->world, problem, scene->gravity)) return error_memory(error, "substepping");
+    if (!substepping_begin(stepping, begun->world, problem, scene->gravity)) return error_memory(error, "substepping");
     for (int i = 0; i < stepping->substeps; i++) {
-        if (i > 0) push(stepping);
+        if (i > 0) substepping_push(stepping);
         if (!sweeps_run(&stepping->sweeps, stepping->sweeps_each)) return error_memory(error, "substepping");
-        integrate(stepping, dt);
+        substepping_integrate(stepping, dt);
         if (scene->position_correction) update_biases(stepping, problem, dt, 1.0f / problem->dt);
     }
     sweeps_end(&stepping->sweeps, begun->solution); /* the world refuses a NaN or infinite result */
@@ -165,6 +166,6 @@ const SteppingKind stepping_substepping = {
                                          "substeps=32,k=16"),
                     .chart_quick = METHOD_RUNS("substeps=10"),
                     .stability_place = 4},
-    .create = create,
-    .solve = solve,
-    .destroy = destroy};
+    .create = substepping_create,
+    .solve = substepping_solve,
+    .destroy = substepping_destroy};

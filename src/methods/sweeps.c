@@ -50,8 +50,8 @@ static int32_t find_open(SweepSchedule *schedule, int32_t level) {
 }
 
 /* Assigns one visit to *level and returns its slot. False when memory is short. */
-static bool place(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair, int32_t a, int32_t b, bool turns,
-                  int32_t *level, int32_t *slot) {
+static bool sweeps_place(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair, int32_t a, int32_t b, bool turns,
+                         int32_t *level, int32_t *slot) {
     *level = find_open(schedule, *level);
     if (*level == schedule->level_count && !add_level(schedule, sweeps, turns)) return false;
     *slot = schedule->filled[*level]++;
@@ -115,7 +115,7 @@ static bool add_visit(SweepSchedule *schedule, Sweeps *sweeps, int32_t pair, int
         return false;
     int32_t level = moves_a ? ready[a] : 0, slot;
     if (moves_b && ready[b] > level) level = ready[b];
-    if (!place(schedule, sweeps, pair, a, b, turns, &level, &slot)) return false;
+    if (!sweeps_place(schedule, sweeps, pair, a, b, turns, &level, &slot)) return false;
     if (turns) place_turns(schedule, sweeps, pair, sweep, level, slot);
     if (moves_a) ready[a] = level + 1;
     if (moves_b) ready[b] = level + 1;
@@ -199,7 +199,7 @@ static int sweeps_of_schedule(const Sweeps *sweeps, int count, bool turns) {
 }
 
 /* By lanes if the processor has them and enough visits share a level. False when memory is short. */
-static bool run(Sweeps *sweeps, const float *factors, int count) {
+static bool sweeps_run_schedule(Sweeps *sweeps, const float *factors, int count) {
     bool turns = factors != NULL;
     int at_once = sweeps_of_schedule(sweeps, count, turns);
     if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once, turns)) return false;
@@ -215,7 +215,9 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
     return true;
 }
 
-bool sweeps_run(Sweeps *sweeps, int count) { return sweeps->pair_count == 0 || run(sweeps, NULL, count); }
+bool sweeps_run(Sweeps *sweeps, int count) {
+    return sweeps->pair_count == 0 || sweeps_run_schedule(sweeps, NULL, count);
+}
 
 /* Both halves are equal: before the first sweep there is no change to extrapolate. */
 static void begin_turns(Sweeps *sweeps) {
@@ -245,7 +247,7 @@ static void end_turns(Sweeps *sweeps, int count) {
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count) {
     if (sweeps->pair_count == 0 || count == 0) return true;
     begin_turns(sweeps);
-    if (!run(sweeps, factors, count)) return false;
+    if (!sweeps_run_schedule(sweeps, factors, count)) return false;
     end_turns(sweeps, count);
     return true;
 }
@@ -253,7 +255,7 @@ bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count) {
 bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count) {
     if (sweeps->pair_count == 0) return true;
     swap_halves(sweeps);
-    if (!run(sweeps, factors, count)) return false;
+    if (!sweeps_run_schedule(sweeps, factors, count)) return false;
     end_turns(sweeps, count);
     return true;
 }
@@ -367,7 +369,7 @@ bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution) {
 
 /* Packs a contact problem into records of bodies, and of pairs in the order of visits. */
 
-static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
+static bool sweeps_reserve(Sweeps *sweeps, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1, pairs = (size_t)problem->contact_count + 1;
     return ARRAY_BLOCK_RESERVE(&sweeps->arrays, ARRAY_PART(sweeps->bodies, 2 * bodies),
                                ARRAY_PART(sweeps->pairs, pairs), ARRAY_PART(sweeps->first, pairs),
@@ -383,7 +385,7 @@ static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
 static bool is_negative_zero(float x) { return x == 0.0f && signbit(x); }
 
 /* True if an impulse can change the velocity. For a static body only if it is -0, which may become 0. */
-static bool moves(const ProblemBody *body) {
+static bool sweeps_moves(const ProblemBody *body) {
     return problem_body_moves(body) || is_negative_zero(body->velocity.x) || is_negative_zero(body->velocity.y) ||
            is_negative_zero(body->angular_velocity);
 }
@@ -393,7 +395,7 @@ static void load_bodies(Sweeps *sweeps, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
         sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
-        sweeps->moves[i] = moves(body);
+        sweeps->moves[i] = sweeps_moves(body);
         sweeps->group_of_body[i] = 0;
     }
     sweeps->bodies[problem->body_count] = (SweepBody){0};
@@ -442,8 +444,9 @@ static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, const int3
     sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
 }
 
-static bool begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, const int32_t *visits, bool warm) {
-    if (!reserve(sweeps, problem)) return false;
+static bool begin_sweeps(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, const int32_t *visits,
+                         bool warm) {
+    if (!sweeps_reserve(sweeps, problem)) return false;
     sweeps->kernel = kernel;
     sweeps->coloured = visits != NULL;
     sweeps->groups = 1;
@@ -454,9 +457,10 @@ static bool begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *prob
 }
 
 bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm) {
-    return begin(sweeps, kernel, problem, NULL, warm);
+    return begin_sweeps(sweeps, kernel, problem, NULL, warm);
 }
 
 bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem) {
-    return colours_order(&sweeps->colours, problem) && begin(sweeps, kernel, problem, sweeps->colours.visits, true);
+    return colours_order(&sweeps->colours, problem) &&
+           begin_sweeps(sweeps, kernel, problem, sweeps->colours.visits, true);
 }

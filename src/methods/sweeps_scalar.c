@@ -10,7 +10,8 @@ static Vec2 relative_velocity(const SweepBody *a, const SweepBody *b, const Swee
                 ((b->y + b->spin * point->arm_b.x) - a->y) - a->spin * point->arm_a.x);
 }
 
-static void apply(SweepBody *a, SweepBody *b, const SweepPair *pair, const SweepPoint *point, Vec2 impulse) {
+static void sweeps_scalar_apply(SweepBody *a, SweepBody *b, const SweepPair *pair, const SweepPoint *point,
+                                Vec2 impulse) {
     a->x -= a->inv_mass * impulse.x;
     a->y -= a->inv_mass * impulse.y;
     a->spin -= pair->inv_inertia_a * vec2_cross(point->arm_a, impulse);
@@ -22,7 +23,7 @@ static void apply(SweepBody *a, SweepBody *b, const SweepPair *pair, const Sweep
 static void push_point(SweepBody *a, SweepBody *b, const SweepPair *pair, int k, ContactImpulse by) {
     Vec2 along_tangent = vec2_scale(by.tangent, vec2_cross_scalar(pair->normal, 1.0f));
     Vec2 impulse = vec2_add(vec2_scale(by.normal, pair->normal), along_tangent);
-    apply(a, b, pair, &pair->points[k], impulse);
+    sweeps_scalar_apply(a, b, pair, &pair->points[k], impulse);
 }
 
 static void push_pair(Sweeps *sweeps, int i, const ContactImpulse impulses[2]) {
@@ -58,7 +59,7 @@ static void solve_point(SweepBody *a, SweepBody *b, const SweepPair *pair, const
     total = total > 0.0f ? total : 0.0f;
     float normal = total - sum->normal;
     sum->normal = total;
-    apply(a, b, pair, point, vec2_scale(normal, pair->normal));
+    sweeps_scalar_apply(a, b, pair, point, vec2_scale(normal, pair->normal));
 
     Vec2 direction = vec2_cross_scalar(pair->normal, 1.0f);
     float tangent_velocity = vec2_dot(relative_velocity(a, b, point), direction);
@@ -68,11 +69,11 @@ static void solve_point(SweepBody *a, SweepBody *b, const SweepPair *pair, const
     total = -limit > total ? -limit : total;
     float tangent = total - sum->tangent;
     sum->tangent = total;
-    apply(a, b, pair, point, vec2_scale(tangent, direction));
+    sweeps_scalar_apply(a, b, pair, point, vec2_scale(tangent, direction));
 }
 
 /* Not 0 if the bits differ; those of 0 and -0 do. */
-static uint32_t difference(float x, float y) {
+static uint32_t sweeps_scalar_difference(float x, float y) {
     uint32_t bits_x, bits_y;
     memcpy(&bits_x, &x, sizeof x);
     memcpy(&bits_y, &y, sizeof y);
@@ -81,8 +82,8 @@ static uint32_t difference(float x, float y) {
 
 /* Stores a body's velocity; returns not 0 if it has changed. By components, because the next visit reads components. */
 static uint32_t put_back(SweepBody *body, const SweepBody *after) {
-    uint32_t changed =
-        difference(body->x, after->x) | difference(body->y, after->y) | difference(body->spin, after->spin);
+    uint32_t changed = sweeps_scalar_difference(body->x, after->x) | sweeps_scalar_difference(body->y, after->y) |
+                       sweeps_scalar_difference(body->spin, after->spin);
     body->x = after->x;
     body->y = after->y;
     body->spin = after->spin;
@@ -90,14 +91,16 @@ static uint32_t put_back(SweepBody *body, const SweepBody *after) {
 }
 
 static uint32_t put_back_sum(ContactImpulse *sum, ContactImpulse after) {
-    uint32_t changed = difference(sum->normal, after.normal) | difference(sum->tangent, after.tangent);
+    uint32_t changed =
+        sweeps_scalar_difference(sum->normal, after.normal) | sweeps_scalar_difference(sum->tangent, after.tangent);
     sum->normal = after.normal;
     sum->tangent = after.tangent;
     return changed;
 }
 
 /* Not 0 if the visit changed anything. */
-static inline uint32_t visit(SweepBody *bodies, const SweepPair *pair, ContactImpulse *sums, SweepEnds ends) {
+static inline uint32_t sweeps_scalar_visit(SweepBody *bodies, const SweepPair *pair, ContactImpulse *sums,
+                                           SweepEnds ends) {
     SweepBody *body_a = &bodies[sweep_body_at(ends.a)], *body_b = &bodies[sweep_body_at(ends.b)];
     SweepBody a = *body_a, b = *body_b;
     uint32_t changed = 0;
@@ -129,10 +132,10 @@ static bool note_visit(Sweeps *sweeps, int pair, bool changed, int64_t now) {
 }
 
 /* Extrapolates `now` by the change since `before`; returns not 0 if the result differs from `now`. */
-static uint32_t extrapolate(float *before, float now, float factor) {
+static uint32_t sweeps_scalar_extrapolate(float *before, float now, float factor) {
     float next = now - (factor * (*before - now) + 0.0f);
     *before = next;
-    return difference(next, now);
+    return sweeps_scalar_difference(next, now);
 }
 
 /* Replaces `to`, the velocities of two sweeps ago, by those that the next sweep starts from. factors[groups] */
@@ -141,8 +144,9 @@ static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *f
     bool any = false;
     for (int i = 0; i < sweeps->body_count; i++) {
         const float factor = factors[sweeps->group_of_body[i]];
-        if (extrapolate(&to[i].x, from[i].x, factor) | extrapolate(&to[i].y, from[i].y, factor) |
-            extrapolate(&to[i].spin, from[i].spin, factor)) {
+        if (sweeps_scalar_extrapolate(&to[i].x, from[i].x, factor) |
+            sweeps_scalar_extrapolate(&to[i].y, from[i].y, factor) |
+            sweeps_scalar_extrapolate(&to[i].spin, from[i].spin, factor)) {
             sweeps->changed_at[i] = now;
             any = true;
         }
@@ -153,8 +157,8 @@ static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *f
 static uint32_t extrapolate_sums(ContactImpulse to[2], const ContactImpulse from[2], float factor) {
     uint32_t changed = 0;
     for (int k = 0; k < 2; k++)
-        changed |=
-            extrapolate(&to[k].normal, from[k].normal, factor) | extrapolate(&to[k].tangent, from[k].tangent, factor);
+        changed |= sweeps_scalar_extrapolate(&to[k].normal, from[k].normal, factor) |
+                   sweeps_scalar_extrapolate(&to[k].tangent, from[k].tangent, factor);
     return changed;
 }
 
@@ -167,7 +171,7 @@ static bool sweep_in_turn(Sweeps *sweeps, int half, const float *factors, int64_
     for (int i = 0; i < sweeps->pair_count; i++) {
         if (may_rest(sweeps, i)) continue;
         uint32_t moved = extrapolate_sums(&sums[half][2 * i], &sums[1 - half][2 * i], factors[sweeps->group[i]]);
-        moved |= visit(halves[half], &sweeps->pairs[i], &sums[half][2 * i], sweeps->ends[i]);
+        moved |= sweeps_scalar_visit(halves[half], &sweeps->pairs[i], &sums[half][2 * i], sweeps->ends[i]);
         changed |= note_visit(sweeps, i, moved != 0, ++*now);
     }
     return changed;
@@ -178,7 +182,8 @@ static bool sweep_in_place(Sweeps *sweeps, int64_t *now) {
     for (int i = 0; i < sweeps->pair_count; i++) {
         if (may_rest(sweeps, i)) continue;
         SweepPair *pair = &sweeps->pairs[i];
-        changed |= note_visit(sweeps, i, visit(sweeps->bodies, pair, pair->sums, sweeps->ends[i]) != 0, ++*now);
+        changed |=
+            note_visit(sweeps, i, sweeps_scalar_visit(sweeps->bodies, pair, pair->sums, sweeps->ends[i]) != 0, ++*now);
     }
     return changed;
 }

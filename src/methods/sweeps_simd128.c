@@ -30,7 +30,7 @@ static inline void lanes_store(float *to, Lanes a) { wasm_v128_store(to, a); }
 
 #include "methods/sweeps_lanes_code.h"
 
-static inline void transpose(Lanes out[4], const Lanes in[4]) {
+static inline void sweeps_simd128_transpose(Lanes out[4], const Lanes in[4]) {
     const Lanes low01 = wasm_i32x4_shuffle(in[0], in[1], 0, 4, 1, 5);
     const Lanes high01 = wasm_i32x4_shuffle(in[0], in[1], 2, 6, 3, 7);
     const Lanes low23 = wasm_i32x4_shuffle(in[2], in[3], 0, 4, 1, 5);
@@ -44,12 +44,12 @@ static inline void transpose(Lanes out[4], const Lanes in[4]) {
 static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets) {
     Lanes rows[4];
     for (int i = 0; i < 4; i++) rows[i] = wasm_v128_load(base + offsets[i]);
-    transpose(out, rows);
+    sweeps_simd128_transpose(out, rows);
 }
 
 static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]) {
     Lanes rows[4];
-    transpose(rows, in);
+    sweeps_simd128_transpose(rows, in);
     for (int i = 0; i < 4; i++) wasm_v128_store(base + offsets[i], rows[i]);
 }
 
@@ -62,7 +62,7 @@ static inline void load_extrapolated(Lanes out[4], const float *base, const int3
                                      const float *factors, const int32_t *number) {
     Lanes rows[4];
     for (int i = 0; i < 4; i++) rows[i] = extrapolated(base + now[i], base + before[i], factors + number[i]);
-    transpose(out, rows);
+    sweeps_simd128_transpose(out, rows);
 }
 
 static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const float *factors) {

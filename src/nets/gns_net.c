@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-static int take(int *next, int count) {
+static int gns_net_take(int *next, int count) {
     const int at = *next;
     *next += count;
     return at;
@@ -17,12 +17,12 @@ static GnsMlp make_mlp(int *next, int inputs, int width, int outputs, bool norma
     GnsMlp mlp = {.inputs = inputs, .width = width, .outputs = outputs, .gain = -1, .offset = -1};
     const int widths[4] = {inputs, width, width, outputs};
     for (int l = 0; l < 3; l++) {
-        mlp.weights[l] = take(next, widths[l] * widths[l + 1]);
-        mlp.biases[l] = take(next, widths[l + 1]);
+        mlp.weights[l] = gns_net_take(next, widths[l] * widths[l + 1]);
+        mlp.biases[l] = gns_net_take(next, widths[l + 1]);
     }
     if (normalised) {
-        mlp.gain = take(next, outputs);
-        mlp.offset = take(next, outputs);
+        mlp.gain = gns_net_take(next, outputs);
+        mlp.offset = gns_net_take(next, outputs);
     }
     return mlp;
 }
@@ -82,12 +82,12 @@ static bool read_sizes(void *of, NpzFile *file, Error *error) {
     return true;
 }
 
-static bool create(void *of, Error *error) {
+static bool create_gns_net(void *of, Error *error) {
     GnsNet *net = of;
     return gns_net_create(net, net->layout.width, net->layout.rounds, error);
 }
 
-static const NetFileKind kind = {"gns", GNS_VERSION, list_fields, read_sizes, create, NULL};
+static const NetFileKind kind = {"gns", GNS_VERSION, list_fields, read_sizes, create_gns_net, NULL};
 
 bool gns_net_write(const GnsNet *net, const char *path, Error *error) {
     return net_file_write(&kind, net, path, error);

@@ -81,7 +81,7 @@ static void place_arrays(Network *network, float *block) {
 }
 
 /* The widths are set. */
-static bool allocate(Network *network, Error *error) {
+static bool network_allocate(Network *network, Error *error) {
     float *block = calloc(number_count(network), sizeof *block);
     if (block == NULL) return error_memory(error, "network");
     place_arrays(network, block);
@@ -96,7 +96,7 @@ Network *network_create(int layers, const int *widths, Error *error) {
     if (network == NULL) return error_memory(error, "network"), NULL;
     network->layers = layers;
     memcpy(network->widths, widths, (size_t)(layers + 1) * sizeof *widths);
-    if (!allocate(network, error)) return free(network), NULL;
+    if (!network_allocate(network, error)) return free(network), NULL;
     return network;
 }
 
@@ -236,7 +236,7 @@ static bool read_widths(void *of, NpzFile *file, Error *error) {
     return count > 0;
 }
 
-static bool create(void *of, Error *error) { return allocate(((NetworkFile *)of)->network, error); }
+static bool create_network(void *of, Error *error) { return network_allocate(((NetworkFile *)of)->network, error); }
 
 static bool parse_activation(const char *word, Activation *activation) {
     for (int a = 0; a < ACTIVATION_COUNT; a++) {
@@ -260,7 +260,8 @@ static bool parse_activations(void *of, const char *path, Error *error) {
     return count == network->layers || error_input(error, path, "%d activations for %d layers", count, network->layers);
 }
 
-static const NetFileKind kind = {"network", NETWORK_VERSION, list_fields, read_widths, create, parse_activations};
+static const NetFileKind kind = {"network",   NETWORK_VERSION, list_fields,
+                                 read_widths, create_network,  parse_activations};
 
 bool network_write(const Network *network, const char *path, Error *error) {
     NetworkFile file = {(Network *)network, ""};

@@ -125,8 +125,8 @@ enum { TAUGHT_SCENES = sizeof taught_scenes / sizeof *taught_scenes };
 
 static const GnsRow unmeasured = {.error = NAN, .ms_step = NAN, .ms_gradient = NAN, .hours = NAN, .boxes = NAN};
 
-static const GnsRow *find(const CsvTable *table, GnsMeasure measure, const char *variant, const char *scene,
-                          double seconds) {
+static const GnsRow *claims_find(const CsvTable *table, GnsMeasure measure, const char *variant, const char *scene,
+                                 double seconds) {
     const GnsRow *rows = table->rows;
     for (int i = 0; i < table->count; i++)
         if (rows[i].measure == (int)measure && strcmp(rows[i].variant, variant) == 0 &&
@@ -136,7 +136,7 @@ static const GnsRow *find(const CsvTable *table, GnsMeasure measure, const char 
 }
 
 static double error_of(const CsvTable *table, int variant, const char *scene) {
-    return find(table, GNS_ROLLOUT, gns_variants[variant].name, scene, compared_at)->error;
+    return claims_find(table, GNS_ROLLOUT, gns_variants[variant].name, scene, compared_at)->error;
 }
 
 static bool state_text(const Claims *claims, const Claim *claim, const char *text, Error *error) {
@@ -215,7 +215,7 @@ static bool claim_large(const Claims *claims, const CsvTable *table, Error *erro
     int right = 0, cases = 0;
     char text[CLAIM_TEXT_SIZE] = "";
     for (int s = 0; s < 2; s++) {
-        const GnsRow *row = find(table, GNS_LARGE, gns_variants[GNS_SHIPPED].name, piles[s], NAN);
+        const GnsRow *row = claims_find(table, GNS_LARGE, gns_variants[GNS_SHIPPED].name, piles[s], NAN);
         if (row == &unmeasured) continue;
         text_join(text, CLAIM_TEXT_SIZE, "; ", "%s", piles[s]);
         text_add(text, CLAIM_TEXT_SIZE, ", %.0f boxes: %.0f moved (taught run: %.0f), %.2g m off, %.3g ms a step",
@@ -231,8 +231,8 @@ static bool claim_large(const Claims *claims, const CsvTable *table, Error *erro
 }
 
 static bool claim_cost(const Claims *claims, const CsvTable *table, Error *error) {
-    const GnsRow *ours = find(table, GNS_COST, "width 16, M = 5", "pyramid_settled", NAN),
-                 *theirs = find(table, GNS_COST, "width 128, M = 10", "pyramid_settled", NAN);
+    const GnsRow *ours = claims_find(table, GNS_COST, "width 16, M = 5", "pyramid_settled", NAN),
+                 *theirs = claims_find(table, GNS_COST, "width 128, M = 10", "pyramid_settled", NAN);
     const Claim claim = {
         "The paper's own network, 128 wide with M = 10, can be trained as there: 20 million steps of 2",
         "Sanchez-Gonzalez et al. 2020, appendix on training",

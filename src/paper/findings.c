@@ -174,7 +174,7 @@ typedef struct AimRow {
 } AimRow;
 
 /* Errors are to be at most the aim, rates at least. */
-static void judge(AimRow *row, bool at_least) {
+static void findings_judge(AimRow *row, bool at_least) {
     const double missed = at_least ? row->aim - row->measured : row->measured - row->aim;
     row->missed_by = missed > 0 ? missed : NAN;
     if (isnan(row->measured))
@@ -195,7 +195,7 @@ static AimRow error_aim(const StudyTables *study, PairTarget target) {
                   .aim = target_aims[target],
                   .measured = best != NULL ? best->ratio : NAN,
                   .free = 1};
-    judge(&row, false);
+    findings_judge(&row, false);
     return row;
 }
 
@@ -212,7 +212,7 @@ static AimRow rate_aim(const StudyTables *study, int scene, double aim) {
         row.network = rate->network;
         row.measured = share;
     }
-    judge(&row, true);
+    findings_judge(&row, true);
     return row;
 }
 

@@ -35,7 +35,7 @@ typedef struct Runs {
     int64_t nanoseconds;
 } Runs;
 
-static bool begin(Runs *runs, const char *network, const char *settings, Error *error) {
+static bool gns_study_begin(Runs *runs, const char *network, const char *settings, Error *error) {
     Settings given;
     Method teacher;
     runs->start = calloc(2 * (size_t)(runs->scene->body_count + 1), sizeof *runs->start);
@@ -51,7 +51,7 @@ static bool begin(Runs *runs, const char *network, const char *settings, Error *
     return runs->teacher != NULL && runs->taught != NULL && runs->learned != NULL;
 }
 
-static void end(Runs *runs) {
+static void gns_study_end(Runs *runs) {
     if (runs->gns != NULL) stepping_gns.destroy(runs->gns);
     stepper_destroy(runs->teacher);
     world_destroy(runs->taught);
@@ -107,7 +107,7 @@ static void note_times(GnsRollout *rollout, const Runs *runs, int frame, int las
     }
 }
 
-static bool run(Runs *runs, GnsRollout *rollout, Error *error) {
+static bool gns_study_run(Runs *runs, GnsRollout *rollout, Error *error) {
     const Scene *scene = runs->scene;
     const int bodies = scene->body_count;
     int last = scene->bomb.frame + (int)lround(gns_times[GNS_TIMES - 1] / (double)scene->dt), time = 0;
@@ -132,8 +132,8 @@ bool gns_rollout_run(GnsRollout *rollout, const Scene *launched, const char *net
                      Error *error) {
     Runs runs = {.scene = launched};
     *rollout = (GnsRollout){.boxes = 0};
-    const bool ok = begin(&runs, network, settings, error) && run(&runs, rollout, error);
-    end(&runs);
+    const bool ok = gns_study_begin(&runs, network, settings, error) && gns_study_run(&runs, rollout, error);
+    gns_study_end(&runs);
     return ok;
 }
 
@@ -146,7 +146,7 @@ static bool make_net(GnsNet *net, int width, int rounds, Error *error) {
 }
 
 /* Time of a pass for all boxes on one thread, and of a gradient step of the paper's batch on all threads. */
-static bool measure(const GnsExamples *examples, GnsNet *net, int steps, GnsRow *row, Error *error) {
+static bool gns_study_measure(const GnsExamples *examples, GnsNet *net, int steps, GnsRow *row, Error *error) {
     GnsFit fit;
     double loss, pass = 0;
     int boxes = 0;
@@ -319,8 +319,8 @@ static bool write_cost(const SystemStudy *study, int index, FILE *lines, const P
         row.measure = GNS_COST;
         row.variant = name;
         row.scene = place.name;
-        ok =
-            make_net(&net, widths[i], rounds[i], error) && measure(&examples, &net, study->quick ? 1 : 10, &row, error);
+        ok = make_net(&net, widths[i], rounds[i], error) &&
+             gns_study_measure(&examples, &net, study->quick ? 1 : 10, &row, error);
         gns_net_free(&net);
         if (ok && !progress_report(progress, i + 1, 2)) ok = error_interrupted(error, "gns", "stopped");
         ok = ok && piece_tables_print(lines, &gns_table_layout, -1, &row, error);

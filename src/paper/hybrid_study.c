@@ -56,7 +56,7 @@ static bool run_launches(Measuring *measuring, const HybridMemory *memory, bool 
     return true;
 }
 
-static bool reserve(Measuring *measuring, Error *error) {
+static bool hybrid_study_reserve(Measuring *measuring, Error *error) {
     const size_t count = (size_t)measuring->asked.count + 1;
     measuring->values = malloc(count * RIVALS * (size_t)measuring->times->repetitions * sizeof(double));
     measuring->errors = malloc(count * sizeof(double));
@@ -64,7 +64,7 @@ static bool reserve(Measuring *measuring, Error *error) {
 }
 
 /* All steps by both rivals, once. */
-static bool pass(Measuring *measuring, int repetition, int64_t overhead, Error *error) {
+static bool hybrid_study_pass(Measuring *measuring, int repetition, int64_t overhead, Error *error) {
     const int repetitions = measuring->times->repetitions;
     measuring->answers = 0;
     for (int i = 0; i < measuring->asked.count; i++) {
@@ -88,7 +88,7 @@ static bool pass(Measuring *measuring, int repetition, int64_t overhead, Error *
 /* NAN for 0, by which nothing is divided. */
 static double or_nan(int count) { return count > 0 ? (double)count : (double)NAN; }
 
-static void summarise(Measuring *measuring, HybridRow *row) {
+static void hybrid_study_summarise(Measuring *measuring, HybridRow *row) {
     const int repetitions = measuring->times->repetitions, count = measuring->asked.count;
     double sums[2][RIVALS] = {{0}}; /* of steps that are not answered, and that are */
     for (int i = 0; i < count; i++)
@@ -105,11 +105,11 @@ static void summarise(Measuring *measuring, HybridRow *row) {
     row->us_step_solve = (sums[0][1] + sums[1][1]) / all;
 }
 
-static bool measure(Measuring *measuring, Error *error) {
+static bool hybrid_study_measure(Measuring *measuring, Error *error) {
     const int64_t overhead = meter_time_overhead();
     bool ok = true;
     meter_pin();
-    for (int r = 0; ok && r < measuring->times->repetitions; r++) ok = pass(measuring, r, overhead, error);
+    for (int r = 0; ok && r < measuring->times->repetitions; r++) ok = hybrid_study_pass(measuring, r, overhead, error);
     meter_unpin();
     return ok;
 }
@@ -121,9 +121,9 @@ static bool hybrid_measure(const HybridTimes *times, const HybridMemory *memory,
     Measuring measuring = {.times = times};
     const bool ok = hybrid_make(&measuring.rivals[0], memory, NULL, error) &&
                     hybrid_make(&measuring.rivals[1], NULL, NULL, error) &&
-                    run_launches(&measuring, memory, row->turned != 0, error) && reserve(&measuring, error) &&
-                    measure(&measuring, error);
-    if (ok) summarise(&measuring, row);
+                    run_launches(&measuring, memory, row->turned != 0, error) &&
+                    hybrid_study_reserve(&measuring, error) && hybrid_study_measure(&measuring, error);
+    if (ok) hybrid_study_summarise(&measuring, row);
     for (int r = 0; r < RIVALS; r++) {
         solver_destroy(&measuring.rivals[r]);
         pair_moment_free(&measuring.solutions[r]);
@@ -255,7 +255,7 @@ static bool note(void *context, const HybridLaunch *launch, Error *error) {
     return launch->memory == NULL || !is_checkpoint(run, launch->number) || add_row(run, launch, error);
 }
 
-static bool learn(Run *run, const Progress *progress, Error *error) {
+static bool hybrid_study_learn(Run *run, const Progress *progress, Error *error) {
     const HybridTraining training = {.launches = run->launches,
                                      .turned_from = run->learning->changes ? run->change : -1,
                                      .steps = run->learning->steps,
@@ -293,7 +293,7 @@ static bool write_learning(const SystemStudy *study, int index, FILE *lines, con
                                .repetitions = study->quick ? QUICK_REPETITIONS : REPETITIONS,
                                .seed = study->seed};
     bool ok = run->times.prefix != NULL;
-    ok = ok && learn(run, progress, error);
+    ok = ok && hybrid_study_learn(run, progress, error);
     world_destroy(run->times.prefix);
     free(run);
     scene_destroy(scene);

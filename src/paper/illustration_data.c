@@ -60,7 +60,7 @@ typedef struct Path {
     bool touches;
 } Path;
 
-static void follow(Path *path, const EngineRun *run, const View *view) {
+static void illustration_data_follow(Path *path, const EngineRun *run, const View *view) {
     int bomb = run->scene->body_count;
     if (run->tracker.touch != 0 || world_body_count(run->world) <= bomb || path->count == PATH_POINTS) return;
     path->points[path->count++] = view_place(view, world_bodies(run->world)[bomb].position);
@@ -79,7 +79,7 @@ static bool run_launch(Path *path, int *rows, SweepRow *row, const Scene *launch
     bool ok = true;
     *path = (Path){0};
     while (ok && run.frame < launched->frames) {
-        follow(path, &run, view);
+        illustration_data_follow(path, &run, view);
         ok = engine_run_step(&run, error);
         if (ok) *rows += count_pairs(world_problem(run.world));
         if (ok && row != NULL && run.tracker.touch == run.frame) take_row(row, &run);
@@ -244,7 +244,8 @@ static void write_caption(char caption[CAPTION_SIZE], const SweepRow *row, int r
         is_bomb_of(row, 0) ? "bomb" : "box", changes[0], is_bomb_of(row, 1) ? "bomb" : "box", changes[1]);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool illustration_data_draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE],
+                                   Error *error) {
     const View view = {{1, 1}, {split - 6, height - 6}, {0, 7.5}, 5.1};
     SweepRow row;
     int rows;
@@ -263,4 +264,4 @@ static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char 
     return true;
 }
 
-const Illustration illustration_data = {width, height, draw};
+const Illustration illustration_data = {width, height, illustration_data_draw};

@@ -278,7 +278,8 @@ static void draw_stages(Sketch *sketch, const StepCounts *c) {
     draw_stage(sketch, corner(0, low_row), "6  Integration", first, second, &stage, BOX_INK);
 }
 
-static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE], Error *error) {
+static bool illustration_loop_draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE],
+                                   Error *error) {
     EngineRun run;
     StepCounts counts;
     if (!engine_run_begin(&run, scenes[SCENE_STACK], error)) return false;
@@ -301,4 +302,4 @@ static bool draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char 
     return true;
 }
 
-const Illustration illustration_loop = {FIGURE_PAGE_WIDTH, 76, draw};
+const Illustration illustration_loop = {FIGURE_PAGE_WIDTH, 76, illustration_loop_draw};

@@ -67,7 +67,7 @@ int next_pair(const ContactProblem *problem, int first) {
 static const double width = FIGURE_PAGE_WIDTH, height = 84, split = 97; /* mm */
 
 /* Angle between the sides of two boxes, degrees. */
-static double tilt(const ProblemBody *a, const ProblemBody *b) {
+static double illustrations_tilt(const ProblemBody *a, const ProblemBody *b) {
     double turned = fmod(fabs((double)b->angle - (double)a->angle) * 180 / M_PI, 90);
     return fmin(turned, 90 - turned);
 }
@@ -77,7 +77,7 @@ static bool shows_all(const ContactProblem *problem, int first) {
     int a = problem->contacts[first].a, b = problem->contacts[first].b;
     const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
     return (a == problem->bomb || b == problem->bomb) && body_a->inv_mass > 0 && body_b->inv_mass > 0 &&
-           pair_contact_count(problem, first) == 2 && tilt(body_a, body_b) >= LEAST_TILT;
+           pair_contact_count(problem, first) == 2 && illustrations_tilt(body_a, body_b) >= LEAST_TILT;
 }
 
 static bool find_in_step(Collision *collision, const EngineRun *run) {

@@ -63,7 +63,7 @@ static bool add_networks(Rating *rating, const char *path, Error *error) {
            add_network(rating, RATE_CONSTANT, points ? "contact-net:net=off" : "pair-net:net=off", path, error);
 }
 
-static bool begin(Rating *rating, const char *path, const Sampling *sampling, Error *error) {
+static bool pair_rates_begin(Rating *rating, const char *path, const Sampling *sampling, Error *error) {
     rating->weights[PHASE_IMPACT] = 1;
     rating->weights[PHASE_AFTER] = sampling->after;
     rating->weights[PHASE_REST] = sampling->rest;
@@ -80,7 +80,7 @@ static bool begin(Rating *rating, const char *path, const Sampling *sampling, Er
            add_engine(rating, RATE_ENGINE10, "engine:k=10", error);
 }
 
-static void end(Rating *rating) {
+static void pair_rates_end(Rating *rating) {
     if (!rating->warm) pair_network_free(&rating->network);
     for (int c = 0; c < RATE_COLUMNS; c++) {
         if (rating->solvers[c].kind != NULL) rating->solvers[c].kind->destroy(rating->solvers[c].state);
@@ -105,7 +105,7 @@ static bool solve_all(Rating *rating, const ContactProblem *problem, Error *erro
     return true;
 }
 
-static Vec2 relative(const float changes[PAIR_CHANGES]) {
+static Vec2 pair_rates_relative(const float changes[PAIR_CHANGES]) {
     return vec2(changes[3] - changes[0], changes[4] - changes[1]);
 }
 
@@ -130,7 +130,7 @@ static Vec2 solved_change(const Rating *rating, const ContactProblem *problem, R
     const PairTarget target = rating->network.target == TARGET_NET ? TARGET_NET : TARGET_PAIR;
     float changes[PAIR_CHANGES];
     pair_step_changes(problem, &solution, first, rating->network.view, target, changes);
-    return relative(changes);
+    return pair_rates_relative(changes);
 }
 
 static bool rate_pairs(Rating *rating, const ContactProblem *problem, Phase phase, Error *error) {
@@ -172,7 +172,7 @@ static bool rate_visits(Rating *rating, const ContactProblem *problem, Phase pha
             changes[3] = after.x - before.x;
             changes[4] = after.y - before.y;
             if (pair_views[network->view].by_contact) pair_to_contact_frame(contact, changes);
-            const Vec2 truth = relative(changes);
+            const Vec2 truth = pair_rates_relative(changes);
             PairError pair = {.phase = phase};
             pair.error[RATE_NETWORK] = vec2_sub(relative_output(network, outputs, 1), truth);
             pair.error[RATE_CONSTANT] = vec2_sub(relative_output(network, network->network->output_mean, 1), truth);
@@ -235,7 +235,7 @@ static void count_pairs(const Rating *rating, RateDefinition definition, RateCol
     set_shares(rating, right, count, definition, column, rates);
 }
 
-static void summarise(const Rating *rating, PairRates *rates) {
+static void pair_rates_summarise(const Rating *rating, PairRates *rates) {
     for (RateColumn c = 0; c < RATE_COLUMNS; c++) {
         double right[PHASES], bodies[PHASES];
         for (int phase = 0; phase < PHASES; phase++) {
@@ -254,10 +254,10 @@ static void summarise(const Rating *rating, PairRates *rates) {
 bool pair_rates_measure(const char *path, const Scene *scene, const SnapshotList *lists, int count,
                         const Sampling *sampling, PairRates *rates, Error *error) {
     Rating rating = {.scene = scene};
-    bool ok = begin(&rating, path, sampling, error);
+    bool ok = pair_rates_begin(&rating, path, sampling, error);
     for (int i = 0; ok && i < count; i++)
         for (int s = 0; ok && s < lists[i].count; s++) ok = rate_snapshot(&rating, &lists[i].items[s], error);
-    if (ok) summarise(&rating, rates);
-    end(&rating);
+    if (ok) pair_rates_summarise(&rating, rates);
+    pair_rates_end(&rating);
     return ok;
 }

@@ -107,7 +107,7 @@ typedef struct Watch {
     bool stopped;
 } Watch;
 
-static bool report(void *context, double done, double total) {
+static bool report_paper(void *context, double done, double total) {
     Watch *watch = context;
     if (!progress_report(watch->progress, done, total)) watch->stopped = true;
     return !watch->stopped;
@@ -116,7 +116,7 @@ static bool report(void *context, double done, double total) {
 Network *whole_training(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
                         Error *error) {
     Watch watch = {.progress = progress};
-    const Progress watched = {report, &watch};
+    const Progress watched = {report_paper, &watch};
     Network *network = training_run(dataset, options, &watched, error);
     if (network == NULL || !watch.stopped) return network;
     network_destroy(network);
@@ -178,7 +178,7 @@ static bool check_times(const Pieces *pieces, Error *error) {
 }
 
 /* What follows from the parts, once all are there. */
-static bool finish(const PaperPlan *plan, Error *error) {
+static bool paper_finish(const PaperPlan *plan, Error *error) {
     const PaperOptions *options = plan->options;
     return check_times(plan->pieces, error) && folder_reserve(options->folder, error) && write_tables(plan, error) &&
            options->draw(options, error) && pieces_end(plan->pieces, error);
@@ -191,7 +191,8 @@ static bool do_parts(PaperPlan *plan, Pieces *pieces, const StudyKey *key, const
     return pieces_open(pieces, options->folder, key, options->run, error) &&
            (pieces->mode != PIECES_WHOLE || folder_reserve(options->folder, error)) &&
            (pieces->mode == PIECES_MERGE || file_make_directory(plan->networks_folder, error)) &&
-           pieces_do(pieces, &plan->plan, progress, error) && (pieces->mode == PIECES_SHARD || finish(plan, error));
+           pieces_do(pieces, &plan->plan, progress, error) &&
+           (pieces->mode == PIECES_SHARD || paper_finish(plan, error));
 }
 
 bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *progress, Error *error) {

@@ -157,8 +157,8 @@ static bool same_options(const DatasetOptions *a, const DatasetOptions *b) {
 }
 
 /* The dataset of `count` scenes from `first` on, with launches of bomb_x, if not NULL. */
-static const Dataset *record(PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
-                             Error *error) {
+static const Dataset *paper_data_record(PaperDatasets *datasets, int first, int count, const char *bomb_x,
+                                        DatasetOptions options, Error *error) {
     const char *scenes[PAPER_SCENES];
     if (bomb_x != NULL) options.bomb_x = range_of(bomb_x);
     for (int i = 0; i < datasets->count; i++) {
@@ -191,12 +191,12 @@ const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *networ
     if (network->data == DATA_MIXED) options.random = size->mixed_random;
     if (network->target == TARGET_IMPULSE)
         options.every = network->data == DATA_FINEST ? size->finest_every : size->impulse_every;
-    return record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
+    return paper_data_record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
 }
 
 bool paper_laws_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
-    const Dataset *dataset = record(&plan->datasets, 0, PAPER_TRAINING_SCENES, plan->size->data.swept,
-                                    (DatasetOptions){.context = true}, error); /* with the pairs' context */
+    const Dataset *dataset = paper_data_record(&plan->datasets, 0, PAPER_TRAINING_SCENES, plan->size->data.swept,
+                                               (DatasetOptions){.context = true}, error); /* with the pairs' context */
     LawRow row;
     return dataset != NULL && law_study_run(dataset, &part->laws, &row, progress, error) &&
            piece_tables_print(lines, &paper_law_layout, -1, &row, error);
@@ -206,7 +206,7 @@ bool paper_transfer_write(PaperPlan *plan, const PaperPart *part, FILE *lines, c
     const Dataset *data[TRANSFER_SCENES];
     TransferRow row;
     for (int i = 0; i < TRANSFER_SCENES; i++) {
-        data[i] = record(&plan->datasets, i, 1, plan->size->data.transfer, (DatasetOptions){0}, error);
+        data[i] = paper_data_record(&plan->datasets, i, 1, plan->size->data.transfer, (DatasetOptions){0}, error);
         if (data[i] == NULL) return false;
     }
     return transfer_study_run(data, &part->transfer, &row, progress, error) &&

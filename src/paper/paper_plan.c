@@ -155,7 +155,7 @@ static bool add_systems(PaperPlan *plan, Error *error) {
     return true;
 }
 
-static void describe(void *context, int64_t piece, PieceInfo *info) {
+static void paper_plan_describe(void *context, int64_t piece, PieceInfo *info) {
     const PaperPlan *plan = context;
     const PaperPart *part = &plan->parts[piece];
     memcpy(info->name, part->name, sizeof info->name);
@@ -165,7 +165,7 @@ static void describe(void *context, int64_t piece, PieceInfo *info) {
     if (part->timed) info->with = plan->first_timed;
 }
 
-static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+static bool paper_plan_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
     PaperPlan *plan = context;
     return plan->parts[piece].write(plan, &plan->parts[piece], results, progress, error);
 }
@@ -179,14 +179,15 @@ static bool ready(void *context, int64_t piece) {
     return done;
 }
 
-static bool whole(void *context, int64_t piece, const char *results, size_t size, bool *there, Error *error) {
+static bool paper_plan_whole(void *context, int64_t piece, const char *results, size_t size, bool *there,
+                             Error *error) {
     const PaperPlan *plan = context;
     (void)size;
     *there = true;
     return piece >= plan->network_count || paper_training_whole(plan, &plan->parts[piece], results, there, error);
 }
 
-static bool begin(PaperPlan *plan, const PaperOptions *options, Error *error) {
+static bool paper_plan_begin(PaperPlan *plan, const PaperOptions *options, Error *error) {
     plan->options = options;
     plan->size = options->quick ? &paper_quick_size : &paper_whole_size;
     plan->systems = paper_systems;
@@ -200,15 +201,15 @@ static bool begin(PaperPlan *plan, const PaperOptions *options, Error *error) {
 
 bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error) {
     *plan = (PaperPlan){0};
-    if (!begin(plan, options, error) || !add_trainings(plan, error) || !add_scorings(plan, error) ||
+    if (!paper_plan_begin(plan, options, error) || !add_trainings(plan, error) || !add_scorings(plan, error) ||
         !add_laws(plan, error) || !add_transfers(plan, error) || !add_systems(plan, error))
         return false;
     while (!plan->parts[plan->first_timed].timed) plan->first_timed++;
     plan->plan = (PiecePlan){.count = (int64_t)plan->count,
-                             .describe = describe,
-                             .work = work,
+                             .describe = paper_plan_describe,
+                             .work = paper_plan_work,
                              .ready = ready,
-                             .whole = whole,
+                             .whole = paper_plan_whole,
                              .context = plan};
     return true;
 }

@@ -29,7 +29,7 @@ static struct {
     bool done;
 } memory;
 
-static void *take(size_t size) {
+static void *paper_report_take(size_t size) {
     Block *block = size < SIZE_MAX - sizeof *block ? calloc(1, sizeof *block + size) : NULL;
     if (block == NULL) longjmp(memory.full, 1);
     block->size = size;
@@ -39,18 +39,18 @@ static void *take(size_t size) {
 }
 
 static void *take_zeros(size_t count, size_t size) {
-    return take(size > 0 && count > SIZE_MAX / size ? SIZE_MAX : count * size);
+    return paper_report_take(size > 0 && count > SIZE_MAX / size ? SIZE_MAX : count * size);
 }
 
 static void *take_more(void *old, size_t size) {
-    void *data = take(size);
+    void *data = paper_report_take(size);
     if (old == NULL) return data;
     const Block *block = (const Block *)((const char *)old - offsetof(Block, data));
     memcpy(data, old, block->size < size ? block->size : size);
     return data;
 }
 
-static void keep(void *data) { (void)data; }
+static void paper_report_keep(void *data) { (void)data; }
 
 static void free_blocks(void) {
     for (Block *block = memory.blocks, *next; block != NULL; block = next) {
@@ -66,7 +66,7 @@ static void free_blocks(void) {
 static bool markdown_memory_run(bool (*work)(void *context), void *context, Error *error) {
     cmark_mem *standard = cmark_get_default_mem_allocator();
     const cmark_mem before = *standard;
-    *standard = (cmark_mem){take_zeros, take_more, keep};
+    *standard = (cmark_mem){take_zeros, take_more, paper_report_keep};
     memory.begun = memory.done = false;
     if (setjmp(memory.full) == 0) {
         cmark_gfm_core_extensions_ensure_registered();
@@ -245,7 +245,7 @@ static bool fill_markdown(void *folder, FILE *out, Error *error) {
 
 static bool fill_html(void *page, FILE *out, Error *error) { return html_page_write(page, out, error); }
 
-static bool store(const char *text, size_t size, const char *folder, const char *name, Error *error) {
+static bool paper_report_store(const char *text, size_t size, const char *folder, const char *name, Error *error) {
     char path[PATH_MAX];
     return file_path(path, sizeof path, error, "%s/%s", folder, name) && file_write(path, text, size, error);
 }
@@ -256,8 +256,8 @@ bool paper_report_write(const char *folder, Error *error) {
     char *markdown = text_print(fill_markdown, (void *)folder, &size, "report", error);
     HtmlPage page = {markdown, (const char *)paper_report_css, folder};
     char *html = markdown != NULL ? text_print(fill_html, &page, &html_size, "report", error) : NULL;
-    const bool written = html != NULL && store(markdown, size, folder, "report.md", error) &&
-                         store(html, html_size, folder, "report.html", error);
+    const bool written = html != NULL && paper_report_store(markdown, size, folder, "report.md", error) &&
+                         paper_report_store(html, html_size, folder, "report.html", error);
     free(markdown);
     free(html);
     return written;

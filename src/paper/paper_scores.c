@@ -22,7 +22,7 @@
 enum { COMPONENTS = 2 };
 
 /* Change of the velocity of b relative to a: the label of the two outputs. */
-static double label(const Dataset *dataset, int64_t row, int k) {
+static double paper_scores_label(const Dataset *dataset, int64_t row, int k) {
     const float *changes = dataset->changes + row * PAIR_CHANGES;
     return (double)(changes[k + 3] - changes[k]);
 }
@@ -32,13 +32,13 @@ static void mean_label(const Dataset *dataset, double mean[COMPONENTS]) {
     mean[0] = mean[1] = 0;
     for (int64_t row = 0; row < dataset->rows; row++) {
         if (dataset_is_test(dataset, row)) continue;
-        for (int k = 0; k < COMPONENTS; k++) mean[k] += label(dataset, row, k);
+        for (int k = 0; k < COMPONENTS; k++) mean[k] += paper_scores_label(dataset, row, k);
         count++;
     }
     for (int k = 0; k < COMPONENTS; k++) mean[k] /= (double)count;
 }
 
-static bool score(const Dataset *dataset, const Network *network, TransferRow *result, Error *error) {
+static bool paper_scores_score(const Dataset *dataset, const Network *network, TransferRow *result, Error *error) {
     float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[COMPONENTS];
     if (scratch == NULL) return error_memory(error, "study");
     double mean[COMPONENTS], squares = 0, squares_constant = 0;
@@ -48,7 +48,8 @@ static bool score(const Dataset *dataset, const Network *network, TransferRow *r
         if (!dataset_is_test(dataset, row)) continue;
         network_predict(network, dataset->inputs + row * dataset_inputs(dataset), scratch, output);
         for (int k = 0; k < COMPONENTS; k++) {
-            const double right = label(dataset, row, k), e = (double)output[k] - right, c = mean[k] - right;
+            const double right = paper_scores_label(dataset, row, k), e = (double)output[k] - right,
+                         c = mean[k] - right;
             squares += e * e;
             squares_constant += c * c;
             count++;
@@ -89,7 +90,7 @@ bool transfer_study_run(const Dataset *const data[TRANSFER_SCENES], const Transf
     const int first = study->transfer ? 0 : PYRAMID;
     Network *network = train_stages(stages + first, TRANSFER_SCENES - first, study, progress, error);
     *row = (TransferRow){study->transfer, (double)study->seed, study->launches, NAN, NAN};
-    const bool ok = network != NULL && score(drawn, network, row, error);
+    const bool ok = network != NULL && paper_scores_score(drawn, network, row, error);
     network_destroy(network);
     dataset_destroy(drawn);
     return ok;

@@ -287,7 +287,8 @@ bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const ch
     return false;
 }
 
-static bool store(const PaperPlan *plan, const PaperPart *part, Network *network, FILE *lines, Error *error) {
+static bool paper_training_store(const PaperPlan *plan, const PaperPart *part, Network *network, FILE *lines,
+                                 Error *error) {
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
     snprintf(network->command, sizeof network->command, "twinbox paper: %s", plan->networks[part->index].name);
     if (!network_path(plan, part, path, error) || !network_write(network, path, error) ||
@@ -321,7 +322,8 @@ bool paper_training_write(PaperPlan *plan, const PaperPart *part, FILE *lines, c
     score.iteration = iterations;
     double accuracy = NAN;
     ok = ok && paper_accuracy(network, dataset, &accuracy, error) &&
-         write_network(lines, of, network, &score, accuracy, error) && store(plan, part, network, lines, error);
+         write_network(lines, of, network, &score, accuracy, error) &&
+         paper_training_store(plan, part, network, lines, error);
     network_destroy(network);
     return ok;
 }

@@ -250,7 +250,7 @@ static const double error_left = 13.5, error_width = 56; /* mm */
 static const double least_violation = 1e-12, most_violation = 1e12, share_shown = 1e-6;
 
 /* The value in a panel: the violation of its law, or the error over the constant predictor's. */
-static double measure(const LawRow *row, int panel) {
+static double plots_measure(const LawRow *row, int panel) {
     return panel == ERROR_PANEL ? row->test / row->constant : row->violation[panel - 1];
 }
 
@@ -275,8 +275,8 @@ static PlotAxis axis_of(const CsvTable *table, int panel) {
     bool zero = false;
     for (int i = 0; i < table->count; i++) {
         if (panel != ERROR_PANEL && rows[i].laws != panel - 1 && rows[i].laws < LAW_SET_ALL) continue;
-        plot_range_include(&range, measure(&rows[i], panel));
-        zero |= measure(&rows[i], panel) == 0;
+        plot_range_include(&range, plots_measure(&rows[i], panel));
+        zero |= plots_measure(&rows[i], panel) == 0;
     }
     if (panel == ERROR_PANEL) return error_axis(range);
     if (!(range.most > 0)) range = (PlotRange){0.1, 1};
@@ -317,7 +317,7 @@ static double reference_of(const CsvTable *table, int panel) {
     const LawRow *rows = table->rows;
     double value = panel == ERROR_PANEL ? 1 : NAN;
     for (int i = 0; i < table->count; i++)
-        if (panel != ERROR_PANEL && rows[i].laws == LAW_SET_ENGINE) value = measure(&rows[i], panel);
+        if (panel != ERROR_PANEL && rows[i].laws == LAW_SET_ENGINE) value = plots_measure(&rows[i], panel);
     return value;
 }
 
@@ -327,7 +327,7 @@ static bool laws_point(const void *of, int panel, int series, int i, PlotPoint *
     const LawRow *row = (const LawRow *)table->rows + i;
     if (series == REFERENCE) return plot_level(out, i, reference_of(table, panel));
     const bool none = row->laws == LAW_SET_NONE;
-    *out = (PlotPoint){none ? 0 : row->weight, measure(row, panel), isnan(row->seed) ? 0 : row->seed};
+    *out = (PlotPoint){none ? 0 : row->weight, plots_measure(row, panel), isnan(row->seed) ? 0 : row->seed};
     return is_in(series, panel) && is_used(table, series) && (none || row->laws == series);
 }
 

@@ -49,7 +49,7 @@ static double span_of(const TrainedRow *rows, int begin, int end) {
 }
 
 /* Index of the first row of the second half: the start of a group, such that the higher half is as low as possible. */
-static int split(const TrainedRow *rows, int count, double *span) {
+static int plots_pairs_split(const TrainedRow *rows, int count, double *span) {
     int best = count;
     *span = span_of(rows, 0, count);
     for (int i = 1; i < count; i++) {
@@ -133,8 +133,8 @@ static void draw_texts(const Factors *factors, Sketch *sketch, int half) {
     }
 }
 
-static bool draw(Factors *factors, PlotPage *page, const char *path, Error *error) {
-    factors->middle = split(factors->rows, factors->count, &factors->span);
+static bool plots_pairs_draw(Factors *factors, PlotPage *page, const char *path, Error *error) {
+    factors->middle = plots_pairs_split(factors->rows, factors->count, &factors->span);
     const PlotSpec spec = {
         .of = factors,
         .grid = {FIGURE_PAGE_WIDTH, factors_bottom + factors->span * factor_height + factors_top, plot_left,
@@ -163,7 +163,7 @@ bool plot_factors(const CsvTable *table, PlotPage *page, Error *error) {
     TrainedRow *rows = group_rows(table->rows, table->count);
     Factors factors = {.rows = rows, .count = table->count};
     const bool drawn =
-        rows != NULL ? draw(&factors, page, table->csv.path, error) : error_memory(error, table->csv.path);
+        rows != NULL ? plots_pairs_draw(&factors, page, table->csv.path, error) : error_memory(error, table->csv.path);
     free(rows);
     return drawn;
 }

@@ -46,8 +46,8 @@ typedef struct Data {
     SainRow *rows; /* [SAIN_FORMS, seeds, SAIN_SCENES] */
 } Data;
 
-static bool record(const SystemStudy *study, SainScene scene, int launches, bool scoring, ImpactProblems *problems,
-                   const Progress *progress, Error *error) {
+static bool sain_study_record(const SystemStudy *study, SainScene scene, int launches, bool scoring,
+                              ImpactProblems *problems, const Progress *progress, Error *error) {
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s.yaml", study->scenes, sain_scene_words[scene]);
     Scene *read = scene_read(path, error);
@@ -72,7 +72,7 @@ static void free_learner(Learner *learner) {
     sain_network_destroy(&learner->network);
 }
 
-static bool learn(Learner *learner, const Data *data, uint64_t seed, Error *error) {
+static bool sain_study_learn(Learner *learner, const Data *data, uint64_t seed, Error *error) {
     const int steps = data->study->quick ? QUICK_STEPS : STEPS;
     double loss;
     if (!sain_network_create(&learner->network, error) ||
@@ -92,7 +92,7 @@ static bool learn(Learner *learner, const Data *data, uint64_t seed, Error *erro
 }
 
 /* The engine alone is what the form that knows it would correct. */
-static bool score(Learner *learner, const Data *data, SainScene scene, SainRow *row, Error *error) {
+static bool sain_study_score(Learner *learner, const Data *data, SainScene scene, SainRow *row, Error *error) {
     SainSamples samples = {.form = learner->samples.form}, engine = {.form = SAIN_WITH_ENGINE};
     SainErrors errors = {0}, of_engine = {0};
     bool ok = sain_samples_add(&samples, &data->scored[scene], true, error) &&
@@ -113,11 +113,11 @@ static bool train_one(void *context, int i, Error *error) {
     const Data *data = context;
     const int form = i / data->seeds, seed = i % data->seeds;
     Learner learner = {.samples = {.form = (SainForm)form}};
-    bool ok = learn(&learner, data, data->study->seed + (uint64_t)seed * 7919, error);
+    bool ok = sain_study_learn(&learner, data, data->study->seed + (uint64_t)seed * 7919, error);
     for (SainScene scene = 0; ok && scene < SAIN_SCENES; scene++) {
         SainRow *row = &data->rows[i * SAIN_SCENES + (int)scene];
         *row = (SainRow){(int)scene, form, data->launches, seed + 1, 0, 0, 0};
-        ok = score(&learner, data, scene, row, error);
+        ok = sain_study_score(&learner, data, scene, row, error);
     }
     free_learner(&learner);
     return ok;
@@ -126,8 +126,9 @@ static bool train_one(void *context, int i, Error *error) {
 static bool record_all(Data *data, const Progress *progress, Error *error) {
     const int *counts = data->study->quick ? quick_held_out : held_out;
     for (SainScene scene = 0; scene < SAIN_SCENES; scene++)
-        if (!record(data->study, scene, counts[scene], true, &data->scored[scene], progress, error)) return false;
-    return record(data->study, SAIN_STACK, data->launches, false, &data->trained, progress, error);
+        if (!sain_study_record(data->study, scene, counts[scene], true, &data->scored[scene], progress, error))
+            return false;
+    return sain_study_record(data->study, SAIN_STACK, data->launches, false, &data->trained, progress, error);
 }
 
 /* One part for each number of launches; the quick study has the first and one more. */

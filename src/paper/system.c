@@ -72,7 +72,7 @@ static bool add_methods(Scores *scores, const char *system, const char *const *t
     return true;
 }
 
-static void shorten(Scores *scores) {
+static void system_shorten(Scores *scores) {
     const int frames = scores->plan->size->system_frames;
     for (int i = 0; i < scores->launched.count; i++)
         if (frames > 0 && frames < scores->launched.launches[i].frames) scores->launched.launches[i].frames = frames;
@@ -90,7 +90,7 @@ static bool scores_begin(Scores *scores, const PaperPlan *plan, int scene, Error
     scores->converged = calloc(launches, sizeof *scores->converged);
     if (scores->methods == NULL || scores->loops == NULL || scores->engine == NULL || scores->converged == NULL)
         return error_memory(error, path);
-    shorten(scores);
+    system_shorten(scores);
     bool ok = add_methods(scores, SYSTEM_RIVAL, rivals, error);
     for (int i = 0; ok && systems[i] != NULL; i++)
         ok = add_methods(scores, systems[i]->name, systems[i]->methods, error);

@@ -110,7 +110,7 @@ typedef struct Tag {
     const char *end;            /* in the template: what follows the tag */
 } Tag;
 
-static bool fail(const Filling *filling, const char *what, const char *text) {
+static bool template_fail(const Filling *filling, const char *what, const char *text) {
     return error_input(filling->error, "report template", "%s: '%s'", what, text);
 }
 
@@ -119,7 +119,7 @@ static const char *skip_line_end(const char *text) { return text + (*text == '\n
 static bool read_tag(const Filling *filling, const char *from, Tag *tag) {
     const char *end = strstr(from, "}}");
     const size_t length = end != NULL ? (size_t)(end - from) - 2 : MAX_TAG_SIZE;
-    if (length >= MAX_TAG_SIZE) return fail(filling, "a tag without }} or too long", "{{");
+    if (length >= MAX_TAG_SIZE) return template_fail(filling, "a tag without }} or too long", "{{");
     memcpy(tag->text, from + 2, length);
     tag->text[length] = '\0';
     tag->end = end + 2;
@@ -129,7 +129,7 @@ static bool read_tag(const Filling *filling, const char *from, Tag *tag) {
          word = strtok_r(NULL, " ", &rest))
         tag->words[count++] = word;
     tag->words[count] = NULL;
-    return count > 0 || fail(filling, "an empty tag", "{{}}");
+    return count > 0 || template_fail(filling, "an empty tag", "{{}}");
 }
 
 static bool make_path(const Filling *filling, const char *name, char path[PATH_MAX]) {
@@ -159,7 +159,7 @@ static const char *find_value(const Scope *scope, const char *name) {
 static bool find_number(const Filling *filling, const Scope *scope, const char *name, double *number) {
     const char *value = find_value(scope, name);
     if (!parse_double(value != NULL ? value : name, number)) *number = NAN;
-    return value != NULL || !isnan(*number) || fail(filling, "no value has this name", name);
+    return value != NULL || !isnan(*number) || template_fail(filling, "no value has this name", name);
 }
 
 static bool fill_number(const Filling *filling, char *name, const char *format, const Scope *scope) {
@@ -170,7 +170,8 @@ static bool fill_number(const Filling *filling, char *name, const char *format, 
         if (!find_number(filling, scope, slash + 1, &divisor)) return false;
     }
     if (!find_number(filling, scope, name, &value)) return false;
-    return template_write_number(filling->out, value / divisor, format) || fail(filling, "unknown format", format);
+    return template_write_number(filling->out, value / divisor, format) ||
+           template_fail(filling, "unknown format", format);
 }
 
 static bool fill_value(const Filling *filling, const Tag *tag, const Scope *scope) {
@@ -180,7 +181,7 @@ static bool fill_value(const Filling *filling, const Tag *tag, const Scope *scop
     const bool whole = tag->words[1] != NULL && strcmp(tag->words[1], "text") == 0;
     if (tag->words[1] != NULL && !whole) return fill_number(filling, tag->words[0], tag->words[1], scope);
     const char *value = find_value(scope, tag->words[0]);
-    if (value == NULL) return fail(filling, "no value has this name", tag->words[0]);
+    if (value == NULL) return template_fail(filling, "no value has this name", tag->words[0]);
     if (whole) return template_write_line(filling->out, value, tag->words[0], filling->error);
     template_write_text(filling->out, value);
     return true;
@@ -205,13 +206,13 @@ static bool filter_row(const Filling *filling, const Scope *row, char *const *fi
         snprintf(name, sizeof name, "%.*s", (int)length, *filters);
         const char *own = find_in_row(row->csv, row->row, name);
         const char *wanted = (*filters)[length] == '=' ? *filters + length + 1 : find_value(row->outer, name);
-        if (own == NULL || wanted == NULL) return fail(filling, "no value to filter by", name);
+        if (own == NULL || wanted == NULL) return template_fail(filling, "no value to filter by", name);
         *passes &= is_among(own, wanted);
     }
     return true;
 }
 
-static bool fill(const Filling *filling, const char *from, const char *end, const Scope *scope);
+static bool fill_template(const Filling *filling, const char *from, const char *end, const Scope *scope);
 
 /* end: where the text to repeat ends. */
 static bool fill_rows(const Filling *filling, const Tag *tag, const char *end, const Scope *outer) {
@@ -222,7 +223,7 @@ static bool fill_rows(const Filling *filling, const Tag *tag, const char *end, c
     bool filled = true, passes;
     for (Scope row = {outer, &csv, 1}; filled && row.row < csv.rows; row.row++)
         filled = filter_row(filling, &row, tag->words + 2, &passes) &&
-                 (!passes || fill(filling, skip_line_end(tag->end), end, &row));
+                 (!passes || fill_template(filling, skip_line_end(tag->end), end, &row));
     csv_free(&csv);
     return filled;
 }
@@ -240,7 +241,7 @@ static const char *find_end(const char *from) {
 }
 
 /* Fills the template up to `end`. */
-static bool fill(const Filling *filling, const char *from, const char *end, const Scope *scope) {
+static bool fill_template(const Filling *filling, const char *from, const char *end, const Scope *scope) {
     for (;;) {
         const char *next = strstr(from, "{{");
         if (next == NULL || next > end) next = end;
@@ -250,7 +251,8 @@ static bool fill(const Filling *filling, const char *from, const char *end, cons
         if (!read_tag(filling, next, &tag)) return false;
         if (strcmp(tag.words[0], "each") == 0) {
             const char *rows_end = find_end(tag.end);
-            if (rows_end == NULL || tag.words[1] == NULL) return fail(filling, "a tag without FILE or {{end}}", "each");
+            if (rows_end == NULL || tag.words[1] == NULL)
+                return template_fail(filling, "a tag without FILE or {{end}}", "each");
             if (!fill_rows(filling, &tag, rows_end, scope)) return false;
             from = skip_line_end(rows_end + strlen(end_tag));
         } else {
@@ -266,7 +268,7 @@ bool template_fill(const char *template, const char *folder, const char *values,
     Csv csv;
     if (!make_path(&filling, values, path) || !csv_read(&csv, path, MAX_SIZE, 1, MAX_ROWS, error)) return false;
     const Scope scope = {NULL, &csv, 0};
-    const bool filled = fill(&filling, template, template + strlen(template), &scope);
+    const bool filled = fill_template(&filling, template, template + strlen(template), &scope);
     csv_free(&csv);
     return filled;
 }

@@ -87,7 +87,7 @@ static void average(View *to, const View *from, int frames, int reach) {
     }
 }
 
-static void smooth(View *views, View *spare, int frames, double steps) {
+static void camera_smooth(View *views, View *spare, int frames, double steps) {
     double reach = fmin(fmin(steps / 2, frames), MAX_REACH);
     for (int i = 0; i < PASSES; i++) {
         average(spare, views, frames, (int)rint(reach));
@@ -110,7 +110,7 @@ Camera *camera_path(const Trajectory *const *runs, int frames, LookCamera kind, 
     if (kind == LOOK_DIVERGENCE && events->divergence >= 0)
         target_divergence(views, runs[0], frames, events, &whole, width, height);
     double smoothing = kind == LOOK_BOMB ? BOMB_SMOOTHING : SMOOTHING;
-    smooth(views, views + frames, frames, smoothing / (double)runs[0]->dt);
+    camera_smooth(views, views + frames, frames, smoothing / (double)runs[0]->dt);
     for (int frame = 0; frame < frames; frame++) path[frame] = camera_of(&views[frame], width, height);
     free(views);
     return path;

@@ -105,16 +105,16 @@ void caption_method(const Picture *picture, int run, char name[CAPTION_TEXT_SIZE
 }
 
 /* The last part, the method's description, is the one that gets cut short. */
-static void join(char *text, size_t size, const char *part) {
+static void caption_join(char *text, size_t size, const char *part) {
     size_t used = strlen(text);
     if (part != NULL && part[0] != '\0') snprintf(text + used, size - used, "%s%s", used > 0 ? "; " : "", part);
 }
 
 void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size) {
     text[0] = '\0';
-    join(text, size, picture->notes[run]);
-    join(text, size, picture->look.costs[run]);
-    join(text, size, note);
+    caption_join(text, size, picture->notes[run]);
+    caption_join(text, size, picture->look.costs[run]);
+    caption_join(text, size, note);
 }
 
 int caption_name_draw(const Picture *picture, const Font *font, const char *name, int x, int baseline, int room,
@@ -141,7 +141,7 @@ static size_t without_spaces(const char *text, size_t length) {
     return length;
 }
 
-static bool fits(const Font *font, const char *text, size_t length, int room) {
+static bool caption_fits(const Font *font, const char *text, size_t length, int room) {
     char line[CAPTION_TEXT_SIZE];
     snprintf(line, sizeof line, "%.*s", (int)length, text);
     return font_width(font, line) <= room;
@@ -153,7 +153,7 @@ static size_t line_length(const Font *font, const char *text, int room) {
     for (const char *next = text; *next != '\0';) {
         type_next_code(&next);
         const size_t length = (size_t)(next - text);
-        if (!fits(font, text, without_spaces(text, length), room)) break;
+        if (!caption_fits(font, text, without_spaces(text, length), room)) break;
         characters = length;
         if (*next == ' ' || *next == '\0' || next[-1] == ':' || next[-1] == ',') words = length;
     }
@@ -166,7 +166,7 @@ static size_t line_length(const Font *font, const char *text, int room) {
 /* If no word fits beside the numbers, the text begins below them. */
 static bool begins_below(const Font *font, const char *text, int first, int others) {
     const size_t word = strcspn(text, " :,");
-    return !fits(font, text, word, first) && first < others && fits(font, text, word, others);
+    return !caption_fits(font, text, word, first) && first < others && caption_fits(font, text, word, others);
 }
 
 TextLines text_lines(const Font *font, const char *text, int first, int others) {

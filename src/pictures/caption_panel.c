@@ -23,7 +23,7 @@ typedef struct Card {
     int left, right;
 } Card;
 
-static Card begin(const Picture *picture, Drawing *drawing) {
+static Card caption_panel_begin(const Picture *picture, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     double unit = fmin(layout->height, 0.75 * layout->width);
     int margin = (int)rint((1 - WIDTH) / 2 * layout->width);
@@ -44,7 +44,8 @@ static int head_baseline(const Card *card, int lines, int rows) {
     return (int)rint(0.46 * card->picture->layout.height - height / 2 + 0.07 * card->unit);
 }
 
-static void add(const Card *card, const Font *font, const char *text, int x, int baseline, int right, uint32_t color) {
+static void caption_panel_add(const Card *card, const Font *font, const char *text, int x, int baseline, int right,
+                              uint32_t color) {
     font_add_fitting(card->drawing, font, text, x, baseline, right - x, color);
 }
 
@@ -91,7 +92,7 @@ static int add_method(const Card *card, int run, const char *name, int baseline,
 }
 
 TextLines card_head(const Picture *picture, MomentKind kind) {
-    const Card card = begin(picture, NULL);
+    const Card card = caption_panel_begin(picture, NULL);
     char title[CAPTION_TEXT_SIZE];
     caption_title(picture, title);
     const char *text = kind == MOMENT_END && picture->look.end != NULL ? picture->look.end : title;
@@ -106,7 +107,8 @@ static int draw_head(const Card *card, MomentKind kind) {
     const int last = head_baseline(card, lines, bare ? 0 : card->picture->count);
     for (int i = 0; i < lines; i++) {
         const int baseline = last - (int)rint((lines - 1 - i) * HEAD_LINE * card->unit);
-        add(card, &card->head, head.lines[i], card->left, baseline, card->right, card->picture->theme->ink);
+        caption_panel_add(card, &card->head, head.lines[i], card->left, baseline, card->right,
+                          card->picture->theme->ink);
     }
     return last;
 }
@@ -124,7 +126,8 @@ static void draw_title(const Card *card) {
     const int first = draw_head(card, MOMENT_TITLE);
     snprintf(text, sizeof text, "scene %s, %.3g s", picture->runs[0]->scene,
              (picture->frames - 1) * (double)picture->runs[0]->dt);
-    add(card, &card->subhead, text, card->left, first + (int)rint(0.055 * card->unit), card->right, theme->ink_soft);
+    caption_panel_add(card, &card->subhead, text, card->left, first + (int)rint(0.055 * card->unit), card->right,
+                      theme->ink_soft);
     for (int run = 0; run < picture->count; run++) {
         int baseline = row_baseline(card, first, run) + (int)rint(0.03 * card->unit);
         caption_method(picture, run, name, note);
@@ -134,7 +137,8 @@ static void draw_title(const Card *card) {
         int x = add_method(card, run, name, baseline, card->right) + card->row.pixels / 2;
         if (below) x = names_left(card), baseline += (int)rint(NOTES_DROP * card->unit);
         const bool fits = font_width(&card->cell, text) <= card->right - x;
-        add(card, fits ? &card->cell : &picture->layout.axis, text, x, baseline, card->right, theme->ink_soft);
+        caption_panel_add(card, fits ? &card->cell : &picture->layout.axis, text, x, baseline, card->right,
+                          theme->ink_soft);
     }
 }
 
@@ -215,7 +219,7 @@ static void draw_end(const Card *card) {
     caption_method(picture, base, title, note);
     snprintf(text, sizeof text, picture->count > 1 ? "distance from %s" : "%s", title);
     int baseline = first + (int)rint(0.065 * card->unit);
-    add(card, &card->cell, text, card->left, baseline, columns[0] - column, theme->ink_soft);
+    caption_panel_add(card, &card->cell, text, card->left, baseline, columns[0] - column, theme->ink_soft);
     for (int i = 0; i < 3 && picture->count > 1; i++)
         add_right(card, &card->cell, heads[i], columns[i], baseline, theme->ink_soft);
     draw_rule(card, baseline + (int)rint(0.02 * card->unit));
@@ -228,7 +232,7 @@ static void draw_end(const Card *card) {
 }
 
 void card_draw(const Picture *picture, Moment moment, Drawing *drawing) {
-    Card card = begin(picture, drawing);
+    Card card = caption_panel_begin(picture, drawing);
     drawing->static_shapes = 0;
     if (moment.kind == MOMENT_TITLE)
         draw_title(&card);

@@ -60,7 +60,7 @@ static Layout choose_grid(const Picture *picture, const CameraFrame *frame, int 
 }
 
 /* The side of a panel that is `whole` pixels long and of which the scene needs `needed`. */
-static int shrink(int whole, double needed, double share, double least) {
+static int panel_shrink(int whole, double needed, double share, double least) {
     if (needed >= share * whole) return whole;
     return (int)fmin(whole, ceil(fmax(needed / FULL_SHARE, least)));
 }
@@ -75,8 +75,8 @@ static void shrink_panels(Picture *picture, const CameraFrame *frame) {
     if (picture->look.camera != LOOK_FIT) return;
     const bool keep_width = picture->look.compare == LOOK_OVERLAY;
     const int narrow =
-        keep_width ? width : shrink(width, scale * (double)size.x, LEAST_SHARE_X, LEAST_PANEL_WIDTH * em);
-    const int low = shrink(height, scale * (double)size.y, LEAST_SHARE_Y, LEAST_PANEL_HEIGHT * em);
+        keep_width ? width : panel_shrink(width, scale * (double)size.x, LEAST_SHARE_X, LEAST_PANEL_WIDTH * em);
+    const int low = panel_shrink(height, scale * (double)size.y, LEAST_SHARE_Y, LEAST_PANEL_HEIGHT * em);
     if (narrow < width || low < height) layout_shrink_panels(layout, picture->panel_count, narrow, low);
 }
 
@@ -324,7 +324,7 @@ bool scales_measure(const Trajectory *run, ScaleMeasures *measures, Error *error
 }
 
 /* Sets the pixels per unit, and the value of the legend's arrow. */
-static void choose(double *scale, double *legend, double value, double pixels, double max_legend) {
+static void panel_choose(double *scale, double *legend, double value, double pixels, double max_legend) {
     *scale = value > 1e-9 ? pixels / value : pixels;
     *legend = round_down(fmin(max_legend / *scale, 5e12));
 }
@@ -337,10 +337,10 @@ bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, 
     if (!scales_measure(run, &measures, error)) return false;
     const double box = scales->box = scale * measures.box, legend = fmin(LEGEND_ARROW * side, LEGEND_ARROW_BOXES * box);
     scales->max_arrow = fmin(MAX_ARROW * side, MAX_ARROW_BOXES * box);
-    choose(&scales->impulse, &scales->legend_impulse, measures.impulse,
-           fmin(COMMON_ARROW * side, COMMON_ARROW_BOXES * box), legend);
-    choose(&scales->velocity, &scales->legend_velocity, measures.speed,
-           fmin(FASTEST_ARROW * side, FASTEST_ARROW_BOXES * box), legend);
+    panel_choose(&scales->impulse, &scales->legend_impulse, measures.impulse,
+                 fmin(COMMON_ARROW * side, COMMON_ARROW_BOXES * box), legend);
+    panel_choose(&scales->velocity, &scales->legend_velocity, measures.speed,
+                 fmin(FASTEST_ARROW * side, FASTEST_ARROW_BOXES * box), legend);
     double power = 1;
     for (scales->last_decade = 0; power < largest_distance && scales->last_decade < SCALE_LAST_DECADE; power *= 10)
         scales->last_decade++;

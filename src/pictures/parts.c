@@ -29,7 +29,7 @@ static Shape styled_box(const Picture *picture, double width, double height, con
                    .band_color = colors->band};
 }
 
-static void place(Shape *shape, const Picture *picture, int panel, const Pose *pose) {
+static void parts_place(Shape *shape, const Picture *picture, int panel, const Pose *pose) {
     Point at = panel_point(picture, panel, pose->x, pose->y);
     shape->x = at.x, shape->y = at.y;
     shape->cosine = cos(pose->angle), shape->sine = sin(pose->angle);
@@ -84,7 +84,7 @@ static Shape body_shape(const Picture *picture, int panel, int run, Moment momen
     Shape shape =
         styled_box(picture, scale * (double)trajectory->size[body].x, scale * (double)trajectory->size[body].y, colors);
     Pose pose = pose_at(trajectory, moment, body);
-    place(&shape, picture, panel, &pose);
+    parts_place(&shape, picture, panel, &pose);
     return shape;
 }
 
@@ -431,9 +431,9 @@ enum { MARK_REACH = 8 }; /* pixels that the mark of the present time reaches bey
 
 /* The heights of a line of text above and below its baseline. */
 static int above(const Font *font) { return font->pixels; }
-static int below(const Font *font) { return font->pixels * 3 / 8; }
+static int parts_below(const Font *font) { return font->pixels * 3 / 8; }
 
-static int add(Part *parts, int count, PartKind kind, int panel, Rect rect) {
+static int parts_add(Part *parts, int count, PartKind kind, int panel, Rect rect) {
     parts[count] = (Part){kind, panel, rect};
     return count + 1;
 }
@@ -443,19 +443,19 @@ static int add_panel(Part *parts, int count, const Layout *layout, int panel) {
     const Rect *rect = &layout->panels[panel];
     const int baseline = rect->top - layout->title_rise - (layout->caption_lines - 1) * layout->caption_pitch,
               line = layout->hairline, half = layout->axis.pixels / 2;
-    count = add(parts, count, PART_CAPTION, panel,
-                (Rect){rect->left, baseline - above(&layout->title), rect->right, rect->top - line});
-    count = add(parts, count, PART_AXIS, panel,
-                (Rect){rect->left - layout->axis.pixels, rect->bottom, rect->right + line,
-                       rect->bottom + layout->axis_drop + below(&layout->axis)});
+    count = parts_add(parts, count, PART_CAPTION, panel,
+                      (Rect){rect->left, baseline - above(&layout->title), rect->right, rect->top - line});
+    count = parts_add(parts, count, PART_AXIS, panel,
+                      (Rect){rect->left - layout->axis.pixels, rect->bottom, rect->right + line,
+                             rect->bottom + layout->axis_drop + parts_below(&layout->axis)});
     if (panel % layout->columns != 0) return count;
-    return add(parts, count, PART_AXIS, panel, (Rect){0, rect->top - half, rect->left, rect->bottom + half});
+    return parts_add(parts, count, PART_AXIS, panel, (Rect){0, rect->top - half, rect->left, rect->bottom + half});
 }
 
 /* Half of the distance between rows, and a pixel for rounding, above and below the middle of the text: arrows are higher
    than characters. */
 static Rect legend_rect(const Layout *layout) {
-    const int middle = layout->legend_baseline - below(&layout->axis), half = layout->legend_pitch / 2 + 1;
+    const int middle = layout->legend_baseline - parts_below(&layout->axis), half = layout->legend_pitch / 2 + 1;
     return (Rect){0, middle - half, layout->width, middle + (layout->legend_rows - 1) * layout->legend_pitch + half};
 }
 
@@ -463,7 +463,7 @@ static Rect legend_rect(const Layout *layout) {
 static Rect timeline_rect(const Layout *layout) {
     const Rect *plot = &layout->timeline;
     const bool text = layout->axis.glyphs != NULL;
-    const int foot = text ? int_max(layout->axis_drop + below(&layout->axis), MARK_REACH) : MARK_REACH;
+    const int foot = text ? int_max(layout->axis_drop + parts_below(&layout->axis), MARK_REACH) : MARK_REACH;
     const int top = text ? layout->key_baseline - above(&layout->method) : plot->top - layout->left;
     return (Rect){0, top, layout->width, plot->bottom + foot};
 }
@@ -473,12 +473,12 @@ int parts_find(const Picture *picture, Part parts[PARTS_MAX]) {
     const bool text = layout->axis.glyphs != NULL;
     int count = 0;
     if (text)
-        count = add(parts, count, PART_HEADER, -1,
-                    (Rect){0, 0, layout->width,
-                           layout->header_baseline + (layout->header_lines - 1) * layout->header_pitch +
-                               below(&layout->scene)});
+        count = parts_add(parts, count, PART_HEADER, -1,
+                          (Rect){0, 0, layout->width,
+                                 layout->header_baseline + (layout->header_lines - 1) * layout->header_pitch +
+                                     parts_below(&layout->scene)});
     for (int panel = 0; text && panel < picture->panel_count; panel++) count = add_panel(parts, count, layout, panel);
-    if (layout->legend_baseline > 0) count = add(parts, count, PART_LEGEND, -1, legend_rect(layout));
-    if (picture->curves != NULL) count = add(parts, count, PART_TIMELINE, -1, timeline_rect(layout));
+    if (layout->legend_baseline > 0) count = parts_add(parts, count, PART_LEGEND, -1, legend_rect(layout));
+    if (picture->curves != NULL) count = parts_add(parts, count, PART_TIMELINE, -1, timeline_rect(layout));
     return count;
 }

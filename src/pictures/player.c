@@ -23,7 +23,7 @@ static const double SMALL = 1e-2; /* of common impulses: shorter arrows cannot b
 
 typedef bool IsThere(const Trajectory *first, const Trajectory *run, int frame, int body);
 
-static bool differs(const Trajectory *first, const Trajectory *run, int frame, int body) {
+static bool player_differs(const Trajectory *first, const Trajectory *run, int frame, int body) {
     return !trajectory_same_state(first, run, frame, body);
 }
 
@@ -33,7 +33,7 @@ static bool is_apart(const Trajectory *first, const Trajectory *run, int frame, 
 }
 
 /* The first frame and body for which it holds; -1, -1: none. */
-static void find(const Trajectory *first, const Trajectory *run, IsThere *is_there, int *frame, int *body) {
+static void player_find(const Trajectory *first, const Trajectory *run, IsThere *is_there, int *frame, int *body) {
     const int frames = first->frames < run->frames ? first->frames : run->frames;
     for (*frame = 0; *frame < frames; ++*frame)
         for (*body = 0; *body < run->bodies; ++*body)
@@ -49,8 +49,8 @@ static void find_marks(Player *player, int index) {
     run->differs_frame = run->apart_frame = -1;
     run->compared = index == 0 || !trajectory_different_worlds(first, trajectory, run->why, sizeof run->why);
     if (index == 0 || !run->compared) return;
-    find(first, trajectory, differs, &run->differs_frame, &run->differs_body);
-    find(first, trajectory, is_apart, &run->apart_frame, &run->apart_body);
+    player_find(first, trajectory, player_differs, &run->differs_frame, &run->differs_body);
+    player_find(first, trajectory, is_apart, &run->apart_frame, &run->apart_body);
     run->differs_frame = player_stored(&player->frames, run->differs_frame);
     run->apart_frame = player_stored(&player->frames, run->apart_frame);
 }
@@ -385,7 +385,7 @@ static bool check_steps(const Trajectory *const *runs, int count, Error *error) 
     return true;
 }
 
-static bool plan(Player *player, const Trajectory *const *runs, int count, Error *error) {
+static bool player_plan(Player *player, const Trajectory *const *runs, int count, Error *error) {
     const PlayerOptions *options = player->options;
     const RenderOptions look = {
         .width = WIDTH, .height = HEIGHT, .describe = options->describe, .colours = options->colours};
@@ -416,7 +416,7 @@ bool player_write(const Trajectory *const *runs, int count, const PlayerOptions 
                   PlayerResult *result, Error *error) {
     Player player = {.options = options,
                      .most_bytes = options->most_bytes > 0 ? (double)options->most_bytes : PLAYER_MAX_BYTES};
-    const bool ok = plan(&player, runs, count, error) && find_all_marks(&player, error) &&
+    const bool ok = player_plan(&player, runs, count, error) && find_all_marks(&player, error) &&
                     player_pack(&player, error) && (options->live == NULL || player_live_pack(&player, error)) &&
                     bytes_deflate(&player.viewer, player_viewer, strlen(player_viewer), error) &&
                     write_page(&player, path, result, error);

@@ -37,7 +37,7 @@ bool bytes_deflate(Bytes *bytes, const void *data, size_t size, Error *error) {
 
 enum { COMPONENTS = 6, POSES = 3 }; /* velocities first, then poses */
 
-static float component(const Trajectory *run, size_t i, int which) {
+static float player_pack_component(const Trajectory *run, size_t i, int which) {
     switch (which) {
     case 0: return run->velocity[i].x;
     case 1: return run->velocity[i].y;
@@ -69,10 +69,12 @@ static void put_component(uint8_t *planes, const Trajectory *run, const PlayerFr
             const size_t at = (size_t)player_frame(frames, begin + (int)k) * bodies + body;
             const size_t before = at - (size_t)frames->every * bodies;
             uint32_t predicted = 0;
-            if (k > 0 && which < POSES) predicted = bits_of(component(run, before, which));
+            if (k > 0 && which < POSES) predicted = bits_of(player_pack_component(run, before, which));
             if (k > 0 && which >= POSES)
-                predicted = predict_pose(component(run, before, which), component(run, at, which - POSES), dt);
-            bytes_put(planes, count, body * length + k, bytes_zigzag(bits_of(component(run, at, which)) - predicted));
+                predicted = predict_pose(player_pack_component(run, before, which),
+                                         player_pack_component(run, at, which - POSES), dt);
+            bytes_put(planes, count, body * length + k,
+                      bytes_zigzag(bits_of(player_pack_component(run, at, which)) - predicted));
         }
 }
 
@@ -135,7 +137,7 @@ static Rounded round_contact(const TrajectoryContact *contact, Vec2 center, cons
 }
 
 /* The contact with these keys from `from` on; NULL: not among the next ones. */
-static const Rounded *find(const Rounded *before, size_t count, size_t *from, const uint32_t keys[KEYS]) {
+static const Rounded *player_pack_find(const Rounded *before, size_t count, size_t *from, const uint32_t keys[KEYS]) {
     for (size_t i = *from; i < count && i < *from + SEARCH; i++)
         if (memcmp(before[i].keys, keys, sizeof before[i].keys) == 0) {
             *from = i + 1;
@@ -167,7 +169,7 @@ static size_t round_frame(Rounded *rounded, const Trajectory *run, const PlayerF
 static void put_frame(uint8_t *columns, size_t total, size_t at, const Rounded *now, size_t count,
                       const Rounded *before, size_t before_count) {
     for (size_t i = 0, from = 0; i < count; i++) {
-        const Rounded *same = find(before, before_count, &from, now[i].keys);
+        const Rounded *same = player_pack_find(before, before_count, &from, now[i].keys);
         for (size_t key = 0; key < KEYS; key++) bytes_put(columns + key * 4 * total, total, at + i, now[i].keys[key]);
         for (size_t value = 0; value < VALUES; value++) {
             const uint32_t old = same != NULL ? (uint32_t)same->values[value] : 0;
@@ -237,7 +239,7 @@ static double unpacked_size(const Player *player) {
 
 /* `done` of all chunks take `size` bytes. If frames are left out, the prediction of poses is worse: they take up to twice the
    room. */
-static bool refuse(const Player *player, double size, int done, int chunks, Error *error) {
+static bool player_pack_refuse(const Player *player, double size, int done, int chunks, Error *error) {
     const double all = size * chunks / done, worst = fmin(2 * all, unpacked_size(player));
     const int every = player->frames.every * ((int)(worst / player->most_bytes) + 1);
     return error_input(
@@ -264,7 +266,7 @@ static bool pack_states(Player *player, double *size, Error *error) {
                              chunk_end(run, k), error))
                 return false;
             *size += base64_size((double)run->states[k].size);
-            if (*size > player->most_bytes) return refuse(player, *size, done + 1, chunks, error);
+            if (*size > player->most_bytes) return player_pack_refuse(player, *size, done + 1, chunks, error);
             done++;
         }
     }
@@ -292,7 +294,7 @@ static bool pack_contacts_of(Player *player, int index, double *size, Error *err
 
 bool player_pack(Player *player, Error *error) {
     double size = fixed_size(player);
-    if (size > player->most_bytes) return refuse(player, size, 1, 1, error);
+    if (size > player->most_bytes) return player_pack_refuse(player, size, 1, 1, error);
     if (!pack_states(player, &size, error)) return false;
     for (int i = 0; i < player->picture.count; i++)
         if (!player_run_is_live(player, i) && !player->picture.runs[i]->no_contacts &&

@@ -50,7 +50,7 @@ static void plan_slow(MomentPlan *plan, int impact, int slow, double dt) {
         plan->slow = slow;
 }
 
-static bool check(const RenderOptions *options, Error *error) {
+static bool render_check(const RenderOptions *options, Error *error) {
     if (options->slow < 0 || options->slow > RENDER_SLOW_MAX)
         return error_input(error, "render", "the slow-motion factor must be 0 to %d (got %d)", RENDER_SLOW_MAX,
                            options->slow);
@@ -120,7 +120,7 @@ bool moments_plan(MomentPlan *plan, const Trajectory *const *panels, int panel_c
                   const RenderOptions *options, Error *error) {
     const double dt = (double)panels[0]->dt;
     *plan = (MomentPlan){.first = first, .last = last, .slow = 1, .slow_first = first, .slow_last = first, .speed = 1};
-    if (!check(options, error) || !choose_rate(plan, options, dt, error)) return false;
+    if (!render_check(options, error) || !choose_rate(plan, options, dt, error)) return false;
     const double hold = nearest(options->hold * plan->rate), card = at_least_one(card_seconds, plan->rate);
     if (hold + 2 * card > INT_MAX)
         return error_input(error, "render", "too many pictures for one sequence: time steps of %g s are too short", dt);
@@ -186,7 +186,7 @@ static int last_of(const Ranges *ranges, int64_t piece) {
     return int_min(first_of(ranges, piece + 1) - 1, ranges->all.last);
 }
 
-static void describe(void *context, int64_t piece, PieceInfo *info) {
+static void render_describe(void *context, int64_t piece, PieceInfo *info) {
     const Ranges *ranges = context;
     const int first = first_of(ranges, piece), last = last_of(ranges, piece);
     snprintf(info->name, sizeof info->name, "pictures %d-%d", first, last);
@@ -194,7 +194,7 @@ static void describe(void *context, int64_t piece, PieceInfo *info) {
     info->alone = true; /* its processes take all cores */
 }
 
-static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+static bool render_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
     const Ranges *ranges = context;
     WorkerJob job = ranges->all;
     const Manifest *manifest = job.manifest;
@@ -219,7 +219,7 @@ static bool read_line(const char **text, int index, PictureHashes *hashes) {
 }
 
 /* Whether the frames are as the shard left them. */
-static bool whole(void *context, int64_t piece, const char *results, size_t size, bool *there, Error *error) {
+static bool render_whole(void *context, int64_t piece, const char *results, size_t size, bool *there, Error *error) {
     const Ranges *ranges = context;
     const char *text = results;
     *there = true;
@@ -263,9 +263,9 @@ static bool sequence_pieces_do(const WorkerJob *job, RenderStudy *study, const P
     Ranges ranges;
     plan_ranges(&ranges, job);
     const PiecePlan plan = {.count = (job->last - job->first) / ranges.size + 1,
-                            .describe = describe,
-                            .work = work,
-                            .whole = whole,
+                            .describe = render_describe,
+                            .work = render_work,
+                            .whole = render_whole,
                             .context = &ranges};
     study_key_add(study->key, job->manifest->head, strlen(job->manifest->head));
     if (!manifest_check(job->manifest, error) ||

@@ -15,12 +15,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void append(char *text, size_t size, const char *part) {
+static void renderer_append(char *text, size_t size, const char *part) {
     size_t used = strlen(text);
     snprintf(text + used, size - used, "%s%s", used == 0 ? "" : " | ", part);
 }
 
-static void add(FrameTexts *texts, const char *key, const char *value) {
+static void renderer_add(FrameTexts *texts, const char *key, const char *value) {
     texts->entries[texts->count++] = (ImageText){key, value};
 }
 
@@ -36,19 +36,19 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) 
         char hash[20];
         int shown = picture_run_frame(picture, i, moment.frame);
         snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, shown));
-        append(texts->methods, sizeof texts->methods, run->method);
-        append(texts->states, sizeof texts->states, hash);
+        renderer_append(texts->methods, sizeof texts->methods, run->method);
+        renderer_append(texts->states, sizeof texts->states, hash);
     }
     snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
     frame_part_text(texts->part, sizeof texts->part, moment);
-    add(texts, "Scene", picture->runs[0]->scene);
-    add(texts, "Method", texts->methods);
-    add(texts, "Frame", texts->frame);
-    if (moment.kind == MOMENT_BETWEEN) add(texts, "Part", texts->part);
-    if (moment.kind == MOMENT_TITLE) add(texts, "Card", "title");
-    if (moment.kind == MOMENT_END) add(texts, "Card", "end");
-    add(texts, "State", texts->states);
-    add(texts, "Software", "twinbox");
+    renderer_add(texts, "Scene", picture->runs[0]->scene);
+    renderer_add(texts, "Method", texts->methods);
+    renderer_add(texts, "Frame", texts->frame);
+    if (moment.kind == MOMENT_BETWEEN) renderer_add(texts, "Part", texts->part);
+    if (moment.kind == MOMENT_TITLE) renderer_add(texts, "Card", "title");
+    if (moment.kind == MOMENT_END) renderer_add(texts, "Card", "end");
+    renderer_add(texts, "State", texts->states);
+    renderer_add(texts, "Software", "twinbox");
 }
 
 /* A context and what is drawn in it. */
@@ -58,7 +58,7 @@ typedef struct Painter {
     Canvas *canvas;
 } Painter;
 
-static void trace(const Context *context) {
+static void renderer_trace(const Context *context) {
     enum { RENDERER = 0x1F01 /* GL_RENDERER */ };
     const GlFunction found = context->kind->find(context->state, "glGetString");
     const unsigned char *(*get_string)(unsigned);
@@ -72,7 +72,7 @@ static bool painter_open(Painter *painter, ContextChoice choice, int width, int 
     Context *context = &painter->context;
     if (!context_create(context, choice, error) || !gl_load(&painter->gl, context->kind->find, context->state, error))
         return false;
-    if (traced) trace(context);
+    if (traced) renderer_trace(context);
     painter->canvas = canvas_create(&painter->gl, width, height, error);
     return painter->canvas != NULL;
 }
@@ -124,13 +124,13 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
 }
 
 /* `changed` NULL: paint everything. */
-static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
+static bool renderer_paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
     return context_make_current(&renderer->painter.context, error) &&
            canvas_paint(renderer->painter.canvas, &renderer->drawing, renderer->picture.theme->page, changed, image,
                         error);
 }
 
-static bool compose(Renderer *renderer, Moment moment, Error *error) {
+static bool renderer_compose(Renderer *renderer, Moment moment, Error *error) {
     const int frame = moment.frame;
     if (frame < 0 || frame >= renderer->picture.frames)
         return error_input(error, "render", "there is no frame %d; the frames are 0 to %d", frame,
@@ -142,7 +142,7 @@ static bool compose(Renderer *renderer, Moment moment, Error *error) {
 
 bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
     renderer->in_sync = false;
-    return compose(renderer, moment_stored(frame), error) && paint(renderer, NULL, image, error);
+    return renderer_compose(renderer, moment_stored(frame), error) && renderer_paint(renderer, NULL, image, error);
 }
 
 bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error) {
@@ -152,10 +152,10 @@ bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const b
     renderer->drawing = renderer->before;
     renderer->before = before;
     *changed = renderer->changed;
-    if (!compose(renderer, moment, error)) return false;
+    if (!renderer_compose(renderer, moment, error)) return false;
     bool part = in_sync && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
     if (!part) memset(renderer->changed, true, (size_t)image->height);
-    renderer->in_sync = paint(renderer, part ? renderer->changed : NULL, image, error);
+    renderer->in_sync = renderer_paint(renderer, part ? renderer->changed : NULL, image, error);
     return renderer->in_sync;
 }
 
@@ -205,7 +205,7 @@ void still_destroy(Still *still) {
 }
 
 /* A picture of one panel without margins, in the requested colours. */
-static Picture plan(const Still *still, const StillShot *shot) {
+static Picture renderer_plan(const Still *still, const StillShot *shot) {
     Picture picture = {.count = 1, .frames = shot->run->frames, .camera = shot->camera};
     picture.layout.panels[0] = (Rect){0, 0, still->on_white->width, still->on_white->height};
     picture.runs[0] = shot->run;
@@ -233,7 +233,7 @@ static void take_alpha(uint8_t *black, const uint8_t *white) {
 }
 
 bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error) {
-    const Picture picture = plan(still, shot);
+    const Picture picture = renderer_plan(still, shot);
     Drawing *drawing = &still->drawing;
     drawing_clear(drawing);
     draw_bodies(&picture, shot, drawing);

@@ -143,8 +143,8 @@ typedef bool WriteFrame(void *context, const Image *image);
 
 /* Passes every stride-th picture to `write_frame`, after checking its size and pixels. Sets *stopped if it returned
    false. */
-static bool feed(const VideoOptions *options, int stride, int width, int height, WriteFrame *write_frame, void *context,
-                 bool *stopped, const Progress *progress, Error *error) {
+static bool video_feed(const VideoOptions *options, int stride, int width, int height, WriteFrame *write_frame,
+                       void *context, bool *stopped, const Progress *progress, Error *error) {
     *stopped = false;
     for (int index = options->first; !*stopped && index <= options->last; index += stride) {
         Image *image = read_frame(options, index, error);
@@ -164,12 +164,12 @@ typedef struct Arguments {
     int count;
 } Arguments;
 
-static void add(Arguments *arguments, const char *const *more) {
+static void video_add(Arguments *arguments, const char *const *more) {
     for (; *more != NULL; more++) arguments->list[arguments->count++] = *more;
     arguments->list[arguments->count] = NULL;
 }
 
-#define ADD(arguments, ...) add((arguments), (const char *const[]){__VA_ARGS__, NULL})
+#define ADD(arguments, ...) video_add((arguments), (const char *const[]){__VA_ARGS__, NULL})
 
 /* State of one encoding. */
 typedef struct Encoding {
@@ -222,15 +222,15 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *format_argum
     snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->stride);
     ADD(&arguments, "ffmpeg", "-y", "-v", "error", "-f", "rawvideo", "-pixel_format", "rgb24");
     ADD(&arguments, "-video_size", size, "-framerate", rate, "-i", "-");
-    add(&arguments, format_arguments);
+    video_add(&arguments, format_arguments);
     bound_memory(&arguments, encoding, ahead);
     seek_by_seconds(&arguments, encoding, seconds);
     ADD(&arguments, output);
     RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
     if (target.rgb == NULL) return error_memory(error, encoding->options->path);
     bool stopped, ok = process_start(&target.process, arguments.list, error);
-    if (ok && !feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
-                    &stopped, encoding->progress, error)) {
+    if (ok && !video_feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
+                          &stopped, encoding->progress, error)) {
         process_kill(&target.process);
         ok = false;
     }
@@ -245,7 +245,7 @@ static bool run_for_gif(const Encoding *encoding, Error *error) {
     static const char *const find[] = {"-vf", filter, "-frames:v", "1", "-c:v", "png", "-f", "image2pipe", NULL};
     Arguments use = {0};
     ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
-    add(&use, encoding->format->encoder);
+    video_add(&use, encoding->format->encoder);
     ADD(&use, "-f", encoding->format->muxer);
     return run_ffmpeg(encoding, find, encoding->palette, error) &&
            run_ffmpeg(encoding, use.list, encoding->part, error);
@@ -253,7 +253,7 @@ static bool run_for_gif(const Encoding *encoding, Error *error) {
 
 static bool run_for_film(const Encoding *encoding, Error *error) {
     Arguments use = {0};
-    add(&use, encoding->format->encoder);
+    video_add(&use, encoding->format->encoder);
     ADD(&use, "-f", encoding->format->muxer);
     return run_ffmpeg(encoding, use.list, encoding->part, error);
 }
@@ -274,7 +274,7 @@ static bool count_frames(const char *path, int *count, Error *error) {
     return true;
 }
 
-static bool encode(const Encoding *encoding, Error *error) {
+static bool encode_video(const Encoding *encoding, Error *error) {
     const VideoOptions *options = encoding->options;
     int wanted = (options->last - options->first) / encoding->stride + 1, count;
     bool gif = strcmp(encoding->format->ending, ".gif") == 0;
@@ -311,7 +311,7 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
     encoding.draft = encoding.palette_draft = -1;
     const bool ok = open_draft(&encoding.draft, encoding.part, options->path, error) &&
                     open_draft(&encoding.palette_draft, encoding.palette, options->path, error) &&
-                    encode(&encoding, error);
+                    encode_video(&encoding, error);
     if (encoding.draft >= 0) close(encoding.draft);
     if (encoding.palette_draft >= 0) close(encoding.palette_draft);
     return ok;
@@ -339,7 +339,7 @@ static void print_header(char header[HEADER_SIZE], int width, int height, double
 /* a / b rounded to the nearest integer; b > 0 and even. */
 static int nearest(int a, int b) { return (a + b / 2 + 256 * b) / b - 256; }
 
-static void convert(const Image *image, uint8_t *frame) {
+static void video_convert(const Image *image, uint8_t *frame) {
     size_t pixels = (size_t)image->width * (size_t)image->height;
     uint8_t *y = (uint8_t *)memcpy(frame, frame_line, FRAME_LINE_SIZE) + FRAME_LINE_SIZE, *cb = y + pixels,
             *cr = cb + pixels;
@@ -362,7 +362,7 @@ typedef struct Y4mTarget {
 
 static bool write_y4m_frame(void *context, const Image *image) {
     Y4mTarget *target = context;
-    convert(image, target->frame);
+    video_convert(image, target->frame);
     if (file_write_all(target->file, target->frame, target->size)) return true;
     target->cause = errno;
     return false;
@@ -379,7 +379,7 @@ bool video_write_y4m(const VideoOptions *options, int file, const Progress *prog
     print_header(header, width, height, options->frame_rate);
     bool stopped = !file_write_all(file, header, strlen(header)), ok = true;
     if (stopped) target.cause = errno;
-    if (!stopped) ok = feed(options, 1, width, height, write_y4m_frame, &target, &stopped, progress, error);
+    if (!stopped) ok = video_feed(options, 1, width, height, write_y4m_frame, &target, &stopped, progress, error);
     free(frame);
     return ok && (!stopped || error_system(error, options->path, "cannot write: %s", strerror(target.cause)));
 }

@@ -26,7 +26,7 @@ typedef struct WorkerProcess {
     FrameTexts texts;
 } WorkerProcess;
 
-static bool send(int pipe, const WorkerReport *report) { return file_write_all(pipe, report, sizeof *report); }
+static bool workers_send(int pipe, const WorkerReport *report) { return file_write_all(pipe, report, sizeof *report); }
 
 /* Whether the file of an earlier call exists with unchanged bytes. */
 static bool is_unchanged(const WorkerProcess *worker, int index, PictureHashes *hashes) {
@@ -36,7 +36,7 @@ static bool is_unchanged(const WorkerProcess *worker, int index, PictureHashes *
     return sink_frame_is(worker->job->options->directory, index, hashes->file);
 }
 
-static bool prepare(WorkerProcess *worker, Error *error) {
+static bool workers_prepare(WorkerProcess *worker, Error *error) {
     const RenderOptions *options = worker->job->options;
     worker->renderer = renderer_create_planned(worker->job->picture, options, error);
     if (worker->renderer == NULL) return false;
@@ -48,7 +48,7 @@ static bool prepare(WorkerProcess *worker, Error *error) {
 static bool draw_one(WorkerProcess *worker, Moment moment, int index, PictureHashes *hashes, Error *error) {
     const bool *changed;
     /* Created on demand: possibly every picture is kept. */
-    if (worker->renderer == NULL && !prepare(worker, error)) return false;
+    if (worker->renderer == NULL && !workers_prepare(worker, error)) return false;
     frame_texts_fill(&worker->texts, worker->job->picture, moment);
     if (!renderer_draw_next(worker->renderer, moment, worker->image, &changed, error) ||
         !worker->sink.write(worker->sink.context, index, worker->image, changed, worker->texts.entries,
@@ -64,7 +64,7 @@ static bool draw_all(WorkerProcess *worker, int pipe, Error *error) {
         WorkerReport report = {.index = index};
         report.kept = is_unchanged(worker, index, &report.hashes);
         if (!report.kept && !draw_one(worker, moments_at(job->plan, index), index, &report.hashes, error)) return false;
-        if (!send(pipe, &report)) return false; /* the parent has ended or cancelled */
+        if (!workers_send(pipe, &report)) return false; /* the parent has ended or cancelled */
     }
     return true;
 }
@@ -94,7 +94,7 @@ static bool worker_run(const WorkerJob *job, int pipe) {
     WorkerProcess worker = {.job = job};
     prepare_process();
     bool ok = draw_to_sink(&worker, pipe, &end.error);
-    if (end.error.kind != ERROR_NONE) send(pipe, &end);
+    if (end.error.kind != ERROR_NONE) workers_send(pipe, &end);
     image_destroy(worker.image);
     renderer_destroy(worker.renderer);
     free(worker.rows);

@@ -76,18 +76,18 @@ static bool bases_equal(const Drawing *a, const Drawing *b) {
            (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
 }
 
-static void mark(const Rows *rows, int top, int bottom) {
+static void canvas_mark(const Rows *rows, int top, int bottom) {
     for (int y = top < 0 ? 0 : top; y < bottom && y < rows->height; y++) rows->changed[y] = true;
 }
 
 static void mark_shape(const Rows *rows, const Drawing *drawing, size_t i) {
-    if (i < drawing->shape_count) mark(rows, drawing->shapes[i].bounds[1], drawing->shapes[i].bounds[3]);
+    if (i < drawing->shape_count) canvas_mark(rows, drawing->shapes[i].bounds[1], drawing->shapes[i].bounds[3]);
 }
 
 static void mark_glyph(const Rows *rows, const Drawing *drawing, size_t i) {
     if (i >= drawing->glyph_count) return;
     const int32_t *box = drawing->glyphs[i].box;
-    mark(rows, box[1], box[1] + box[3]);
+    canvas_mark(rows, box[1], box[1] + box[3]);
 }
 
 static void mark_shapes(const Rows *rows, const Drawing *before, const Drawing *after) {
@@ -252,7 +252,7 @@ void canvas_destroy(Canvas *canvas) {
     free(canvas);
 }
 
-static void draw(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count, size_t size) {
+static void canvas_draw(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count, size_t size) {
     if (count == 0) return;
     gl->UseProgram(batch->program);
     gl->BindVertexArray(batch->vertices);
@@ -283,9 +283,9 @@ static void paint_static(const Canvas *canvas, const Drawing *drawing, uint32_t 
                    (float)(background & 255) / 255, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     gl->Disable(GL_BLEND);
-    draw(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
+    canvas_draw(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
     gl->Enable(GL_BLEND);
-    draw(gl, &canvas->shapes, drawing->shapes, drawing->static_shapes, sizeof *drawing->shapes);
+    canvas_draw(gl, &canvas->shapes, drawing->shapes, drawing->static_shapes, sizeof *drawing->shapes);
 }
 
 /* Consecutive rows to paint. */
@@ -314,8 +314,8 @@ static void paint_changed_rows(Canvas *canvas, const Drawing *drawing, const boo
                             GL_NEAREST);
         drawing_add_rows(moving, drawing, b.top, b.bottom);
     }
-    draw(gl, &canvas->shapes, moving->shapes, moving->shape_count, sizeof *moving->shapes);
-    draw(gl, &canvas->glyphs, moving->glyphs, moving->glyph_count, sizeof *moving->glyphs);
+    canvas_draw(gl, &canvas->shapes, moving->shapes, moving->shape_count, sizeof *moving->shapes);
+    canvas_draw(gl, &canvas->glyphs, moving->glyphs, moving->glyph_count, sizeof *moving->glyphs);
 }
 
 static void read_back(const Canvas *canvas, const bool *changed, Image *image) {

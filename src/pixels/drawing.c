@@ -82,7 +82,7 @@ static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4])
 }
 
 /* Room for `wanted` items. */
-static bool reserve(Drawing *drawing, void **items, size_t *capacity, size_t wanted, size_t size) {
+static bool drawing_reserve(Drawing *drawing, void **items, size_t *capacity, size_t wanted, size_t size) {
     const bool done = array_reserve(items, capacity, wanted, size);
     drawing->failed = drawing->failed || !done;
     return done;
@@ -90,7 +90,7 @@ static bool reserve(Drawing *drawing, void **items, size_t *capacity, size_t wan
 
 static ShapeInstance *next_shape(Drawing *drawing) {
     const size_t i = drawing->shape_count;
-    return reserve(drawing, (void **)&drawing->shapes, &drawing->shape_capacity, i + 1, sizeof *drawing->shapes)
+    return drawing_reserve(drawing, (void **)&drawing->shapes, &drawing->shape_capacity, i + 1, sizeof *drawing->shapes)
                ? &drawing->shapes[i]
                : NULL;
 }
@@ -119,19 +119,19 @@ void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip
 
 void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color) {
     const size_t i = drawing->rect_count;
-    if (reserve(drawing, (void **)&drawing->rects, &drawing->rect_capacity, i + 1, sizeof *drawing->rects))
+    if (drawing_reserve(drawing, (void **)&drawing->rects, &drawing->rect_capacity, i + 1, sizeof *drawing->rects))
         drawing->rects[drawing->rect_count++] = (RectInstance){rect, color};
 }
 
 void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
     const size_t i = drawing->glyph_count;
-    if (reserve(drawing, (void **)&drawing->glyphs, &drawing->glyph_capacity, i + 1, sizeof *glyph))
+    if (drawing_reserve(drawing, (void **)&drawing->glyphs, &drawing->glyph_capacity, i + 1, sizeof *glyph))
         drawing->glyphs[drawing->glyph_count++] = *glyph;
 }
 
 uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap) {
     const size_t start = drawing->bitmap_size, wanted = start + size;
-    if (!reserve(drawing, (void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) return NULL;
+    if (!drawing_reserve(drawing, (void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) return NULL;
     drawing->bitmap_size = wanted;
     *bitmap = (uint32_t)(font_bitmaps_size + start);
     return memset(drawing->bitmaps + start, 0, size);

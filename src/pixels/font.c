@@ -28,13 +28,13 @@ typedef struct Tracer {
 /* Rounded as FreeType does, so that both kinds of glyphs in a word have equally sharp edges. */
 static double round_to_grid(double pixels) { return floor(pixels * OUTLINE_UNIT + 0.5) / OUTLINE_UNIT; }
 
-static Point place(const OutlineTracer *outline, const OutlineStep *step) {
+static Point font_place(const OutlineTracer *outline, const OutlineStep *step) {
     const Tracer *tracer = (const Tracer *)outline;
     return (Point){round_to_grid(step->x * tracer->scale) - tracer->left,
                    tracer->top - round_to_grid(step->y * tracer->scale)};
 }
 
-static void widen(OutlineTracer *outline, Point from, Point to) {
+static void font_widen(OutlineTracer *outline, Point from, Point to) {
     Tracer *tracer = (Tracer *)outline;
     tracer->x0 = fmin(tracer->x0, fmin(from.x, to.x)), tracer->x1 = fmax(tracer->x1, fmax(from.x, to.x));
     tracer->y0 = fmin(tracer->y0, fmin(from.y, to.y)), tracer->y1 = fmax(tracer->y1, fmax(from.y, to.y));
@@ -69,7 +69,7 @@ static void add_line(OutlineTracer *outline, Point from, Point to) {
 }
 
 FontGlyph glyph_metrics(const Typeface *face, const Glyph *glyph, int pixels) {
-    Tracer tracer = {.outline = {place, widen, PARTS}, .scale = (double)pixels / type_units};
+    Tracer tracer = {.outline = {font_place, font_widen, PARTS}, .scale = (double)pixels / type_units};
     FontGlyph metrics = {.code = glyph->code};
     metrics.advance = (short)floor(OUTLINE_UNIT * glyph->advance * tracer.scale + 0.5);
     if (glyph->steps == 0) return metrics;
@@ -83,7 +83,7 @@ FontGlyph glyph_metrics(const Typeface *face, const Glyph *glyph, int pixels) {
 
 bool glyph_draw(const Typeface *face, const Glyph *glyph, int pixels, const FontGlyph *metrics, uint8_t *bitmap) {
     const int width = metrics->width, height = metrics->height;
-    Tracer tracer = {.outline = {place, add_line, PARTS},
+    Tracer tracer = {.outline = {font_place, add_line, PARTS},
                      .scale = (double)pixels / type_units,
                      .left = metrics->left,
                      .top = metrics->top,
@@ -139,7 +139,7 @@ static int next_advance(const Font *font, const char **text) {
     return next_glyph(font, text, &outline).advance;
 }
 
-static int advance(const Font *font, const char *text) {
+static int font_advance(const Font *font, const char *text) {
     int pen = 0;
     while (font->glyphs != NULL && *text != '\0') pen += next_advance(font, &text);
     return pen;
@@ -147,7 +147,7 @@ static int advance(const Font *font, const char *text) {
 
 static int to_pixels(int pen) { return (pen + PEN_UNIT - 1) / PEN_UNIT; }
 
-int font_width(const Font *font, const char *text) { return to_pixels(advance(font, text)); }
+int font_width(const Font *font, const char *text) { return to_pixels(font_advance(font, text)); }
 
 static void draw_bitmap(Drawing *drawing, const Font *font, const Glyph *outline, const FontGlyph *glyph,
                         uint32_t *index) {
@@ -156,8 +156,8 @@ static void draw_bitmap(Drawing *drawing, const Font *font, const Glyph *outline
 }
 
 /* Adds the characters before `end` and returns the pen. */
-static int add(Drawing *drawing, const Font *font, const char *text, const char *end, int x, int baseline,
-               uint32_t color) {
+static int add_font(Drawing *drawing, const Font *font, const char *text, const char *end, int x, int baseline,
+                    uint32_t color) {
     int pen = 0;
     while (text < end) {
         const Glyph *outline;
@@ -173,7 +173,7 @@ static int add(Drawing *drawing, const Font *font, const char *text, const char 
 
 int font_add(Drawing *drawing, const Font *font, const char *text, int x, int baseline, uint32_t color) {
     if (font->glyphs == NULL) return x;
-    return add(drawing, font, text, text + strlen(text), x, baseline, color);
+    return add_font(drawing, font, text, text + strlen(text), x, baseline, color);
 }
 
 int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x, int baseline, int max_width,
@@ -184,6 +184,6 @@ int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x
     const char *end = text, *next = text;
     while (*next != '\0' && (pen += next_advance(font, &next)) <= room) end = next;
     while (end > text && end[-1] == ' ') end--;
-    int end_x = add(drawing, font, text, end, x, baseline, color);
+    int end_x = add_font(drawing, font, text, end, x, baseline, color);
     return font_add(drawing, font, ELLIPSIS, end_x, baseline, color);
 }

@@ -57,12 +57,12 @@ static void prepare_mesa(void) {
     setenv("EGL_LOG_LEVEL", "fatal", 0); /* its warnings guess at reasons */
 }
 
-static bool create(Context *context, const ContextKind *kind, Error *error) {
+static bool gl_context_create(Context *context, const ContextKind *kind, Error *error) {
     *context = (Context){kind, kind->create(error)};
     return context->state != NULL;
 }
 
-static bool refuse(ContextChoice wanted, Error *error) {
+static bool gl_context_refuse(ContextChoice wanted, Error *error) {
     return error_input(error, "render", "twinbox was built without %s; use %s",
                        wanted == CONTEXT_OSMESA ? "osmesa" : "egl", context_kinds[0]->name);
 }
@@ -70,11 +70,12 @@ static bool refuse(ContextChoice wanted, Error *error) {
 bool context_create(Context *context, ContextChoice wanted, Error *error) {
     const ContextKind *kind = context_kind(wanted);
     prepare_mesa();
-    if (wanted != CONTEXT_AUTO) return kind != NULL ? create(context, kind, error) : refuse(wanted, error);
+    if (wanted != CONTEXT_AUTO)
+        return kind != NULL ? gl_context_create(context, kind, error) : gl_context_refuse(wanted, error);
     Error reasons[sizeof context_kinds / sizeof *context_kinds] = {0};
     int count = 0;
     for (; context_kinds[count] != NULL; count++)
-        if (create(context, context_kinds[count], &reasons[count])) return true;
+        if (gl_context_create(context, context_kinds[count], &reasons[count])) return true;
     error_system(error, "render", "no OpenGL without a display works");
     for (int i = 0; i < count; i++) error_add(error, "\n%s: %s", context_kinds[i]->name, reasons[i].message);
     return false;

@@ -55,7 +55,7 @@ static inline void add_average(const uint8_t *restrict from, const uint8_t *rest
 }
 
 /* The neighbour nearest to left + up - corner; the first of these where they tie. */
-static inline int predict(int left, int up, int corner) {
+static inline int png_fast_predict(int left, int up, int corner) {
     int to_left = abs(up - corner), to_up = abs(left - corner), to_corner = abs(left + up - 2 * corner);
     int nearest = to_up <= to_corner ? up : corner, distance = to_up <= to_corner ? to_up : to_corner;
     return to_left <= distance ? left : nearest;
@@ -71,7 +71,7 @@ static inline __m128i load_pixel(const uint8_t *p) {
 
 static inline __m128i absolute(__m128i x) { return _mm_max_epi16(x, _mm_sub_epi16(_mm_setzero_si128(), x)); }
 
-static inline __m128i choose(__m128i mask, __m128i yes, __m128i no) {
+static inline __m128i png_fast_choose(__m128i mask, __m128i yes, __m128i no) {
     return _mm_or_si128(_mm_and_si128(mask, yes), _mm_andnot_si128(mask, no));
 }
 
@@ -84,8 +84,8 @@ static inline void add_paeth_sse2(const uint8_t *from, const uint8_t *above, siz
         const __m128i to_left = absolute(by_left), to_up = absolute(by_up),
                       to_corner = absolute(_mm_add_epi16(by_left, by_up));
         const __m128i least = _mm_min_epi16(to_left, _mm_min_epi16(to_up, to_corner));
-        const __m128i nearest =
-            choose(_mm_cmpeq_epi16(least, to_left), left, choose(_mm_cmpeq_epi16(least, to_up), up, corner));
+        const __m128i nearest = png_fast_choose(_mm_cmpeq_epi16(least, to_left), left,
+                                                png_fast_choose(_mm_cmpeq_epi16(least, to_up), up, corner));
         left = _mm_and_si128(_mm_add_epi16(load_pixel(from + i), nearest), low);
         corner = up;
         const int pixel = _mm_cvtsi128_si32(_mm_packus_epi16(left, left));
@@ -100,7 +100,7 @@ static inline void add_paeth(const uint8_t *restrict from, const uint8_t *restri
     for (size_t i = 0; i + step <= bytes; i += step)
         for (size_t c = 0; c < step; c++) {
             int up = above[i + c];
-            row[i + c] = (uint8_t)(from[i + c] + predict(left[c], up, corner[c]));
+            row[i + c] = (uint8_t)(from[i + c] + png_fast_predict(left[c], up, corner[c]));
             left[c] = row[i + c], corner[c] = up;
         }
 }
@@ -147,11 +147,11 @@ static bool unfilter_row(const uint8_t *filtered, const uint8_t *above, size_t b
 enum { OPAQUE = 255 };
 
 /* Compilers make one load of it, and one store of the next. */
-static uint32_t load(const uint8_t *p) {
+static uint32_t png_fast_load(const uint8_t *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-static void store(uint32_t pixel, uint8_t *rgba) {
+static void png_fast_store(uint32_t pixel, uint8_t *rgba) {
     pixel |= (uint32_t)OPAQUE << 24;
     rgba[0] = (uint8_t)pixel, rgba[1] = (uint8_t)(pixel >> 8);
     rgba[2] = (uint8_t)(pixel >> 16), rgba[3] = (uint8_t)(pixel >> 24);
@@ -182,14 +182,14 @@ static void expand_rgb(const uint8_t *restrict row, size_t width, uint8_t *restr
     row += 3 * x, rgba += 4 * x;
 #endif
     for (; x + 4 <= width; x += 4, row += 12, rgba += 16) {
-        uint32_t a = load(row), b = load(row + 4), c = load(row + 8);
-        store(a, rgba);
-        store(a >> 24 | b << 8, rgba + 4);
-        store(b >> 16 | c << 16, rgba + 8);
-        store(c >> 8, rgba + 12);
+        uint32_t a = png_fast_load(row), b = png_fast_load(row + 4), c = png_fast_load(row + 8);
+        png_fast_store(a, rgba);
+        png_fast_store(a >> 24 | b << 8, rgba + 4);
+        png_fast_store(b >> 16 | c << 16, rgba + 8);
+        png_fast_store(c >> 8, rgba + 12);
     }
     for (; x < width; x++, row += 3, rgba += 4)
-        store((uint32_t)row[0] | (uint32_t)row[1] << 8 | (uint32_t)row[2] << 16, rgba);
+        png_fast_store((uint32_t)row[0] | (uint32_t)row[1] << 8 | (uint32_t)row[2] << 16, rgba);
 }
 
 static void clear_rgb(const PngLayout *layout, uint8_t *rgba) {
@@ -205,7 +205,7 @@ static void expand_grey_alpha(const uint8_t *restrict row, size_t width, uint8_t
 }
 
 /* Sample x of one channel; the first is in the highest bits of a byte. */
-static unsigned sample(const uint8_t *row, size_t x, unsigned depth) {
+static unsigned png_fast_sample(const uint8_t *row, size_t x, unsigned depth) {
     size_t bit = x * depth;
     return (unsigned)row[bit / 8] >> (8 - depth - bit % 8) & ((1u << depth) - 1);
 }
@@ -213,7 +213,7 @@ static unsigned sample(const uint8_t *row, size_t x, unsigned depth) {
 static void expand_grey(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
     unsigned depth = (unsigned)layout->depth, scale = 255 / ((1u << depth) - 1);
     for (size_t x = 0; x < layout->width; x++) {
-        unsigned value = sample(row, x, depth);
+        unsigned value = png_fast_sample(row, x, depth);
         rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = (uint8_t)(value * scale);
         rgba[4 * x + 3] = layout->has_clear && value == layout->clear[0] ? 0 : OPAQUE;
     }
@@ -222,7 +222,7 @@ static void expand_grey(const PngLayout *layout, const uint8_t *row, uint8_t *rg
 static bool expand_palette(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
     unsigned depth = (unsigned)layout->depth, most = 0;
     for (size_t x = 0; x < layout->width; x++) {
-        unsigned index = sample(row, x, depth);
+        unsigned index = png_fast_sample(row, x, depth);
         memcpy(rgba + 4 * x, layout->palette[index], 4);
         if (index > most) most = index;
     }
@@ -324,7 +324,7 @@ static void give(Scan *scan, int slot, int count) {
         (void)do_task(scan, &scan->task, &ignored);
 }
 
-static void finish(const Scan *scan) {
+static void png_fast_finish(const Scan *scan) {
     Error ignored = {0};
     if (scan->background != NULL) (void)background_wait(scan->background, &ignored);
 }
@@ -388,7 +388,7 @@ static bool decompress_band(Scan *scan, int slot, bool *same) {
     Side *first = &scan->sides[0], *second = &scan->sides[1];
     const size_t size = (size_t)scan->count * (first->rows->bytes + 1);
     if (!scan->joined) decompress(first, 0, scan->count);
-    finish(scan);
+    png_fast_finish(scan);
     if (scan->joined && second->rows->twin == NULL) {
         first->rows->damaged = !png_rows_read_parted(first->rows, second->filtered[slot], first->filtered[0], size);
         scan->joined = false;
@@ -408,7 +408,7 @@ static bool scan_band(Scan *scan, int slot) {
     if (!same) give(scan, slot, 0);
     if (same) give_next(scan, 1 - slot);
     unfilter(first, scan->joined ? second->filtered[slot] : first->filtered[0], scan->count);
-    if (!same) finish(scan);
+    if (!same) png_fast_finish(scan);
     if (first->rows->damaged || (!same && second->rows->damaged)) return false;
     if (!same) give_next(scan, 1 - slot);
     if (!deliver(scan, same)) return false;
@@ -434,7 +434,7 @@ static bool same_layout(const PngLayout *a, const PngLayout *b) {
            a->has_clear == b->has_clear && memcmp(a->clear, b->clear, sizeof a->clear) == 0;
 }
 
-static bool start(Scan *scan, size_t band, bool threads) {
+static bool png_fast_start(Scan *scan, size_t band, bool threads) {
     Error ignored = {0};
     Side *sides = scan->sides;
     const PngLayout *layout = &sides[0].rows->layout, *other = &sides[1].rows->layout; /* of one file: itself */
@@ -456,7 +456,7 @@ bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool thre
     Scan scan = {.files = files, .equal = true, .sink = sink, .since = FAR_AWAY};
     scan.kept = around > 1 && around < ROWS_ALL ? around : 1; /* none is left out of all */
     for (int i = 0; i < 2; i++) scan.sides[i].rows = rows[i < files ? i : 0];
-    const bool ok = start(&scan, band, threads) && scan_bands(&scan);
+    const bool ok = png_fast_start(&scan, band, threads) && scan_bands(&scan);
     background_stop(scan.background);
     for (int i = 0; i < files; i++) {
         rows[i]->damaged = rows[i]->damaged || scan.sides[i].failed;
@@ -482,7 +482,7 @@ bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files,
 
 static uint8_t *pixels_of(const Image *image, int y) { return image->pixels + (size_t)y * (size_t)image->width * 4; }
 
-static Image *create(int width, int height) {
+static Image *png_fast_create(int width, int height) {
     Error ignored = {0};
     Image *image = image_create_unset(width, height, &ignored);
     if (image != NULL) image_provide(image);
@@ -491,13 +491,13 @@ static Image *create(int width, int height) {
 
 static bool begin_images(void *context, int width, int height) {
     Image **images = context;
-    return (images[0] = create(width, height)) != NULL;
+    return (images[0] = png_fast_create(width, height)) != NULL;
 }
 
 static uint8_t *place_in_image(void *context, int side, int y) {
     Image **images = context;
     if (images[side] == NULL) {
-        if ((images[1] = create(images[0]->width, images[0]->height)) == NULL) return NULL;
+        if ((images[1] = png_fast_create(images[0]->width, images[0]->height)) == NULL) return NULL;
         memcpy(images[1]->pixels, images[0]->pixels, (size_t)y * (size_t)images[0]->width * 4);
     }
     return pixels_of(images[side], y);
@@ -508,7 +508,8 @@ static void keep_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
     if (a == b && images[1] != NULL) memcpy(pixels_of(images[1], y), a, (size_t)images[0]->width * 4);
 }
 
-static bool decode(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels, Image *images[2]) {
+static bool decode_png_fast(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels,
+                            Image *images[2]) {
     const RowSink sink = {begin_images, place_in_image, keep_row, images, ROWS_ALL};
     images[0] = images[1] = NULL;
     if (png_fast_scan(data, sizes, files, max_pixels, PNG_BAND, false, &sink)) return true;
@@ -519,13 +520,13 @@ static bool decode(const uint8_t *const data[], const size_t sizes[], int files,
 
 bool png_fast_decode(const uint8_t *data, size_t size, int64_t max_pixels, Image **image) {
     Image *images[2];
-    bool ok = decode(&data, &size, 1, max_pixels, images);
+    bool ok = decode_png_fast(&data, &size, 1, max_pixels, images);
     *image = images[0];
     return ok;
 }
 
 bool png_fast_decode_pair(const uint8_t *const data[2], const size_t sizes[2], int64_t max_pixels, Image *images[2]) {
-    bool ok = decode(data, sizes, 2, max_pixels, images);
+    bool ok = decode_png_fast(data, sizes, 2, max_pixels, images);
     if (images[1] == NULL) images[1] = images[0];
     return ok;
 }

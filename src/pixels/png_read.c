@@ -87,13 +87,13 @@ typedef struct State {
     Error *error;
 } State;
 
-static bool refuse(const State *state, const char *what) {
+static bool png_read_refuse(const State *state, const char *what) {
     return error_input(state->error, state->path, "not a PNG file, or damaged: %s", what);
 }
 
 static bool check_pixels(State *state, const PngChunk *chunk) {
-    if (state->pixels_ended) return refuse(state, "the IDAT chunks are not consecutive");
-    if (state->header.color == PNG_PALETTE && !state->palette) return refuse(state, "the palette is missing");
+    if (state->pixels_ended) return png_read_refuse(state, "the IDAT chunks are not consecutive");
+    if (state->header.color == PNG_PALETTE && !state->palette) return png_read_refuse(state, "the palette is missing");
     for (size_t i = 0; i < chunk->length && state->compressed + i < 2; i++)
         state->zlib[state->compressed + i] = chunk->data[i];
     state->compressed += chunk->length;
@@ -110,10 +110,10 @@ static bool check_chunk(State *state, const PngChunk *chunk, size_t at) {
                            "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
     if (png_chunk_is(chunk, "PLTE")) {
         state->palette = chunk->length > 0 && chunk->length <= 768 && chunk->length % 3 == 0;
-        return state->palette || refuse(state, "the palette is invalid");
+        return state->palette || png_read_refuse(state, "the palette is invalid");
     }
     state->ended = png_chunk_is(chunk, "IEND");
-    return state->ended || !critical || refuse(state, "an unknown critical chunk");
+    return state->ended || !critical || png_read_refuse(state, "an unknown critical chunk");
 }
 
 static bool check_checksum(const State *state, const PngChunk *chunk, size_t at) {
@@ -128,12 +128,12 @@ static bool check_checksum(const State *state, const PngChunk *chunk, size_t at)
 /* RFC 1950. */
 static bool check_compressed(const State *state) {
     const uint8_t *zlib = state->zlib;
-    if (!state->pixels) return refuse(state, "it has no pixels (chunk IDAT)");
+    if (!state->pixels) return png_read_refuse(state, "it has no pixels (chunk IDAT)");
     if (state->compressed < 2 || (zlib[0] & 0x0F) != 8 || zlib[0] >> 4 > 7 || (zlib[0] << 8 | zlib[1]) % 31 != 0 ||
         (zlib[1] & 0x20) != 0)
-        return refuse(state, "the pixels are not a zlib stream");
+        return png_read_refuse(state, "the pixels are not a zlib stream");
     return png_can_hold(state->compressed, filtered_size(&state->header)) ||
-           refuse(state, "too few bytes for its pixels");
+           png_read_refuse(state, "too few bytes for its pixels");
 }
 
 bool png_check(const uint8_t *data, size_t size, const char *path, int *width, int *height, Error *error) {
@@ -144,13 +144,13 @@ bool png_check(const uint8_t *data, size_t size, const char *path, int *width, i
     while (!state.ended && png_chunk_next(data, size, &next, &chunk)) {
         if (!check_checksum(&state, &chunk, at)) return false;
         bool ok = at > first ? check_chunk(&state, &chunk, at)
-                             : read_header(&chunk, &state.header) || refuse(&state, "the header is invalid");
+                             : read_header(&chunk, &state.header) || png_read_refuse(&state, "the header is invalid");
         if (!ok) return false;
         at = next;
     }
     *width = (int)state.header.width;
     *height = (int)state.header.height;
-    return (state.ended || refuse(&state, "unexpected end of file")) && check_compressed(&state);
+    return (state.ended || png_read_refuse(&state, "unexpected end of file")) && check_compressed(&state);
 }
 
 /* Reading by libpng. */
@@ -383,7 +383,7 @@ static void end_pixels(const Decoder *decoder) {
     png_read_end(decoder->png, NULL);
 }
 
-static bool decode(Decoder *decoder) {
+static bool png_read_decode(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     png_structp png = decoder->png;
     set_strict_limits(decoder);
@@ -419,7 +419,7 @@ Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int
     Decoder decoder;
     bool ok = open_decoder(&decoder, data, size, path, error);
     decoder.max_pixels = max_pixels;
-    ok = ok && decode(&decoder);
+    ok = ok && png_read_decode(&decoder);
     close_decoder(&decoder);
     if (ok) return decoder.image;
     image_destroy(decoder.image);
@@ -431,7 +431,7 @@ static bool check_by_libpng(const uint8_t *data, size_t size, const char *path, 
     bool ok = open_decoder(&decoder, data, size, path, error);
     decoder.max_pixels = max_pixels;
     decoder.checked = true;
-    ok = ok && decode(&decoder);
+    ok = ok && png_read_decode(&decoder);
     close_decoder(&decoder);
     return ok;
 }

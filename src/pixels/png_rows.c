@@ -282,7 +282,7 @@ static void part(PngRows *rows) {
 }
 
 /* Gives the stream the next compressed bytes, with a twin those that both have. */
-static bool feed(PngRows *rows) {
+static bool png_rows_feed(PngRows *rows) {
     const uint8_t *bytes = NULL, *other = NULL;
     if (rows->stream->z.avail_in > 0) return true;
     size_t count = peek_pixels(rows, &bytes);
@@ -316,7 +316,7 @@ bool png_rows_read(PngRows *rows, uint8_t *to, size_t size) {
     while (rows->stream->z.avail_out > 0) {
         const uint32_t room = rows->stream->z.avail_out;
         if (rows->ended) return false;
-        const bool more = feed(rows);
+        const bool more = png_rows_feed(rows);
         if ((!more && !has_left(rows->stream)) || !stream_run(rows->stream, &rows->ended)) return false;
         if (!more && rows->stream->z.avail_out == room) return false; /* it waits for bytes that are missing */
     }
@@ -334,7 +334,7 @@ bool png_rows_end(PngRows *rows) {
     const bool more = png_rows_read(rows, &extra, 1);
     while (rows->twin != NULL && !more) { /* the padding behind the stream, until the files part */
         rows->stream->z.avail_in = 0;
-        (void)feed(rows);
+        (void)png_rows_feed(rows);
     }
     rows->damaged = more || !rows->ended || !png_source_end(&rows->source);
     return !rows->damaged;

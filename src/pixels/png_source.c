@@ -45,7 +45,7 @@ bool png_source_rewind(PngSource *source) {
 }
 
 /* The next piece. */
-static bool load(PngSource *source) {
+static bool png_source_load(PngSource *source) {
     const size_t wanted = source->left < PIECE ? source->left : PIECE;
     if (wanted == 0 || file_read_all(source->file, source->piece, wanted) != (ssize_t)wanted) return false;
     hash_parts_add(source->parts, source->piece, wanted);
@@ -56,7 +56,7 @@ static bool load(PngSource *source) {
 }
 
 size_t png_source_peek(PngSource *source, size_t most, const uint8_t **bytes) {
-    if (source->at == source->held && !load(source)) return 0;
+    if (source->at == source->held && !png_source_load(source)) return 0;
     const size_t held = source->held - source->at;
     *bytes = source->data + source->at;
     return held < most ? held : most;
@@ -75,7 +75,7 @@ bool png_source_end(PngSource *source) {
     uint8_t more;
     if (source->file < 0 || (source->hashed && is_whole(source))) return true;
     while (source->left > 0)
-        if (!load(source)) return false;
+        if (!png_source_load(source)) return false;
     if (file_read_all(source->file, &more, 1) != 0) return false; /* it has grown */
     const uint64_t hash = hash_parts_end(source->parts);
     const bool same = !source->hashed || hash == source->hash;

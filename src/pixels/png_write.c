@@ -43,7 +43,7 @@ void png_encoder_destroy(PngEncoder *encoder) {
     free(encoder);
 }
 
-static void append(png_structp png, png_bytep data, size_t size) {
+static void png_write_append(png_structp png, png_bytep data, size_t size) {
     PngEncoder *encoder = png_get_io_ptr(png);
     encoder->memory_short = !array_reserve((void **)&encoder->data, &encoder->capacity, encoder->size + size, 1);
     if (encoder->memory_short) png_error(png, "out of memory");
@@ -51,7 +51,7 @@ static void append(png_structp png, png_bytep data, size_t size) {
     encoder->size += size;
 }
 
-static void flush(png_structp png) { (void)png; }
+static void flush_png_write(png_structp png) { (void)png; }
 
 static PNG_FUNCTION(void, fail, (png_structp png, png_const_charp message), PNG_NORETURN) {
     PngEncoder *encoder = png_get_error_ptr(png);
@@ -88,7 +88,7 @@ static bool write_file(PngEncoder *encoder, const Image *image, const ImageText 
                        const uint8_t *pixels, size_t pixels_size) {
     if (setjmp(png_jmpbuf(encoder->png)) != 0) return false;
     png_structp png = encoder->png;
-    png_set_write_fn(png, encoder, append, flush);
+    png_set_write_fn(png, encoder, png_write_append, flush_png_write);
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_compression_level(png, 9);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_ALL_FILTERS);

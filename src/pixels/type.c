@@ -20,7 +20,7 @@ static const Composition compositions[] = {
 #include "pixels/compositions.inc"
 };
 
-static unsigned compose(unsigned letter, unsigned mark) {
+static unsigned type_compose(unsigned letter, unsigned mark) {
     size_t low = 0, high = sizeof compositions / sizeof compositions[0];
     while (low < high) {
         const size_t middle = (low + high) / 2;
@@ -76,7 +76,7 @@ unsigned type_next_code(const char **text) {
     unsigned code = utf8_next(text);
     for (const char *next = *text; *next != '\0'; *text = next) {
         const unsigned mark = utf8_next(&next),
-                       composed = mark >= FIRST_MARK && mark <= LAST_MARK ? compose(code, mark) : 0;
+                       composed = mark >= FIRST_MARK && mark <= LAST_MARK ? type_compose(code, mark) : 0;
         if (composed == 0) break;
         code = composed;
     }
@@ -101,7 +101,7 @@ static bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && c
 /* Marks are not shown: alone they would be drawn over the quotation mark. */
 static bool is_mark(unsigned code) { return code >= 0x300 && code <= 0x36F; }
 
-static bool refuse(unsigned code, const char *from, const char *end, const char *where, Error *error) {
+static bool type_refuse(unsigned code, const char *from, const char *end, const char *where, Error *error) {
     if (is_control(code))
         return error_input(error, where, "the text has the control character U+%04X, which cannot be drawn", code);
     if (is_mark(code))
@@ -123,7 +123,7 @@ bool type_check(const char *text, const char *where, Error *error) {
             return error_input(error, where, "byte %d of the text is 0x%02X, which is not UTF-8",
                                (int)(from - text) + 1, (unsigned)(unsigned char)*from);
         const unsigned code = type_next_code(&next);
-        if (type_find(&type_regular, code) == NULL) return refuse(code, from, next, where, error);
+        if (type_find(&type_regular, code) == NULL) return type_refuse(code, from, next, where, error);
     }
     return true;
 }

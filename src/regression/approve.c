@@ -24,7 +24,7 @@ static bool is_input(int cause) {
     return cause == ELOOP || cause == ENOTDIR || cause == EACCES || cause == ENOENT || cause == ENAMETOOLONG;
 }
 
-static bool refuse(int cause, const char *path, const char *what, Error *error) {
+static bool approve_refuse(int cause, const char *path, const char *what, Error *error) {
     return is_input(cause) ? error_input(error, path, "%s: %s", what, strerror(cause))
                            : error_system(error, path, "%s: %s", what, strerror(cause));
 }
@@ -62,7 +62,7 @@ static int walk(int folder, const char **path, bool create) {
 static bool root_open(Root *root, const char *path, Error *error) {
     *root = (Root){open(path, OPEN_FOLDER), path};
     if (root->folder >= 0) return true;
-    return refuse(errno, path, "the folder cannot be opened", error);
+    return approve_refuse(errno, path, "the folder cannot be opened", error);
 }
 
 const char *path_below_current(const char *path) {
@@ -109,8 +109,9 @@ static bool place_open(ApprovePlace *place, const Root *root, const char *name, 
     place->name = name;
     place->folder = walk(fcntl(root->folder, F_DUPFD_CLOEXEC, 0), &place->name, create);
     if (place->folder >= 0 || errno == ENOENT) return true;
-    return refuse(errno, place->path,
-                  is_input(errno) ? "its folder cannot be opened, or is a link" : "its folder cannot be opened", error);
+    return approve_refuse(errno, place->path,
+                          is_input(errno) ? "its folder cannot be opened, or is a link" : "its folder cannot be opened",
+                          error);
 }
 
 static void place_close(const ApprovePlace *place) {
@@ -326,7 +327,7 @@ static bool refuse_changed(const Root *root, const char *name, Error *error) {
            error_input(error, path, "has changed since the report was written; compare again");
 }
 
-static bool decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
+static bool approve_decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
     Found expected, actual = {.there = false};
     if (!inspect(&folders->expected, target_of(item), &expected, error)) return false;
     *action = ACTION_NONE;
@@ -342,7 +343,7 @@ static bool decide(const Folders *folders, const ApprovalItem *item, Action *act
 #define CHANGED "has changed during the approval"
 
 /* Reads the actual file again and checks the hash of exactly the bytes that are written. */
-static bool copy(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
+static bool approve_copy(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
     ApprovePlace source;
     size_t size;
     if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
@@ -355,8 +356,8 @@ static bool copy(const Folders *folders, const ApprovalFile *actual, const Appro
     return ok;
 }
 
-static bool apply(const Folders *folders, const ApprovalItem *item, Action action,
-                  void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
+static bool approve_apply(const Folders *folders, const ApprovalItem *item, Action action,
+                          void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
     static const char *const words[] = {"", "replaced", "added", "removed"};
     int *counts[] = {&approval->already, &approval->replaced, &approval->added, &approval->removed};
     ApprovePlace target;
@@ -368,7 +369,7 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
         ok = unlinkat(target.folder, target.name, 0) == 0 ||
              error_system(error, target.path, "cannot be removed: %s", strerror(errno));
     else if (ok)
-        ok = copy(folders, &item->actual, &target, error);
+        ok = approve_copy(folders, &item->actual, &target, error);
     if (ok) on_change(words[action], target.path);
     place_close(&target);
     return ok;
@@ -410,14 +411,15 @@ static bool approve_list(const ApprovalList *list, const Folders *folders, const
     bool ok = true;
     for (size_t i = 0; ok && i < list->count; i++) {
         actions[i] = ACTION_NOT_SELECTED;
-        if (is_selected(&list->items[i], request, approval)) ok = decide(folders, &list->items[i], &actions[i], error);
+        if (is_selected(&list->items[i], request, approval))
+            ok = approve_decide(folders, &list->items[i], &actions[i], error);
     }
     if (ok && only != NULL && list->count > 0 && approval->not_selected == (int)list->count)
         ok = error_input(error, "--only", "'%s' matches none of the %zu files that failed", only, list->count);
     if (ok && request->missing == MISSING_REFUSED) ok = refuse_removal(list, actions, request->report, error);
     for (size_t i = 0; ok && i < list->count; i++)
         if (actions[i] != ACTION_NOT_SELECTED)
-            ok = apply(folders, &list->items[i], actions[i], request->on_change, approval, error);
+            ok = approve_apply(folders, &list->items[i], actions[i], request->on_change, approval, error);
     free(actions);
     return ok;
 }

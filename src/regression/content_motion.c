@@ -47,7 +47,7 @@ static double left_over(const Patch *patch, int right, int down) {
 }
 
 /* Of two regions, what is explained of the worse one. */
-static void judge(const Search *search, Motion *motion) {
+static void content_motion_judge(const Search *search, Motion *motion) {
     motion->explained = 1;
     for (int i = 0; i < search->patch_count; i++) {
         const double left = left_over(search->patches[i], (int)motion->right, (int)motion->down);
@@ -60,7 +60,7 @@ static void add_start(Search *search, double right, double down) {
     for (int i = 0; i < search->starts; i++)
         if (search->start[i].right == start.right && search->start[i].down == start.down) return;
     if (search->starts == STARTS_MAX || (start.right == 0 && start.down == 0)) return;
-    judge(search, &start);
+    content_motion_judge(search, &start);
     search->start[search->starts++] = start;
 }
 
@@ -131,7 +131,7 @@ static void descend(const Search *search, Motion *motion) {
         for (int k = 0; k < 9; k++) {
             Motion tried = {motion->right + k % 3 - 1, motion->down + k / 3 - 1, 0};
             if (k == 4) continue;
-            judge(search, &tried);
+            content_motion_judge(search, &tried);
             if (tried.explained > best.explained) best = tried;
         }
         if (best.explained <= motion->explained) return;
@@ -238,7 +238,7 @@ static Motion shrunk(const Search *search, Motion found) {
                 double *along = axis == 0 ? &tried.right : &tried.down;
                 if (fabs(*along) < step) break;
                 *along -= copysign(step, *along);
-                judge(search, &tried);
+                content_motion_judge(search, &tried);
                 if (tried.explained < found.explained || !has_partners(search, &tried)) break;
                 found = tried;
             }

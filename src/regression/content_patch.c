@@ -39,7 +39,7 @@ static int distance_in(const Image *image, size_t i, size_t j) {
 }
 
 /* Passes a pixel on the way from the ground at *last; SIZE_MAX: none yet. */
-static void pass(Ground *ground, int x, int y, size_t *last) {
+static void content_patch_pass(Ground *ground, int x, int y, size_t *last) {
     const size_t pixel = pixel_of(ground, x, y), place = place_of(ground, x, y);
     if (ground->levels[place] <= ground->weak) {
         *last = pixel;
@@ -53,16 +53,16 @@ static void pass(Ground *ground, int x, int y, size_t *last) {
 
 static void sweep_row(Ground *ground, int y) {
     size_t last = SIZE_MAX;
-    for (int x = ground->box.left; x < ground->box.right; x++) pass(ground, x, y, &last);
+    for (int x = ground->box.left; x < ground->box.right; x++) content_patch_pass(ground, x, y, &last);
     last = SIZE_MAX;
-    for (int x = ground->box.right; x-- > ground->box.left;) pass(ground, x, y, &last);
+    for (int x = ground->box.right; x-- > ground->box.left;) content_patch_pass(ground, x, y, &last);
 }
 
 static void sweep_column(Ground *ground, int x) {
     size_t last = SIZE_MAX;
-    for (int y = ground->box.top; y < ground->box.bottom; y++) pass(ground, x, y, &last);
+    for (int y = ground->box.top; y < ground->box.bottom; y++) content_patch_pass(ground, x, y, &last);
     last = SIZE_MAX;
-    for (int y = ground->box.bottom; y-- > ground->box.top;) pass(ground, x, y, &last);
+    for (int y = ground->box.bottom; y-- > ground->box.top;) content_patch_pass(ground, x, y, &last);
 }
 
 static void ground_free(Ground *ground) {

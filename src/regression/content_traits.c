@@ -58,7 +58,7 @@ bool traits_are_noise(const ContentTraits *traits) {
 }
 
 /* Solves from * x = to for a positive definite matrix, whose lower triangle is given, by Cholesky's decomposition. */
-static void solve(double from[MAPPED][MAPPED], double to[MAPPED][3]) {
+static void content_traits_solve(double from[MAPPED][MAPPED], double to[MAPPED][3]) {
     for (int i = 0; i < MAPPED; i++)
         for (int k = 0; k <= i; k++) {
             for (int j = 0; j < k; j++) from[i][k] -= from[i][j] * from[k][j];
@@ -83,7 +83,7 @@ static double unmapped(const ContentTraits *traits) {
     memcpy(from, traits->from, sizeof from);
     memcpy(map, traits->to, sizeof map);
     for (int i = 0; i < MAPPED; i++) from[i][i] += RIDGE * (traits->from[i][i] + 1);
-    solve(from, map);
+    content_traits_solve(from, map);
     for (int i = 0; i < MAPPED; i++)
         for (int c = 0; c < 3; c++) left -= map[i][c] * traits->to[i][c];
     return left / fmax(traits->square, 1);

@@ -57,7 +57,7 @@ static int root_of(Node *nodes, int node) {
     return node;
 }
 
-static int join(Scan *scan, int a, int b) {
+static int difference_join(Scan *scan, int a, int b) {
     int root = root_of(scan->nodes, a), other = root_of(scan->nodes, b);
     if (root == other) return root;
     ImageRegion *to = &scan->nodes[root].region;
@@ -97,7 +97,7 @@ static void add_run(Scan *scan, const uint8_t *levels, int left, int right, int6
     for (int x = first; x <= last; x++) {
         if (rows[x] < reach || nodes[x] == known) continue;
         known = nodes[x];
-        node = join(scan, node, known);
+        node = difference_join(scan, node, known);
     }
     for (int x = left; x <= right; x++) {
         nodes[x] = levels[x] > 0 ? node : nodes[x];

@@ -150,7 +150,7 @@ void flip_make_blur(FlipBlur *blur, FlipChannel channel, double pixels_per_degre
 }
 
 /* Scales the positive weights to a sum of 1, the negative ones to -1. */
-static void normalise(FlipKernel *kernel, const double *weights) {
+static void flip_normalise(FlipKernel *kernel, const double *weights) {
     double above = 0, below = 0;
     int count = 2 * kernel->radius + 1;
     for (int i = 0; i < count; i++) *(weights[i] > 0 ? &above : &below) += weights[i];
@@ -170,9 +170,9 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
         point[k + radius] = (k * k / (deviation * deviation) - 1) * gaussian;
     }
     features->across.radius = features->edge.radius = features->point.radius = radius;
-    normalise(&features->across, across);
-    normalise(&features->edge, edge);
-    normalise(&features->point, point);
+    flip_normalise(&features->across, across);
+    flip_normalise(&features->edge, edge);
+    flip_normalise(&features->point, point);
 }
 
 void flip_filter(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
@@ -241,15 +241,15 @@ typedef struct Frame {
     int left, top, width, height;
 } Frame;
 
-static int inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
+static int flip_inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
 
 static void load_channels(FlipTile *tile, const Image *picture, FlipBackground background, const Frame *frame) {
     int reach = tile->model->reach, count = frame->width + 2 * reach;
     for (int y = 0; y < frame->height + 2 * reach; y++) {
-        size_t row = (size_t)inside(frame->top - reach + y, picture->height), at = (size_t)y * tile->stride;
+        size_t row = (size_t)flip_inside(frame->top - reach + y, picture->height), at = (size_t)y * tile->stride;
         const uint8_t *pixels = picture->pixels + row * (size_t)picture->width * 4;
         for (int x = 0; x < count; x++)
-            memcpy(tile->row + 4 * x, pixels + 4 * (size_t)inside(frame->left - reach + x, picture->width), 4);
+            memcpy(tile->row + 4 * x, pixels + 4 * (size_t)flip_inside(frame->left - reach + x, picture->width), 4);
         for (int x = 0; x < count; x++) tile->clear |= 255 - tile->row[4 * x + 3];
         flip_load_row(tile->row, count, background, tile->model->linear_of, tile->channels[FLIP_LIGHTNESS] + at,
                       tile->channels[FLIP_RED_GREEN] + at, tile->channels[FLIP_BLUE_YELLOW] + at);
@@ -298,14 +298,14 @@ static void find_features(FlipTile *tile, const Frame *frame, float *const plane
     filter_columns(tile, frame, &features->point, planes[POINT_Y]);
 }
 
-static float strength(float *const planes[PLANES], int x, int y, size_t i) {
+static float flip_strength(float *const planes[PLANES], int x, int y, size_t i) {
     return sqrtf(planes[x][i] * planes[x][i] + planes[y][i] * planes[y][i]);
 }
 
 static float feature_change(const FlipTile *tile, size_t i) {
     float *const *a = tile->planes[0], *const *b = tile->planes[1];
-    float edges = fabsf(strength(a, EDGE_X, EDGE_Y, i) - strength(b, EDGE_X, EDGE_Y, i));
-    float points = fabsf(strength(a, POINT_X, POINT_Y, i) - strength(b, POINT_X, POINT_Y, i));
+    float edges = fabsf(flip_strength(a, EDGE_X, EDGE_Y, i) - flip_strength(b, EDGE_X, EDGE_Y, i));
+    float points = fabsf(flip_strength(a, POINT_X, POINT_Y, i) - flip_strength(b, POINT_X, POINT_Y, i));
     return fmaxf(edges, points);
 }
 
@@ -321,7 +321,7 @@ static size_t hash_color(FlipColor color) {
     return (bits[0] * 2654435761u ^ bits[1] * 2246822519u ^ bits[2] * 3266489917u) >> (32 - CONVERTED_BITS);
 }
 
-static FlipColor convert(FlipTile *tile, float *const planes[PLANES], size_t i) {
+static FlipColor flip_convert(FlipTile *tile, float *const planes[PLANES], size_t i) {
     FlipColor from = {planes[0][i], planes[1][i], planes[2][i]};
     Converted *entry = &tile->converted[hash_color(from)];
     if (from.x != entry->from.x || from.y != entry->from.y || from.z != entry->from.z)
@@ -338,7 +338,7 @@ typedef struct Judged {
 static bool same(FlipColor a, FlipColor b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 static float pixel_flip(FlipTile *tile, size_t i, Judged *last) {
-    FlipColor a = convert(tile, tile->planes[0], i), b = convert(tile, tile->planes[1], i);
+    FlipColor a = flip_convert(tile, tile->planes[0], i), b = flip_convert(tile, tile->planes[1], i);
     bool known = same(a, last->a) && same(b, last->b);
     if (!known) *last = (Judged){a, b, flip_color_error(a, b, tile->model->largest), -1, 0};
     float feature = feature_change(tile, i);
@@ -412,7 +412,7 @@ static float select_rank(const float *values, size_t count, size_t rank) {
 }
 
 /* Keeps the largest values. Of those equal to the least, all but enough are dropped. */
-static void shrink(Largest *largest) {
+static void flip_shrink(Largest *largest) {
     float least = select_rank(largest->values, largest->count, largest->keep);
     size_t count = 0;
     for (size_t i = 0; i < largest->count; i++)
@@ -425,12 +425,12 @@ static void shrink(Largest *largest) {
 void largest_add(Largest *largest, float value) {
     if (value <= largest->least) return;
     largest->values[largest->count++] = value;
-    if (largest->count == 2 * largest->keep) shrink(largest);
+    if (largest->count == 2 * largest->keep) flip_shrink(largest);
 }
 
 float largest_least(Largest *largest) {
     if (largest->count < largest->keep) return 0;
-    shrink(largest);
+    flip_shrink(largest);
     return largest->least;
 }
 
@@ -445,7 +445,8 @@ typedef struct Flip {
     double sum;
 } Flip;
 
-static bool create(Flip *flip, const Image *expected, const Image *actual, double pixels_per_degree, Error *error) {
+static bool flip_create(Flip *flip, const Image *expected, const Image *actual, double pixels_per_degree,
+                        Error *error) {
     static const int most = 1 << 22; /* values of a band, unless one row has more */
     *flip = (Flip){.pictures = {expected, actual}, .width = expected->width, .height = expected->height};
     make_model(&flip->model, pixels_per_degree);
@@ -458,7 +459,7 @@ static bool create(Flip *flip, const Image *expected, const Image *actual, doubl
     return flip->tile != NULL && largest_create(&flip->largest, pixels / 100 + 1, error);
 }
 
-static void destroy(Flip *flip) {
+static void flip_destroy(Flip *flip) {
     largest_free(&flip->largest);
     free(flip->tile);
     free(flip->values);
@@ -514,7 +515,7 @@ static bool take_row(Flip *flip, const float *values, const FlipSink *sink, Erro
 bool flip_compare(const Image *expected, const Image *actual, double pixels_per_degree, const FlipSink *sink,
                   FlipSummary *result, Error *error) {
     Flip flip;
-    bool ok = create(&flip, expected, actual, pixels_per_degree, error);
+    bool ok = flip_create(&flip, expected, actual, pixels_per_degree, error);
     for (int top = 0; ok && top < flip.height; top += flip.band) {
         int bottom = int_min(top + flip.band, flip.height);
         fill_band(&flip, top, bottom);
@@ -525,6 +526,6 @@ bool flip_compare(const Image *expected, const Image *actual, double pixels_per_
         result->mean = flip.sum / ((double)flip.width * (double)flip.height);
         result->p99 = (double)largest_least(&flip.largest);
     }
-    destroy(&flip);
+    flip_destroy(&flip);
     return ok;
 }

@@ -29,7 +29,7 @@ static inline Bytes difference_of(Bytes a, Bytes b) {
     return most - (a ^ b ^ most);
 }
 
-static inline Bytes load(const uint8_t *p) {
+static inline Bytes image_compare_load(const uint8_t *p) {
     Bytes bytes;
     memcpy(&bytes, p, sizeof bytes);
     return bytes;
@@ -44,7 +44,7 @@ typedef struct Around {
     const uint8_t *rows[SIDE]; /* from y - REACH on; [4 * x] is REACH pixels left of pixel x */
 } Around;
 
-static int inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
+static int image_compare_inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
 
 static void premultiply(const uint8_t *p, uint8_t *to) {
     for (int c = 0; c < 3; c++) to[c] = p[3] == 255 ? p[c] : (uint8_t)((p[c] * p[3] + 127) / 255);
@@ -60,14 +60,14 @@ static bool around_create(Around *around, const Image *image) {
 static void around_move(Around *around, int y) {
     const Image *image = around->image;
     for (int i = 0; i < SIDE; i++) {
-        const int number = inside(y - REACH + i, image->height), slot = number % SIDE;
+        const int number = image_compare_inside(y - REACH + i, image->height), slot = number % SIDE;
         uint8_t *row = around->memory + (size_t)slot * around->stride;
         around->rows[i] = row;
         if (around->numbers[slot] == number) continue;
         around->numbers[slot] = number;
         const uint8_t *from = image->pixels + 4 * (size_t)number * (size_t)image->width;
         for (int x = -REACH; x < image->width + REACH; x++, row += 4)
-            premultiply(from + 4 * inside(x, image->width), row);
+            premultiply(from + 4 * image_compare_inside(x, image->width), row);
     }
 }
 
@@ -80,7 +80,8 @@ typedef struct Window {
 static inline void window_of(const Around *around, int x, Window *window) {
     const uint8_t *const *rows = around->rows + REACH - 1;
     const size_t at = 4 * ((size_t)x + REACH - 1);
-    const Bytes a = load(rows[0] + at), b = load(rows[1] + at), c = load(rows[2] + at);
+    const Bytes a = image_compare_load(rows[0] + at), b = image_compare_load(rows[1] + at),
+                c = image_compare_load(rows[2] + at);
     Bytes least = smaller_of(smaller_of(a, b), c), most = larger_of(larger_of(a, b), c);
     Sums sum = __builtin_convertvector(a, Sums) + __builtin_convertvector(b, Sums) + __builtin_convertvector(c, Sums);
     const Pixels low = (Pixels)least, high = (Pixels)most;
@@ -226,11 +227,11 @@ static inline Pixels look_equal(Bytes a, Bytes b, Bytes more) {
 
 /* All bits of those of four pixels, from column x of row i, that three of their eight neighbours look like. */
 static inline Pixels are_flat(const Around *around, int i, size_t x, Bytes more) {
-    const Bytes middle = load(around->rows[i] + 4 * x);
+    const Bytes middle = image_compare_load(around->rows[i] + 4 * x);
     Pixels count = {0};
     for (int dy = -1; dy <= 1; dy++)
         for (size_t dx = 0; dx < 3; dx++)
-            count -= look_equal(load(around->rows[i + dy] + 4 * (x + dx - 1)), middle, more);
+            count -= look_equal(image_compare_load(around->rows[i + dy] + 4 * (x + dx - 1)), middle, more);
     return (Pixels)(count > 3); /* with itself */
 }
 
@@ -248,7 +249,8 @@ static inline bool share_side(const Around *a, const Around *b, int x, const uin
     for (int i = 1; i < SIDE - 1; i++)
         for (size_t dx = 1; dx <= 2; dx++) { /* five pixels: the first four, and the last four */
             const size_t at = (size_t)x + dx;
-            Pixels found = look_equal(load(a->rows[i] + 4 * at), load(b->rows[i] + 4 * at), more);
+            Pixels found =
+                look_equal(image_compare_load(a->rows[i] + 4 * at), image_compare_load(b->rows[i] + 4 * at), more);
             if (any(found) && any(found &= are_flat(a, i, at, more)) && any(found & are_flat(b, i, at, more)))
                 return true;
         }
@@ -267,8 +269,8 @@ static bool find_sides(const Around *a, const Around *b, int x, const uint8_t sl
         for (size_t dx = 1; dx < SIDE - 1; dx++) {
             const size_t at = (size_t)x + dx;
             const uint8_t *p = a->rows[i] + 4 * at, *q = b->rows[i] + 4 * at;
-            if (look_equal(load(p), load(q), more)[0] == 0 || are_flat(a, i, at, more)[0] == 0 ||
-                are_flat(b, i, at, more)[0] == 0)
+            if (look_equal(image_compare_load(p), image_compare_load(q), more)[0] == 0 ||
+                are_flat(a, i, at, more)[0] == 0 || are_flat(b, i, at, more)[0] == 0)
                 continue;
             int distance = 0, colour[CHANNELS];
             for (int c = 0; c < CHANNELS; c++) {
@@ -373,7 +375,7 @@ int image_pixel_difference(const Image *a, const Image *b, size_t pixel) {
 void image_levels(const uint8_t *a, const uint8_t *b, size_t count, uint8_t *levels) {
     size_t x = 0;
     for (; x + 4 <= count; x += 4) {
-        const Bytes difference = difference_of(load(a + 4 * x), load(b + 4 * x));
+        const Bytes difference = difference_of(image_compare_load(a + 4 * x), image_compare_load(b + 4 * x));
         const Bytes half = larger_of(difference, (Bytes)((Pixels)difference >> 16));
         const Pixels whole = (Pixels)larger_of(half, (Bytes)((Pixels)half >> 8));
         for (size_t i = 0; i < 4; i++) levels[x + i] = (uint8_t)whole[i];
@@ -481,7 +483,7 @@ void image_compare(const Image *a, const Image *b, ImageDifference *difference) 
 }
 
 /* Rows are copied in place: the first byte of a row never lies after its new place. */
-static void cut(Image *image, int width, int height) {
+static void image_compare_cut(Image *image, int width, int height) {
     size_t from = 4 * (size_t)image->width, to = 4 * (size_t)width;
     for (int y = 0; y < height && width < image->width; y++) {
         memmove(image->pixels + (size_t)y * to, image->pixels + (size_t)y * from, to);
@@ -494,6 +496,6 @@ static void cut(Image *image, int width, int height) {
 
 void image_cut_to_overlap(Image *a, Image *b) {
     int width = int_min(a->width, b->width), height = int_min(a->height, b->height);
-    cut(a, width, height);
-    cut(b, width, height);
+    image_compare_cut(a, width, height);
+    image_compare_cut(b, width, height);
 }

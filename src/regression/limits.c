@@ -230,7 +230,8 @@ void regression_compare(const Regression *regression, RegressionFrame *frame, co
 }
 
 /* Ignored pixels count as equal. */
-static bool measure(RegressionFrame *frame, const Image *expected, Image *actual, const uint8_t *masked, Error *error) {
+static bool limits_measure(RegressionFrame *frame, const Image *expected, Image *actual, const uint8_t *masked,
+                           Error *error) {
     FlipSummary flip;
     image_copy_masked(expected, actual, masked);
     if (!flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, NULL, &flip, error)) return false;
@@ -244,7 +245,7 @@ bool regression_decide(const Regression *regression, RegressionFrame *frame, con
     const Tolerance tolerance = regression_tolerance(regression, frame);
     const bool resized = !difference->same_size && !regression_accepts_size(regression, frame);
     if ((resized || difference->pixels > 0) && (tolerance.given & LIMITS_FLIP) != 0 &&
-        !measure(frame, expected, actual, masked, error))
+        !limits_measure(frame, expected, actual, masked, error))
         return false;
     if (resized)
         frame->pixels = PIXELS_RESIZED;

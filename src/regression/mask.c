@@ -44,7 +44,7 @@ typedef struct MaskPicture {
 
 static size_t bits_of(const MaskPicture *picture) { return (size_t)picture->width * (size_t)picture->height; }
 
-static void destroy(MaskPicture *picture) {
+static void mask_destroy(MaskPicture *picture) {
     if (picture == NULL) return;
     free(picture->path);
     free(picture->file);
@@ -61,7 +61,7 @@ static MaskPicture *read_picture(const char *path, Error *error) {
              png_check(picture->file, picture->size, path, &picture->width, &picture->height, error) &&
              png_check_pixels(picture->width, picture->height, IMAGE_MAX_PIXELS, path, error))
         return picture;
-    destroy(picture);
+    mask_destroy(picture);
     return NULL;
 }
 
@@ -72,7 +72,7 @@ static void set_bits(const Image *image, size_t count, uint8_t *bits) {
     }
 }
 
-static void decode(MaskPicture *picture) {
+static void mask_decode(MaskPicture *picture) {
     Image *image = image_decode_png(picture->file, picture->size, picture->path, IMAGE_MAX_PIXELS, &picture->fault);
     if (image == NULL) return;
     picture->bits = calloc(bits_of(picture) / 8 + 1, 1);
@@ -92,37 +92,37 @@ static bool draw_picture(MaskPicture *picture, const Image *expected, const char
         return error_input(error, picture->path, "the mask has %d x %d pixels, but %s has %d x %d", picture->width,
                            picture->height, path, expected->width, expected->height);
 #pragma omp critical(mask_picture)
-    if (picture->bits == NULL && picture->fault.kind == ERROR_NONE) decode(picture);
+    if (picture->bits == NULL && picture->fault.kind == ERROR_NONE) mask_decode(picture);
     if (picture->bits == NULL) return *error = picture->fault, false;
     for (size_t i = 0; i < bits_of(picture); i++)
         if (picture->bits[i / 8] >> i % 8 & 1) masked[i] = IGNORED_MASK;
     return true;
 }
 
-static bool add(Mask *mask, MaskPart part, Error *error) {
+static bool mask_add(Mask *mask, MaskPart part, Error *error) {
     if (mask->count == MASK_PARTS) return error_input(error, "--mask", "at most %d masks", MASK_PARTS);
     mask->parts[mask->count++] = part;
     return true;
 }
 
 bool mask_add_rectangle(Mask *mask, int x, int y, int width, int height, Error *error) {
-    return add(mask, (MaskPart){.kind = MASK_RECTANGLE, .x = x, .y = y, .width = width, .height = height}, error);
+    return mask_add(mask, (MaskPart){.kind = MASK_RECTANGLE, .x = x, .y = y, .width = width, .height = height}, error);
 }
 
 bool mask_add_picture(Mask *mask, const char *path, Error *error) {
     MaskPicture *picture = read_picture(path, error);
     if (picture == NULL) return false;
-    if (add(mask, (MaskPart){.kind = MASK_PICTURE, .picture = picture}, error)) return true;
-    destroy(picture);
+    if (mask_add(mask, (MaskPart){.kind = MASK_PICTURE, .picture = picture}, error)) return true;
+    mask_destroy(picture);
     return false;
 }
 
 bool mask_add_color(Mask *mask, const uint8_t color[3], Error *error) {
-    return add(mask, (MaskPart){.kind = MASK_COLOR, .color = {color[0], color[1], color[2]}}, error);
+    return mask_add(mask, (MaskPart){.kind = MASK_COLOR, .color = {color[0], color[1], color[2]}}, error);
 }
 
 void mask_free(Mask *mask) {
-    for (int i = 0; i < mask->count; i++) destroy(mask->parts[i].picture);
+    for (int i = 0; i < mask->count; i++) mask_destroy(mask->parts[i].picture);
     mask->count = 0;
 }
 

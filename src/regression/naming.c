@@ -35,7 +35,7 @@ static ViewRect clipped(const Naming *naming, ViewRect rect) {
 
 /* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change; -1: to none.
    Returns their number. */
-static int64_t take(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
+static int64_t naming_take(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
     int64_t taken = 0;
     rect = clipped(naming, rect);
     for (int y = rect.top; y < rect.bottom; y++)
@@ -58,14 +58,14 @@ static int64_t take_box(Naming *naming, ViewRect rect, const BoxModel *box, doub
     ViewRect inside = {
         nearest(floor(bounds[0]), rect.left, rect.right), nearest(floor(bounds[1]), rect.top, rect.bottom),
         nearest(ceil(bounds[2]), rect.left, rect.right), nearest(ceil(bounds[3]), rect.top, rect.bottom)};
-    return take(naming, inside, box, margin, change);
+    return naming_take(naming, inside, box, margin, change);
 }
 
 /* Gives the unknown pixels of a rectangle to a new change, if there are any and there is room. */
 static void name_rectangle(Naming *naming, ViewRect rect, ChangeSubject subject, int panel) {
     const Change change = {.subject = subject, .panel = panel};
     int at = add_change(naming, &change);
-    if (at >= 0 && take(naming, rect, NULL, 0, at) == 0) naming->changes->count--;
+    if (at >= 0 && naming_take(naming, rect, NULL, 0, at) == 0) naming->changes->count--;
 }
 
 static void name_parts(Naming *naming) {
@@ -86,7 +86,7 @@ static void name_rest(Naming *naming) {
     const FrameView *view = naming->scene->view;
     for (int i = 0; i < view->panel_count; i++) {
         ViewRect rect = view->panels[i].rect;
-        if (!knows_bodies(naming, i)) take(naming, rect, NULL, 0, -1); /* a body may be what changed */
+        if (!knows_bodies(naming, i)) naming_take(naming, rect, NULL, 0, -1); /* a body may be what changed */
         name_rectangle(naming,
                        (ViewRect){rect.left - BORDER, rect.top - BORDER, rect.right + BORDER, rect.bottom + BORDER},
                        view->marks ? SUBJECT_MARKS : SUBJECT_BACKGROUND, i + 1);

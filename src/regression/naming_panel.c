@@ -32,7 +32,7 @@ void box_bounds(const BoxModel *box, double margin, double bounds[4]) {
     bounds[0] = box->x - x, bounds[1] = box->y - y, bounds[2] = box->x + x, bounds[3] = box->y + y;
 }
 
-static bool place(const Panel *panel, const Trajectory *run, int body, BoxModel *box) {
+static bool naming_panel_place(const Panel *panel, const Trajectory *run, int body, BoxModel *box) {
     int frame = panel->naming->scene->frame < run->frames ? panel->naming->scene->frame : run->frames - 1;
     if (body >= run->bodies || !trajectory_has(run, frame, body)) return false;
     size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
@@ -63,8 +63,8 @@ static void add_layer(Panel *panel, BodyLayer wanted) {
     for (int body = 0; body < expected->bodies; body++) {
         if (panel_layer(expected, body) != wanted) continue;
         Drawn drawn = {.index = body};
-        drawn.exists[0] = place(panel, expected, body, &drawn.box[0]);
-        drawn.exists[1] = place(panel, actual, body, &drawn.box[1]);
+        drawn.exists[0] = naming_panel_place(panel, expected, body, &drawn.box[0]);
+        drawn.exists[1] = naming_panel_place(panel, actual, body, &drawn.box[1]);
         if (drawn.exists[0] != drawn.exists[1]) drawn.moved = INFINITY;
         if (drawn.exists[0] && drawn.exists[1]) drawn.moved = movement(&drawn.box[0], &drawn.box[1]);
         if (drawn.exists[0] || drawn.exists[1]) panel->bodies[panel->count++] = drawn;
@@ -98,7 +98,7 @@ static void paint_outlines(const Panel *panel, const Trajectory *run) {
     const double reach = outline_reach(panel);
     for (int body = 0; body < run->bodies; body++) {
         BoxModel box;
-        if (run->fixed[body] || !place(panel, run, body, &box)) continue;
+        if (run->fixed[body] || !naming_panel_place(panel, run, body, &box)) continue;
         ViewRect rect = panel_bounds(panel, &box, 1);
         for (int y = rect.top; y < rect.bottom; y++)
             for (int x = rect.left; x < rect.right; x++) {

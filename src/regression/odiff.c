@@ -37,8 +37,8 @@ static int64_t color_delta(const uint8_t *a, const uint8_t *b) {
     return (y * y * FIXED(0.5053) + i * i * FIXED(0.299) + q * q * FIXED(0.1957)) >> (2 * BITS);
 }
 
-static bool prepare(OdiffDifference *difference, const Image *base, const Image *compared, const char *name,
-                    Error *error) {
+static bool odiff_prepare(OdiffDifference *difference, const Image *base, const Image *compared, const char *name,
+                          Error *error) {
     const int width = int_max(base->width, compared->width), height = int_max(base->height, compared->height);
     const size_t all = (size_t)width * (size_t)height;
     *difference = (OdiffDifference){.width = width, .height = height};
@@ -52,13 +52,13 @@ static bool prepare(OdiffDifference *difference, const Image *base, const Image 
            error_memory(error, name);
 }
 
-static void ignore(OdiffDifference *difference, const OdiffRegion *region) {
+static void odiff_ignore(OdiffDifference *difference, const OdiffRegion *region) {
     const int64_t right = region->x2 < difference->width ? region->x2 + 1 : difference->width;
     for (int64_t y = region->y1; y <= region->y2 && y < difference->height && region->x1 < right; y++)
         memset(difference->pixels + y * difference->width + region->x1, IGNORED_MASK, (size_t)(right - region->x1));
 }
 
-static void mark(OdiffDifference *difference, int x, int y) {
+static void odiff_mark(OdiffDifference *difference, int x, int y) {
     uint8_t *pixel = &difference->pixels[(size_t)y * (size_t)difference->width + (size_t)x];
     if (*pixel != IGNORED_NOT) return;
     *pixel = ODIFF_DIFFERS;
@@ -78,22 +78,23 @@ static void compare_row(OdiffDifference *difference, const Image *base, const Im
     const bool deep = limit == 0 && (a.pixels16 != NULL || b.pixels16 != NULL);
     for (size_t x = 0; (x = image_next_difference(&a, &b, 0, x)) < (size_t)width; x++)
         if (color_delta(a.pixels + 4 * x, b.pixels + 4 * x) > limit || (deep && image_pixel_difference(&a, &b, x) > 0))
-            mark(difference, (int)x, y);
+            odiff_mark(difference, (int)x, y);
 }
 
 /* The pixels that the other picture does not have. */
 static void mark_rest(OdiffDifference *difference, const Image *image, const Image *other) {
     for (int y = 0; y < image->height; y++)
         for (int x = y < other->height ? other->width : 0; x < image->width; x++)
-            if (image->pixels[4 * ((size_t)y * (size_t)image->width + (size_t)x) + 3] != 0) mark(difference, x, y);
+            if (image->pixels[4 * ((size_t)y * (size_t)image->width + (size_t)x) + 3] != 0)
+                odiff_mark(difference, x, y);
 }
 
 bool odiff_compare(const Image *base, const Image *compared, const OdiffOptions *options, const char *name,
                    OdiffDifference *difference, Error *error) {
     const double threshold = (double)(float)options->threshold;
     const int64_t limit = (int64_t)(largest_delta * (threshold * threshold) * ONE);
-    if (!prepare(difference, base, compared, name, error)) return false;
-    for (int i = 0; i < options->region_count; i++) ignore(difference, &options->regions[i]);
+    if (!odiff_prepare(difference, base, compared, name, error)) return false;
+    for (int i = 0; i < options->region_count; i++) odiff_ignore(difference, &options->regions[i]);
     if (options->antialias && base->width == compared->width && base->height == compared->height &&
         !antialias_mark(base, compared, difference->pixels, error))
         return false;

@@ -107,7 +107,7 @@ static Value value_of(int kind, const PngChunk *chunk) {
 }
 
 /* Chunks without a short value: "cHRM differs". */
-static void describe(int kind, const PngChunk *a, const PngChunk *b, PngDisplay *display) {
+static void png_display_describe(int kind, const PngChunk *a, const PngChunk *b, PngDisplay *display) {
     const char *name = kind == EXIF ? "orientation" : types[kind];
     Value first = value_of(kind, a), second = value_of(kind, b);
     if (strcmp(first.text, second.text) == 0)
@@ -122,7 +122,7 @@ bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size
     display->text[0] = '\0';
     for (int i = 0; i < KINDS; i++) {
         const PngChunk *x = &first.kinds[i], *y = &second.kinds[i];
-        if (!displays_alike(i, x, y, error)) describe(i, x, y, display);
+        if (!displays_alike(i, x, y, error)) png_display_describe(i, x, y, display);
     }
     return error->kind == ERROR_NONE;
 }

@@ -225,7 +225,7 @@ static bool judge_sizes(const Regression *regression, RegressionFrame *frame, co
     return true;
 }
 
-static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
+static bool regression_judge(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
     const PngFile *a = &files[EXPECTED], *b = &files[ACTUAL];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (frame->at[1 - side] == NULL) return judge_alone(frame, side, &files[side], error);
@@ -245,7 +245,7 @@ static bool compare_files(Regression *regression, RegressionFrame *frame, Error 
         ok = png_file_open(&files[side], frame->at[side]->path, regression->options.max_pixels, error);
         frame->files[side] = (RegressionFile){.hash = files[side].hash, .size = files[side].size};
     }
-    ok = ok && judge(regression, frame, files, error);
+    ok = ok && regression_judge(regression, frame, files, error);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         frame->files[side].size = files[side].bytes; /* up to here, of what is in memory */
         png_file_close(&files[side]);

@@ -23,7 +23,7 @@ const char report_kind_letters[REPORT_KINDS + 1] = "eadf";
 enum { DIFFERENCE = SIDES, HEAT };
 
 /* Loads a file and checks that it has not changed since the comparison. */
-static bool load(const RegressionFrame *frame, RegressionSide side, ReportPicture *picture, Error *error) {
+static bool report_load(const RegressionFrame *frame, RegressionSide side, ReportPicture *picture, Error *error) {
     const char *path = frame->at[side]->path;
     picture->data = image_load_png(path, &picture->size, error);
     if (picture->data == NULL) return false;
@@ -32,8 +32,8 @@ static bool load(const RegressionFrame *frame, RegressionSide side, ReportPictur
 }
 
 /* Measures FLIP; draws its picture only if picture != NULL. */
-static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
-                    Error *error) {
+static bool report_measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
+                           Error *error) {
     IndexedPng *heat = NULL;
     FlipSummary flip;
     if (picture != NULL && (heat = heat_picture(expected->width, expected->height, error)) == NULL) return false;
@@ -47,16 +47,16 @@ static bool measure(const Image *expected, const Image *actual, RegressionFrame 
 
 /* Measures FLIP and, if there is room, draws the difference pictures. Of pictures of different size, the difference
    picture shows both, and FLIP the overlap. */
-static bool draw(const Regression *regression, RegressionFrame *frame, Image *expected, Image *actual,
-                 ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
+static bool report_draw(const Regression *regression, RegressionFrame *frame, Image *expected, Image *actual,
+                        ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
     uint8_t *masked;
     int width = int_max(expected->width, actual->width), height = int_max(expected->height, actual->height);
     if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
     ReportPicture *difference = &pictures[DIFFERENCE];
     if (room) difference->data = difference_picture(expected, actual, masked, width, height, &difference->size, error);
     image_copy_masked(expected, actual, masked);
-    bool ok =
-        (!room || difference->data != NULL) && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
+    bool ok = (!room || difference->data != NULL) &&
+              report_measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
     free(masked);
     return ok;
 }
@@ -71,7 +71,7 @@ static bool draw_differences(const Regression *regression, RegressionFrame *fram
         images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
                                         regression->options.max_pixels, error);
     bool ok = images[EXPECTED] != NULL && images[ACTUAL] != NULL &&
-              draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, room, error);
+              report_draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, room, error);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
     return ok;
 }
@@ -99,7 +99,7 @@ static bool make_frame(void *context, int i, Error *error) {
     RegressionFrame *frame = &batch->regression->frames[batch->frames[i]];
     ReportPicture *made = batch->pictures->frames[batch->frames[i]];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (frame->at[side] != NULL && !load(frame, side, &made[side], error)) return false;
+        if (frame->at[side] != NULL && !report_load(frame, side, &made[side], error)) return false;
     return draw_differences(batch->regression, frame, made, batch->room, error);
 }
 

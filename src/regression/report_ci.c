@@ -77,7 +77,7 @@ typedef struct Failures {
     int begin, end; /* cases; end is exclusive */
 } Failures;
 
-static void annotate(FILE *out, const Regression *regression, Failures failures) {
+static void report_ci_annotate(FILE *out, const Regression *regression, Failures failures) {
     const ReportCase made = regression_case(regression, failures.begin);
     fputs("::error file=", out);
     put_property(out, path_of(&made));
@@ -114,7 +114,7 @@ void github_annotate(FILE *out, const Regression *regression) {
         groups = GITHUB_ANNOTATIONS_MAX - 1;
         left_out += found[groups].end - found[groups].begin;
     }
-    for (int i = 0; i < groups; i++) annotate(out, regression, found[i]);
+    for (int i = 0; i < groups; i++) report_ci_annotate(out, regression, found[i]);
     if (left_out == 0) return;
     char message[128];
     snprintf(message, sizeof message, "%d more failures; the step summary and the report list them", left_out);

@@ -143,8 +143,8 @@ typedef struct Range {
     int count;
 } Range;
 
-static SequenceFrame *find(const ImageSequence *sequence, const SequenceFrame *key,
-                           int (*compare)(const void *, const void *)) {
+static SequenceFrame *sequence_find(const ImageSequence *sequence, const SequenceFrame *key,
+                                    int (*compare)(const void *, const void *)) {
     if (sequence->count == 0) return NULL;
     return bsearch(key, sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare);
 }
@@ -161,8 +161,8 @@ static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *
         return NULL;
     SequenceFrame key = {.name = name};
     read_name(&key);
-    if (find(b, &key, compare_frames) == NULL || find(b, frame, by_stem) != NULL) return NULL;
-    return find(a, &key, compare_frames);
+    if (sequence_find(b, &key, compare_frames) == NULL || sequence_find(b, frame, by_stem) != NULL) return NULL;
+    return sequence_find(a, &key, compare_frames);
 }
 
 /* The frames of `a` that can make pairs; the others are linked to theirs. */
@@ -185,7 +185,7 @@ typedef struct Pairing {
     int count;
 } Pairing;
 
-static void put(Pairing *pairing, const SequenceFrame *a, const SequenceFrame *b) {
+static void sequence_put(Pairing *pairing, const SequenceFrame *a, const SequenceFrame *b) {
     pairing->pairs[pairing->count++] = (SequencePair){a, b};
 }
 
@@ -219,10 +219,10 @@ static bool pair_group(Pairing *pairing, Range a, Range b, Error *error) {
     }
     for (int i = 0; i < a.count; i++) {
         const SequenceFrame *same = find_name(b, a.frames[i]->name);
-        put(pairing, a.frames[i], same != NULL ? same : one ? left_b[0] : NULL);
+        sequence_put(pairing, a.frames[i], same != NULL ? same : one ? left_b[0] : NULL);
     }
     for (int i = 0; i < b.count && !one; i++)
-        if (find_name(a, b.frames[i]->name) == NULL) put(pairing, NULL, b.frames[i]);
+        if (find_name(a, b.frames[i]->name) == NULL) sequence_put(pairing, NULL, b.frames[i]);
     return true;
 }
 
@@ -250,8 +250,9 @@ static bool has_one_numbered_stem(Range range) {
 typedef bool PairRanges(Pairing *pairing, Range a, Range b, Error *error);
 
 /* Calls pair_ranges for each part of both ranges that has one place in the order of `compare`. */
-static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const SequenceFrame *, const SequenceFrame *),
-                  PairRanges *pair_ranges, Error *error) {
+static bool sequence_merge(Pairing *pairing, Range a, Range b,
+                           int (*compare)(const SequenceFrame *, const SequenceFrame *), PairRanges *pair_ranges,
+                           Error *error) {
     while (a.count > 0 || b.count > 0) {
         int order = a.count == 0 ? 1 : b.count == 0 ? -1 : compare(a.frames[0], b.frames[0]);
         Range first = take_leading(&a, order <= 0, compare), second = take_leading(&b, order >= 0, compare);
@@ -262,17 +263,17 @@ static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const Seque
 
 static bool pair_folder(Pairing *pairing, Range a, Range b, Error *error) {
     bool numbers_alone = has_one_numbered_stem(a) && has_one_numbered_stem(b);
-    return merge(pairing, a, b, numbers_alone ? compare_numbers : by_stem_and_number, pair_group, error);
+    return sequence_merge(pairing, a, b, numbers_alone ? compare_numbers : by_stem_and_number, pair_group, error);
 }
 
 static bool pair_sequences(Pairing *pairing, const ImageSequence *a, const ImageSequence *b,
                            const SequenceFrame **frames, Error *error) {
     if (a->single) {
-        put(pairing, &a->frames[0], &b->frames[0]);
+        sequence_put(pairing, &a->frames[0], &b->frames[0]);
         return true;
     }
     Range first = take_frames(a, b, frames), second = take_frames(b, NULL, frames + a->count);
-    return merge(pairing, first, second, compare_folders, pair_folder, error);
+    return sequence_merge(pairing, first, second, compare_folders, pair_folder, error);
 }
 
 SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b, int *count, Error *error) {

@@ -50,7 +50,7 @@ static bool is_plain(Island *island, int left, int top, int right, int bottom, s
 }
 
 /* One step: moves the sides beyond which there is content. *done: the band all around has one colour. */
-static void grow(Island *island, bool *done) {
+static void shift_grow(Island *island, bool *done) {
     const int n = island->reach;
     const int l = island->left, t = island->top, r = island->right, b = island->bottom;
     const int bands[SIDES_OF_BOX][4] = {
@@ -80,7 +80,7 @@ static bool find_island(Island *island, int x, int y) {
         if (island->work < 0 || (island->left < -n && island->top < -n && island->right > image->width + n &&
                                  island->bottom > image->height + n))
             return false;
-        grow(island, &done);
+        shift_grow(island, &done);
     }
     return island->ground != NO_PIXEL;
 }
@@ -116,7 +116,7 @@ static bool has_moved(Island *island) {
 }
 
 /* Pixels of the box that differ become `what`. */
-static void mark(Island *island, Ignored what, uint8_t *masked) {
+static void mark_shift(Island *island, Ignored what, uint8_t *masked) {
     const Image *a = island->pictures[0], *b = island->pictures[1];
     for (int y = int_max(island->top, 0); y < int_min(island->bottom, a->height); y++)
         for (int x = int_max(island->left, 0); x < int_min(island->right, a->width); x++) {
@@ -139,7 +139,7 @@ void shift_mark(const Image *expected, const Image *actual, int reach, int toler
         }
         if (masked[i] != IGNORED_NOT || image_pixel_difference(expected, actual, i) <= tolerance) continue;
         const bool found = find_island(&island, (int)(i % width), (int)(i / width)) && has_moved(&island);
-        mark(&island, found ? IGNORED_RULE : (Ignored)IGNORED_TRIED, masked);
+        mark_shift(&island, found ? IGNORED_RULE : (Ignored)IGNORED_TRIED, masked);
     }
     for (size_t i = 0; i < count; i++)
         if (masked[i] == IGNORED_TRIED) masked[i] = IGNORED_NOT;

@@ -113,7 +113,7 @@ static void add_only(ContactDifference *d, const TrajectoryContact *only, int *c
     (*count)++;
 }
 
-static void merge(const ContactList *a, const ContactList *b, ContactDifference *d) {
+static void compare_runs_merge(const ContactList *a, const ContactList *b, ContactDifference *d) {
     for (int i = 0, k = 0; i < a->count || k < b->count;) {
         int order = i == a->count ? 1 : k == b->count ? -1 : order_keys(a->items[i], b->items[k]);
         if (order == 0) add_both(d, a->items[i], b->items[k]);
@@ -144,7 +144,7 @@ bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int 
     if (ok) {
         difference->count_a = of_a.count;
         difference->count_b = of_b.count;
-        merge(&of_a, &of_b, difference);
+        compare_runs_merge(&of_a, &of_b, difference);
     }
     free(of_a.items);
     free(of_b.items);

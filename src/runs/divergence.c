@@ -63,7 +63,7 @@ typedef struct Watch {
     ProgressStage stage;
 } Watch;
 
-static bool measure(void *context, int frame, const World *world, Error *error) {
+static bool divergence_measure(void *context, int frame, const World *world, Error *error) {
     Watch *watch = context;
     const Trajectory *unshifted = watch->unshifted;
     const Body *bodies = world_bodies(world);
@@ -78,7 +78,7 @@ static bool measure(void *context, int frame, const World *world, Error *error) 
 }
 
 static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, Error *error) {
-    const StepObserver observer = {measure, watch};
+    const StepObserver observer = {divergence_measure, watch};
     Chaos *chaos = watch->chaos;
     for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
     chaos->distance[0] = trajectory_has(watch->unshifted, 0, chaos->body) ? chaos->shift : 0;

@@ -218,7 +218,7 @@ static void include_frames(Extent *all, const Trajectory *run, const int *frames
         }
 }
 
-static bool stays(const Trajectory *run, const int *frames, int count, int body, const Extent *region) {
+static bool framing_stays(const Trajectory *run, const int *frames, int count, int body, const Extent *region) {
     bool inside = !run->fixed[body];
     for (int i = 0; i < count && inside; i++) {
         const int frame = shown_frame(run, frames[i]);
@@ -232,9 +232,9 @@ static bool stays(const Trajectory *run, const int *frames, int count, int body,
 static void include_staying(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *region) {
     int moving = 0, staying = 0;
     for (int body = 0; body < run->bodies; body++)
-        moving += !run->fixed[body], staying += stays(run, frames, count, body, region);
+        moving += !run->fixed[body], staying += framing_stays(run, frames, count, body, region);
     for (int body = 0; 2 * staying > moving && body < run->bodies; body++)
-        for (int i = 0; i < count && stays(run, frames, count, body, region); i++)
+        for (int i = 0; i < count && framing_stays(run, frames, count, body, region); i++)
             extent_include(all, run, shown_frame(run, frames[i]), body);
 }
 

@@ -87,7 +87,7 @@ static void name_free(const Check *check, const Box *bomb, int bodies, Error *er
     free(blocked);
 }
 
-static bool refuse(const Check *check, int launch, int body, const Box *bomb, int bodies, Error *error) {
+static bool launch_check_refuse(const Check *check, int launch, int body, const Box *bomb, int bodies, Error *error) {
     const Launch *at = &check->launches[launch];
     char which[32] = "the launch";
     if (check->count > 1) snprintf(which, sizeof which, "launch %d", launch + 1);
@@ -111,7 +111,7 @@ static bool check_frame(Check *check, int frame, const World *world, Error *erro
         const Box bomb = bomb_box(check->scene, &check->launches[launch]);
         for (int i = 0; i < count; i++)
             if (overlap_exceeds(&check->boxes[i], &bomb, SCENE_OVERLAP))
-                return refuse(check, launch, i, &bomb, count, error);
+                return launch_check_refuse(check, launch, i, &bomb, count, error);
     }
     return true;
 }
@@ -121,7 +121,7 @@ static bool is_due(const Check *check, int frame) {
 }
 
 /* The engine's run without the bomb, up to the frame of the last launch. */
-static bool run(Check *check, Error *error) {
+static bool launch_check_run(Check *check, Error *error) {
     Scene quiet = *check->scene;
     quiet.bomb.present = false;
     quiet.frames = check->due[check->count - 1].frame;
@@ -146,7 +146,7 @@ bool launches_check(const Scene *scene, const Launch *launches, int count, Error
     bool ok = check.due != NULL && check.boxes != NULL;
     for (int i = 0; ok && i < count; i++) check.due[i] = (Due){launches[i].frame, i};
     if (ok) qsort(check.due, (size_t)count, sizeof *check.due, by_frame);
-    ok = ok ? run(&check, error) : error_memory(error, scene->name);
+    ok = ok ? launch_check_run(&check, error) : error_memory(error, scene->name);
     free(check.due);
     free(check.boxes);
     return ok;
@@ -262,7 +262,7 @@ bool launches_find_misses(const Scene *scene, LaunchMisses *misses, Error *error
     return true;
 }
 
-static bool ignore(void *context, int frame, const World *world, Error *error) {
+static bool launch_check_ignore(void *context, int frame, const World *world, Error *error) {
     (void)context, (void)frame, (void)world, (void)error;
     return true;
 }
@@ -273,7 +273,7 @@ static bool run_one_step(const Scene *scene, const Method *method, bool with_bom
     short_run.bomb.frame = 0;
     short_run.bomb.present = scene->bomb.present && with_bomb;
     short_run.overlaps_allowed = true; /* it may not be the bomb's frame */
-    return simulate_observed(&short_run, method, &(StepObserver){ignore, NULL}, error);
+    return simulate_observed(&short_run, method, &(StepObserver){launch_check_ignore, NULL}, error);
 }
 
 bool scene_check_networks(const Scene *scene, Error *error) {

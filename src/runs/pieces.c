@@ -50,7 +50,7 @@ static void find_cpu(const char *text, char cpu[CPU_NAME_SIZE]) {
 }
 
 /* Whether the study is another, to say so. */
-static bool refuse(const char *path, const char *text, const PieceHead *head, Error *error) {
+static bool pieces_refuse(const char *path, const char *text, const PieceHead *head, Error *error) {
     unsigned long long key;
     char name[PIECE_NAME_SIZE];
     if (sscanf(text, "twinbox piece 1\nkey %16llx\n", &key) != 1)
@@ -75,7 +75,7 @@ char *piece_file_read(const char *path, PieceHead *head, size_t *size, Error *er
     *size = whole - length;
     const size_t wanted = (size_t)print_head(expected, head, text + length, *size);
     if (end == NULL || length != wanted || memcmp(expected, text, length) != 0) {
-        refuse(path, text, head, error);
+        pieces_refuse(path, text, head, error);
         free(text);
         return NULL;
     }
@@ -260,7 +260,7 @@ typedef struct PieceProgress {
     double weight, share; /* share: of `done` so far */
 } PieceProgress;
 
-static bool report(void *context, double done, double total) {
+static bool pieces_report(void *context, double done, double total) {
     PieceProgress *piece = context;
     Doing *doing = piece->doing;
     const double share = total > 0 ? piece->weight * done / total : 0;
@@ -276,7 +276,7 @@ static bool report(void *context, double done, double total) {
 }
 
 /* Writes the piece's file once its results are whole. */
-static bool store(const Pieces *pieces, int64_t piece, const char *results, size_t size, Error *error) {
+static bool pieces_store(const Pieces *pieces, int64_t piece, const char *results, size_t size, Error *error) {
     char path[PIECES_PATH_SIZE], folder[PIECES_PATH_SIZE];
     PieceHead head;
     pieces_head(pieces, piece, &head);
@@ -285,8 +285,8 @@ static bool store(const Pieces *pieces, int64_t piece, const char *results, size
     return file_make_directory(folder, error) && piece_file_write(path, &head, results, size, error);
 }
 
-static bool work(Doing *doing, int64_t piece, PieceProgress *own, Error *error) {
-    const Progress progress = {report, own};
+static bool pieces_work(Doing *doing, int64_t piece, PieceProgress *own, Error *error) {
+    const Progress progress = {pieces_report, own};
     char *results = NULL;
     size_t size = 0;
     FILE *stream = memory_stream(&results, &size);
@@ -294,7 +294,7 @@ static bool work(Doing *doing, int64_t piece, PieceProgress *own, Error *error) 
     bool ok = doing->plan->work(doing->plan->context, piece, stream, &progress, error);
     if (ferror(stream) && ok) ok = error_memory(error, "piece");
     if (fclose(stream) != 0 && ok) ok = error_memory(error, "piece");
-    ok = ok && store(doing->pieces, piece, results, size, error);
+    ok = ok && pieces_store(doing->pieces, piece, results, size, error);
     free(results);
     return ok;
 }
@@ -304,7 +304,7 @@ static bool do_piece(void *context, int i, Error *error) {
     const PieceInfo info = piece_describe(doing->plan, doing->batch[i]);
     PieceProgress own = {doing, info.weight, 0};
     Error failure = {0};
-    if (work(doing, doing->batch[i], &own, &failure) && report(&own, 1, 1)) return true;
+    if (pieces_work(doing, doing->batch[i], &own, &failure) && pieces_report(&own, 1, 1)) return true;
     if (failure.kind == ERROR_NONE || failure.kind == ERROR_INTERRUPTED)
         return error_interrupted(error, info.name, "stopped; finished pieces are kept");
     *error = failure;

@@ -83,7 +83,7 @@ typedef struct Measuring {
 } Measuring;
 
 /* One more piece is done, or none. */
-static bool report(Measuring *measuring, int more) {
+static bool pieces_report_done(Measuring *measuring, int more) {
     bool go_on;
 #pragma omp critical(pieces_progress)
     {
@@ -95,11 +95,11 @@ static bool report(Measuring *measuring, int more) {
 
 static bool keep_on(void *context, double done, double total) {
     (void)done, (void)total;
-    return report(context, 0);
+    return pieces_report_done(context, 0);
 }
 
 /* All of a piece in this thread: a parallel region inside another has one. */
-static bool measure(void *context, int i, Error *error) {
+static bool pieces_report_measure(void *context, int i, Error *error) {
     Measuring *measuring = context;
     const Progress progress = {keep_on, measuring};
     char *results = NULL;
@@ -116,7 +116,7 @@ static bool measure(void *context, int i, Error *error) {
     if (!written) return error_memory(error, "plan");
     measuring->seconds[i] = took;
     measuring->bytes[i] = (double)size;
-    return report(measuring, 1) || error_interrupted(error, "plan", "stopped");
+    return pieces_report_done(measuring, 1) || error_interrupted(error, "plan", "stopped");
 }
 
 /* The weight of all pieces, of the heaviest, and of the heaviest that few shards do together; these follow each other. */
@@ -136,7 +136,7 @@ static double add_weights(const PiecePlan *plan, double *heaviest, double *toget
 }
 
 /* Pieces of the same group differ less than groups: the weights carry the measured times over to the others. */
-static void extrapolate(PiecesEstimate *estimate, const Measuring *measuring) {
+static void pieces_report_extrapolate(PiecesEstimate *estimate, const Measuring *measuring) {
     double seconds = 0, bytes = 0, weights = 0, heaviest, together;
     for (int i = 0; i < measuring->count; i++) {
         if (isnan(measuring->seconds[i])) continue;
@@ -155,7 +155,7 @@ static void extrapolate(PiecesEstimate *estimate, const Measuring *measuring) {
 }
 
 /* The k-th of the pieces to measure: any first few of them are spread over the whole plan. */
-static int64_t spread(int64_t k, int64_t pieces) {
+static int64_t pieces_report_spread(int64_t k, int64_t pieces) {
     const double golden = 0.6180339887498949;
     if (pieces <= PIECES_MEASURED) return k;
     return (int64_t)(fmod((double)k * golden, 1) * (double)pieces);
@@ -165,14 +165,15 @@ bool pieces_estimate(PiecesEstimate *estimate, const PiecePlan *plan, const Prog
     Measuring measuring = {.plan = plan, .progress = progress, .began = clock_seconds()};
     *estimate = (PiecesEstimate){.pieces = plan->count};
     for (int64_t k = 0; k < plan->count && k < PIECES_MEASURED; k++) {
-        measuring.pieces[measuring.count] = spread(k, plan->count);
+        measuring.pieces[measuring.count] = pieces_report_spread(k, plan->count);
         const PieceInfo info = piece_describe(plan, measuring.pieces[measuring.count]);
         measuring.weights[measuring.count] = info.weight;
         measuring.seconds[measuring.count] = NAN;
         if (!info.alone) measuring.count++;
     }
-    if (!parallel_for(&(ParallelWork){measure, &measuring}, measuring.count, "plan", NULL, error)) return false;
-    extrapolate(estimate, &measuring);
+    if (!parallel_for(&(ParallelWork){pieces_report_measure, &measuring}, measuring.count, "plan", NULL, error))
+        return false;
+    pieces_report_extrapolate(estimate, &measuring);
     return true;
 }
 

@@ -184,7 +184,7 @@ static bool check_contact(const StoredProblem *stored, int i, const char *path, 
     return true;
 }
 
-static bool check(const StoredProblem *stored, const char *path, Error *error) {
+static bool problem_file_check(const StoredProblem *stored, const char *path, Error *error) {
     for (int i = 0; i < stored->problem.body_count; i++)
         if (!check_body(stored, i, path, error)) return false;
     for (int i = 0; i < stored->problem.contact_count; i++)
@@ -206,7 +206,7 @@ StoredProblem *problem_read(const char *path, Error *error) {
     bool done = stored != NULL || error_memory(error, path);
     done = done && read_file_head(stored, file, path, error) && read_counts(stored, file, path, error) &&
            read_fields(stored, file, path, error) && read_contact_heads(stored, file, error) &&
-           check(stored, path, error);
+           problem_file_check(stored, path, error);
     npz_close(file);
     if (done) return stored;
     problem_destroy(stored);

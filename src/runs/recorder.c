@@ -96,7 +96,7 @@ void recorder_destroy(Recorder *recorder) {
 }
 
 /* Gives the part to the second thread, which has then ended the part before: that one is recorded next. */
-static bool flush(Recorder *recorder, Error *error) {
+static bool recorder_flush(Recorder *recorder, Error *error) {
     Trajectory *part = recorder->parts[recorder->current];
     part->frames = recorder->used;
     trajectory_end_contacts(part);
@@ -116,7 +116,7 @@ static bool is_full(const Recorder *recorder) {
 
 bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error) {
     const bool whole = recorder->parts[1] == NULL;
-    if (!whole && is_full(recorder) && !flush(recorder, error)) return false;
+    if (!whole && is_full(recorder) && !recorder_flush(recorder, error)) return false;
     Trajectory *part = recorder->parts[recorder->current];
     const int row = recorder->used++;
     trajectory_set_bodies(part, row, world);

@@ -16,7 +16,7 @@
 #include <string.h>
 
 /* A body that is declared static, or has one row at the start of a run that declares none, stays where it is. */
-static bool stays(const CsvImport *import, int body) {
+static bool run_csv_stays(const CsvImport *import, int body) {
     const Trajectory *run = import->run;
     if (import->head.states_static) return import->head.bodies[body].fixed;
     return run->frames > 1 && import->row_counts[body] == 1 && trajectory_has(run, 0, body);
@@ -82,7 +82,7 @@ static bool finish_bodies(CsvImport *import, Error *error) {
     for (int body = 0; body < run->bodies; body++) {
         run->size[body] = import->head.bodies[body].size;
         run->fixed[body] = import->head.bodies[body].fixed;
-        if (stays(import, body))
+        if (run_csv_stays(import, body))
             carry_on(run, body);
         else if (!check_body(import, body, error))
             return false;
@@ -219,7 +219,7 @@ static void set_state(CsvImport *import, const CsvRow *row, int body) {
 }
 
 /* The second pass. */
-static bool fill(CsvImport *import, Error *error) {
+static bool run_csv_fill(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     CsvRow row;
     csv_rows_rewind(&import->rows);
@@ -308,7 +308,7 @@ static bool make_run(CsvImport *import, Error *error) {
     import->run->dt = dt;
     import->run->no_contacts = true;
     import->run->no_velocities = import->rows.field[COL_VX] < 0;
-    if (!fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
+    if (!run_csv_fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
         !finish_head(import, error))
         return false;
     note_numbers(import);

@@ -229,7 +229,7 @@ static char *trim(char *text) {
 }
 
 /* Takes the next line. */
-static bool split(CsvRows *rows, Fields *fields, Error *error) {
+static bool run_import_split(CsvRows *rows, Fields *fields, Error *error) {
     size_t length = strcspn(rows->at, "\n"), used = length;
     fields->count = 0;
     if (used > 0 && rows->at[used - 1] == '\r') used--;
@@ -254,7 +254,7 @@ static bool split(CsvRows *rows, Fields *fields, Error *error) {
 static bool is_absent(const CsvRows *rows, int column) { return rows->field[column] < 0; }
 
 /* The column that an unknown name probably means, among those that the file lacks; NULL: none. */
-static const char *meant(const CsvRows *rows, const char *name) {
+static const char *run_import_meant(const CsvRows *rows, const char *name) {
     const char *missing[COL_COUNT];
     int count = 0;
     for (int i = 0; i < COL_COUNT; i++)
@@ -262,7 +262,7 @@ static const char *meant(const CsvRows *rows, const char *name) {
     return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;
 }
 
-static bool place(CsvRows *rows, const Fields *fields, Error *error) {
+static bool run_import_place(CsvRows *rows, const Fields *fields, Error *error) {
     for (int i = 0; i < COL_COUNT; i++) rows->field[i] = -1;
     for (int i = 0; i < fields->count; i++) {
         int column = 0;
@@ -282,7 +282,7 @@ static bool check_others(CsvRows *rows, const Fields *fields, Error *error) {
         bool known = false;
         for (int column = 0; column < COL_COUNT; column++) known = known || rows->field[column] == i;
         if (known) continue;
-        const char *right = meant(rows, fields->text[i]);
+        const char *right = run_import_meant(rows, fields->text[i]);
         const CsvShown shown = csv_show(fields->text[i]);
         if (right != NULL)
             return csv_fail(rows->path, rows->line, fields->column[i], error,
@@ -296,7 +296,8 @@ bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line,
     Fields fields;
     *rows = (CsvRows){.path = path, .at = text, .line = line};
     if (*text == '\0') return csv_fail(rows->path, line, 0, error, "there is no header 'frame,body,x,y,angle'");
-    if (!split(rows, &fields, error) || !place(rows, &fields, error) || !check_others(rows, &fields, error))
+    if (!run_import_split(rows, &fields, error) || !run_import_place(rows, &fields, error) ||
+        !check_others(rows, &fields, error))
         return false;
     for (int i = COL_FRAME; i <= COL_ANGLE; i++)
         if (is_absent(rows, i))
@@ -348,7 +349,7 @@ static bool take_state(const CsvRows *rows, const Fields *fields, CsvRow *row, E
 bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
     Fields fields;
     *row = (CsvRow){.line = rows->line};
-    if (*rows->at == '\0' || !split(rows, &fields, error)) return false;
+    if (*rows->at == '\0' || !run_import_split(rows, &fields, error)) return false;
     if (fields.count != rows->width)
         return csv_fail(rows->path, rows->line, 0, error, "%d fields, but the header has %d", fields.count,
                         rows->width);

@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-static bool observe(const Simulation *run, int frame, const RunWatch *watch, Error *error) {
+static bool simulate_observe(const Simulation *run, int frame, const RunWatch *watch, Error *error) {
     if (watch->recorder != NULL && !recorder_record(watch->recorder, frame, run->world, error)) return false;
     for (int i = 0; i < watch->observer_count; i++)
         if (!watch->observers[i].observe(watch->observers[i].context, frame, run->world, error)) return false;
@@ -24,7 +24,7 @@ bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *
     if (!simulation_begin(&run, scene, method, error)) return false;
     bool ok = watch->recorder == NULL || recorder_record(watch->recorder, 0, run.world, error);
     for (int frame = 1; ok && frame <= scene->frames; frame++)
-        ok = simulation_step(&run, frame, error) && observe(&run, frame, watch, error);
+        ok = simulation_step(&run, frame, error) && simulate_observe(&run, frame, watch, error);
     simulation_end(&run);
     if (ok && watch->recorder != NULL) recorder_name_program(watch->recorder, method);
     return ok;

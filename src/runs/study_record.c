@@ -285,7 +285,7 @@ static uint64_t record_hash(const StudyRecord *record) {
     return sum.value;
 }
 
-static void print(FILE *out, const void *context) {
+static void study_record_print(FILE *out, const void *context) {
     const StudyRecord *record = context;
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_LINES);
@@ -314,7 +314,7 @@ static void print(FILE *out, const void *context) {
 }
 
 /* file_create() fails if another process was first: that is as good. */
-static bool create(const char *path, const char *text, size_t size, Error *error) {
+static bool study_record_create(const char *path, const char *text, size_t size, Error *error) {
     Error failure = {0};
     bool there;
     if (file_create(path, text, size, &failure)) return true;
@@ -336,18 +336,19 @@ bool study_record_meet(StudyRecord *record, const char *path, const StudyStart *
                                  .array = start->request->array,
                                  .command = {start->argc, start->argv, folder, (char *)start->output}};
     size_t size;
-    char *text = file_print(print, &written, &size);
+    char *text = file_print(study_record_print, &written, &size);
     if (text == NULL) return error_memory(error, path);
     const bool fits = size <= STUDY_RECORD_SIZE || error_input(error, path,
                                                                "the command line and its input files are too many for "
                                                                "shards: more than %d bytes",
                                                                STUDY_RECORD_SIZE);
-    const bool done = fits && create(path, text, size, error) && study_record_read(record, path, error);
+    const bool done = fits && study_record_create(path, text, size, error) && study_record_read(record, path, error);
     free(text);
     return done;
 }
 
-static bool differs(const char *path, Error *error, const char *what, const char *here, const char *there) {
+static bool study_record_differs(const char *path, Error *error, const char *what, const char *here,
+                                 const char *there) {
     return error_input(error, path,
                        "the folder has shards of another study: %s is %s there, %s here. Use another output folder, or "
                        "delete the shards",
@@ -358,7 +359,7 @@ static bool hash_differs(const char *path, Error *error, const char *what, uint6
     char texts[2][24];
     snprintf(texts[0], sizeof texts[0], "%016llx", (unsigned long long)here);
     snprintf(texts[1], sizeof texts[1], "%016llx", (unsigned long long)there);
-    return differs(path, error, what, texts[0], texts[1]);
+    return study_record_differs(path, error, what, texts[0], texts[1]);
 }
 
 static bool check_inputs(const StudyRecord *record, const char *path, const StudyKey *key, Error *error) {
@@ -376,7 +377,7 @@ static bool check_arguments(const StudyRecord *record, const char *path, int arg
     const StudyCommand *there = &record->command;
     for (int i = 0; argv != NULL && (i < argc || i < there->argc); i++) {
         const char *mine = i < argc ? argv[i] : "(no more)", *its = i < there->argc ? there->argv[i] : "(no more)";
-        if (strcmp(mine, its) != 0) return differs(path, error, "an argument", mine, its);
+        if (strcmp(mine, its) != 0) return study_record_differs(path, error, "an argument", mine, its);
     }
     return true;
 }
@@ -384,7 +385,7 @@ static bool check_arguments(const StudyRecord *record, const char *path, int arg
 bool study_record_check(const StudyRecord *record, const char *path, const StudyKey *key, int argc, char **argv,
                         Error *error) {
     if (strcmp(record->version, TWINBOX_VERSION) != 0)
-        return differs(path, error, "the version of twinbox", TWINBOX_VERSION, record->version);
+        return study_record_differs(path, error, "the version of twinbox", TWINBOX_VERSION, record->version);
     if (key->program != record->key.program)
         return hash_differs(path, error, "the hash of the program", key->program, record->key.program);
     if (!check_inputs(record, path, key, error)) return false;

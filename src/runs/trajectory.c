@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double measure(double frames, double bodies, double contacts) {
+static double trajectory_measure(double frames, double bodies, double contacts) {
     double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + sizeof(float) + 1, small = 4096;
     return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
 }
@@ -21,7 +21,7 @@ static double measure(double frames, double bodies, double contacts) {
 /* calloc, but not NULL for 0 items. */
 static void *zeros(size_t count, size_t size) { return calloc(count > 0 ? count : 1, size); }
 
-static bool allocate(Trajectory *t) {
+static bool trajectory_allocate(Trajectory *t) {
     size_t bodies = (size_t)t->bodies, poses = (size_t)t->frames * bodies;
     t->size = zeros(bodies, sizeof *t->size);
     t->mass = zeros(bodies, sizeof *t->mass);
@@ -37,12 +37,12 @@ static bool allocate(Trajectory *t) {
 
 Trajectory *trajectory_create(int frames, int bodies, Error *error) {
     assert(frames >= 1 && bodies >= 0);
-    if (measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES)
+    if (trajectory_measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES)
         return error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies), NULL;
     Trajectory *t = calloc(1, sizeof *t);
     if (t != NULL)
         *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1, .verdict_frame = -1, .verdict_body = -1};
-    if (t == NULL || !allocate(t)) {
+    if (t == NULL || !trajectory_allocate(t)) {
         trajectory_destroy(t);
         error_memory(error, "trajectory");
         return NULL;
@@ -93,13 +93,13 @@ static void end_steps(Trajectory *t, int step, int64_t count) {
 }
 
 double trajectory_bytes(const Trajectory *t) {
-    return measure(t->frames, t->bodies, (double)t->contact_start[t->frames]);
+    return trajectory_measure(t->frames, t->bodies, (double)t->contact_start[t->frames]);
 }
 
 TrajectoryContact *trajectory_add_contacts(Trajectory *t, int frame, int added, Error *error) {
     assert(frame >= t->last_step && frame < t->frames && added >= 0);
     int64_t count = t->contact_start[t->last_step + 1];
-    if (measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES)
+    if (trajectory_measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES)
         return error_input(error, "trajectory", "its contacts take more than 2 GiB"), NULL;
     void *contacts = t->contacts;
     /* At least one, so that NULL is a failure. */
@@ -243,24 +243,24 @@ void trajectory_name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]
     name[used] = '\0';
 }
 
-static uint64_t add(uint64_t hash, const void *data, size_t size) {
+static uint64_t trajectory_add(uint64_t hash, const void *data, size_t size) {
     uint64_t parts[] = {hash, hash_xxh3(data, size)};
     return hash_xxh3(parts, sizeof parts);
 }
 
 uint64_t trajectory_hash(const Trajectory *run) {
     size_t bodies = (size_t)run->bodies, poses = bodies * (size_t)run->frames;
-    uint64_t hash = add(0, run->size, bodies * sizeof *run->size);
-    hash = add(hash, run->fixed, bodies * sizeof *run->fixed);
-    if (run->name != NULL) hash = add(hash, run->name, bodies * sizeof *run->name);
-    hash = add(hash, &run->camera_center, sizeof run->camera_center);
-    hash = add(hash, &run->camera_size, sizeof run->camera_size);
-    hash = add(hash, run->position, poses * sizeof *run->position);
-    hash = add(hash, run->angle, poses * sizeof *run->angle);
-    hash = add(hash, run->velocity, poses * sizeof *run->velocity);
-    hash = add(hash, run->angular_velocity, poses * sizeof *run->angular_velocity);
-    hash = add(hash, run->contact_start, ((size_t)run->frames + 1) * sizeof *run->contact_start);
-    return add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
+    uint64_t hash = trajectory_add(0, run->size, bodies * sizeof *run->size);
+    hash = trajectory_add(hash, run->fixed, bodies * sizeof *run->fixed);
+    if (run->name != NULL) hash = trajectory_add(hash, run->name, bodies * sizeof *run->name);
+    hash = trajectory_add(hash, &run->camera_center, sizeof run->camera_center);
+    hash = trajectory_add(hash, &run->camera_size, sizeof run->camera_size);
+    hash = trajectory_add(hash, run->position, poses * sizeof *run->position);
+    hash = trajectory_add(hash, run->angle, poses * sizeof *run->angle);
+    hash = trajectory_add(hash, run->velocity, poses * sizeof *run->velocity);
+    hash = trajectory_add(hash, run->angular_velocity, poses * sizeof *run->angular_velocity);
+    hash = trajectory_add(hash, run->contact_start, ((size_t)run->frames + 1) * sizeof *run->contact_start);
+    return trajectory_add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
 }
 
 static size_t pose(const Trajectory *t, int frame, int body) {

@@ -261,7 +261,7 @@ static bool is_known(const char *name) {
 }
 
 /* The array that an unknown name probably means, among those that the file lacks; NULL: none. */
-static const char *meant(const NpzFile *file, const char *name) {
+static const char *trajectory_read_meant(const NpzFile *file, const char *name) {
     const char *missing[RUN_ARRAYS];
     int count = 0;
     for (int i = 0; i < RUN_ARRAYS; i++)
@@ -272,7 +272,7 @@ static const char *meant(const NpzFile *file, const char *name) {
 static bool check_names(const NpzFile *file, Error *error) {
     const char *name, *right;
     for (size_t i = 0; (name = npz_name(file, i)) != NULL; i++)
-        if (!is_known(name) && (right = meant(file, name)) != NULL)
+        if (!is_known(name) && (right = trajectory_read_meant(file, name)) != NULL)
             return error_input(error, npz_path(file), "unknown array '%s': did you mean '%s'? Rename or remove it",
                                name, right);
     return true;

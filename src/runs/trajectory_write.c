@@ -81,7 +81,8 @@ static bool begin_npz(TrajectoryStream *stream, Error *error) {
     return true;
 }
 
-static bool append(TrajectoryStream *stream, int array, const void *rows, int64_t count, Error *error) {
+static bool trajectory_write_append(TrajectoryStream *stream, int array, const void *rows, int64_t count,
+                                    Error *error) {
     return stream->array[array] < 0 || npz_stream_append(stream->npz, stream->array[array], rows, count, error);
 }
 
@@ -96,18 +97,18 @@ static bool add_block(TrajectoryStream *stream, const TrajectoryContact *contact
         block->impulse[i][0] = contacts[i].normal_impulse;
         block->impulse[i][1] = contacts[i].tangent_impulse;
     }
-    return append(stream, ARRAY_CONTACT_BODIES, block->bodies, count, error) &&
-           append(stream, ARRAY_CONTACT_FEATURE, block->feature, count, error) &&
-           append(stream, ARRAY_CONTACT_POINT, block->point, count, error) &&
-           append(stream, ARRAY_CONTACT_NORMAL, block->normal, count, error) &&
-           append(stream, ARRAY_CONTACT_IMPULSE, block->impulse, count, error);
+    return trajectory_write_append(stream, ARRAY_CONTACT_BODIES, block->bodies, count, error) &&
+           trajectory_write_append(stream, ARRAY_CONTACT_FEATURE, block->feature, count, error) &&
+           trajectory_write_append(stream, ARRAY_CONTACT_POINT, block->point, count, error) &&
+           trajectory_write_append(stream, ARRAY_CONTACT_NORMAL, block->normal, count, error) &&
+           trajectory_write_append(stream, ARRAY_CONTACT_IMPULSE, block->impulse, count, error);
 }
 
 static bool add_contacts(TrajectoryStream *stream, const Trajectory *part, Error *error) {
     const int64_t count = part->contact_start[part->frames];
     for (int frame = stream->begun ? 1 : 0; frame <= part->frames; frame++) {
         const int64_t start = stream->contacts + part->contact_start[frame];
-        if (!append(stream, ARRAY_CONTACT_START, &start, 1, error)) return false;
+        if (!trajectory_write_append(stream, ARRAY_CONTACT_START, &start, 1, error)) return false;
     }
     stream->begun = true;
     for (int64_t i = 0; i < count; i += BLOCK)
@@ -120,10 +121,10 @@ static bool add_npz(TrajectoryStream *stream, const Trajectory *part, Error *err
     const int64_t frames = part->frames;
     stream->bytes += trajectory_bytes(part);
     if (stream->bytes > TRAJECTORY_MAX_BYTES) return error_input(error, stream->path, "the run takes more than 2 GiB");
-    return append(stream, ARRAY_POSITION, part->position, frames, error) &&
-           append(stream, ARRAY_ANGLE, part->angle, frames, error) &&
-           append(stream, ARRAY_VELOCITY, part->velocity, frames, error) &&
-           append(stream, ARRAY_ANGULAR_VELOCITY, part->angular_velocity, frames, error) &&
+    return trajectory_write_append(stream, ARRAY_POSITION, part->position, frames, error) &&
+           trajectory_write_append(stream, ARRAY_ANGLE, part->angle, frames, error) &&
+           trajectory_write_append(stream, ARRAY_VELOCITY, part->velocity, frames, error) &&
+           trajectory_write_append(stream, ARRAY_ANGULAR_VELOCITY, part->angular_velocity, frames, error) &&
            (stream->head->no_contacts || add_contacts(stream, part, error));
 }
 

@@ -96,7 +96,7 @@ void energy_log_step(EnergyLog *log, int frame, const Body *bodies, int count) {
             log->liveliest = fmax(log->liveliest, energy_per_kg(&bodies[i], log->balance.gravity, log->balance.lowest));
 }
 
-static bool observe(void *context, int frame, const World *world, Error *error) {
+static bool verdict_energy_observe(void *context, int frame, const World *world, Error *error) {
     EnergyLog *log = context;
     (void)error;
     network_fallbacks_add(&log->fallbacks, &world_solution(world)->fallbacks);
@@ -110,7 +110,7 @@ bool energy_log_run(EnergyLog *log, const Scene *scene, const Method *method, Er
     bool ok = start != NULL &&
               energy_log_begin(log, scene->gravity, scene->frames, world_bodies(start), world_body_count(start), error);
     world_destroy(start);
-    return ok && simulate_observed(scene, method, &(StepObserver){observe, log}, error);
+    return ok && simulate_observed(scene, method, &(StepObserver){verdict_energy_observe, log}, error);
 }
 
 static int most_kinetic(const VerdictStep *step) {

@@ -13,7 +13,7 @@
 /* Static boxes. */
 
 /* Clips the interval `part` of t to -half < start + t step < half. */
-static void clip(double part[2], double start, double step, double half) {
+static void verdict_passes_clip(double part[2], double start, double step, double half) {
     if (step == 0) {
         if (fabs(start) >= half) part[1] = part[0];
         return;
@@ -39,8 +39,8 @@ static bool passes(const WatchedStatic *fixed, const Body *box, Vec2 from, Vec2 
     const double up = c * y - s * x, step_up = c * step_y - s * step_x, half_up = 0.5 * (double)box->size.y;
     if (stays_beside(up, step_up, half_up) || stays_beside(along, step_along, half_along)) return false;
     double part[2] = {0, 1};
-    clip(part, along, step_along, half_along);
-    clip(part, up, step_up, half_up);
+    verdict_passes_clip(part, along, step_along, half_along);
+    verdict_passes_clip(part, up, step_up, half_up);
     return part[0] < part[1];
 }
 
@@ -77,7 +77,7 @@ static PassPose pose_of(const Body *body) {
 }
 
 /* m: how far the box reaches from its centre along an axis. */
-static double reach(const PassPose *box, double x, double y) {
+static double verdict_passes_reach(const PassPose *box, double x, double y) {
     return box->half_x * fabs(box->cosine * x + box->sine * y) + box->half_y * fabs(box->cosine * y - box->sine * x);
 }
 
@@ -89,7 +89,8 @@ static unsigned sides_between(const PassPose *a, const PassPose *b, double depth
     unsigned sides = 0;
     for (int i = 0; i < 4; i++) {
         const double along = x * axes[i][0] + y * axes[i][1];
-        const double touching = reach(a, axes[i][0], axes[i][1]) + reach(b, axes[i][0], axes[i][1]) - depth;
+        const double touching =
+            verdict_passes_reach(a, axes[i][0], axes[i][1]) + verdict_passes_reach(b, axes[i][0], axes[i][1]) - depth;
         if (along > touching) sides |= 1u << (2 * i);
         if (-along > touching) sides |= 2u << (2 * i);
     }
@@ -105,12 +106,12 @@ static bool changes_places(unsigned before, unsigned after) {
            ((stayed & of_b) == 0 && (opposite & after & of_b) != 0);
 }
 
-static double between(double from, double to, double part) { return from + part * (to - from); }
+static double verdict_passes_between(double from, double to, double part) { return from + part * (to - from); }
 
 static PassPose pose_between(const WatchedBody *last, const Body *now, double part) {
-    const double angle = between(last->last_angle, now->angle, part);
-    return (PassPose){between(last->last.x, now->position.x, part),
-                      between(last->last.y, now->position.y, part),
+    const double angle = verdict_passes_between(last->last_angle, now->angle, part);
+    return (PassPose){verdict_passes_between(last->last.x, now->position.x, part),
+                      verdict_passes_between(last->last.y, now->position.y, part),
                       cos(angle),
                       sin(angle),
                       0.5 * (double)now->size.x,

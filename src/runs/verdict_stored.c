@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t place(const Trajectory *run, int frame, int body) {
+static size_t verdict_stored_place(const Trajectory *run, int frame, int body) {
     return (size_t)frame * (size_t)run->bodies + (size_t)body;
 }
 
@@ -33,7 +33,8 @@ static void set_velocity(const Trajectory *run, int frame, int i, Body *body) {
     const float rate = 1 / run->dt, turn = 6.2831853f; /* some engines keep angles within one */
     const bool known = frame > 0 && trajectory_has(run, frame - 1, i);
     const int from = known ? frame - 1 : frame, to = from + 1;
-    const size_t now = place(run, frame, i), before = place(run, from, i), after = place(run, to, i);
+    const size_t now = verdict_stored_place(run, frame, i), before = verdict_stored_place(run, from, i),
+                 after = verdict_stored_place(run, to, i);
     body->velocity = run->velocity[now];
     body->angular_velocity = run->angular_velocity[now];
     if (!run->no_velocities) return;
@@ -43,8 +44,8 @@ static void set_velocity(const Trajectory *run, int frame, int i, Body *body) {
 }
 
 static void set_body(const Trajectory *run, int frame, int i, Body *body) {
-    body->position = run->position[place(run, frame, i)];
-    body->angle = run->angle[place(run, frame, i)];
+    body->position = run->position[verdict_stored_place(run, frame, i)];
+    body->angle = run->angle[verdict_stored_place(run, frame, i)];
     set_velocity(run, frame, i, body);
 }
 
@@ -78,7 +79,7 @@ Scene *trajectory_scene(const Trajectory *run, Error *error) {
     return scene;
 }
 
-static bool fits(const Scene *scene, const Trajectory *run, const World *world, Error *error) {
+static bool verdict_stored_fits(const Scene *scene, const Trajectory *run, const World *world, Error *error) {
     const Body *bodies = world_bodies(world);
     if (run->bodies != scene->body_count && run->bodies != world_body_count(world))
         return error_input(error, scene->name, "has %d bodies, but the run has %d", scene->body_count, run->bodies);
@@ -108,8 +109,8 @@ static bool is_of_other_engine(const Trajectory *run) {
     return method == NULL || method->whole_scenes;
 }
 
-static bool judge(SimulateVerdict *verdict, const Trajectory *run, const RunScene *by, const World *world,
-                  Error *error) {
+static bool verdict_stored_judge(SimulateVerdict *verdict, const Trajectory *run, const RunScene *by,
+                                 const World *world, Error *error) {
     const Scene *scene = by->scene;
     VerdictRun judged = verdict_run_of(scene);
     judged.skin = by->skin;
@@ -143,7 +144,8 @@ bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const
     World *world = scene_world(scene, error);
     const bool later = scene->bomb.present && scene->bomb.frame > 0;
     const bool ok = world != NULL && (!later || scene_add_bomb(scene, world, error)) &&
-                    fits(scene, run, world, error) && judge(verdict, run, by, world, error);
+                    verdict_stored_fits(scene, run, world, error) &&
+                    verdict_stored_judge(verdict, run, by, world, error);
     world_destroy(world);
     if (!ok) return false;
     Error failure = {0};

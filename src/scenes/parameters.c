@@ -27,7 +27,7 @@ bool expression_is(const YamlTree *tree, int node) {
 }
 
 /* The parameter with this name, or NULL. */
-static SceneParameter *find(Parameters *parameters, const char *text, size_t length) {
+static SceneParameter *parameters_find(Parameters *parameters, const char *text, size_t length) {
     for (int i = 0; i < parameters->count; i++) {
         SceneParameter *parameter = &parameters->items[i];
         if (strlen(parameter->name) == length && memcmp(parameter->name, text, length) == 0) return parameter;
@@ -40,7 +40,7 @@ static void add_values(Parameters *parameters, const char *text, char *out, size
     bool named[SCENE_MAX_PARAMETERS] = {false};
     for (const char *name = text; (name = strchr(name, '$')) != NULL;) {
         size_t length = strspn(++name, PARAMETER_LETTERS);
-        const SceneParameter *parameter = find(parameters, name, length);
+        const SceneParameter *parameter = parameters_find(parameters, name, length);
         if (parameter != NULL) named[parameter - parameters->items] = true;
     }
     const char *link = " with ";
@@ -70,7 +70,7 @@ ExpressionShown expression_show(const YamlTree *tree, int node, double value, co
 }
 
 /* Errors are where the reading is, or at a place that it has passed. */
-static bool fail(const Expression *e, const char *at, const char *text) {
+static bool parameters_fail(const Expression *e, const char *at, const char *text) {
     return yaml_error_at(e->tree, e->node, (size_t)(at - e->text), e->error, "%s%s (got %s)", e->what, text,
                          show_text(e->tree, e->node).text);
 }
@@ -79,9 +79,9 @@ static bool fail(const Expression *e, const char *at, const char *text) {
 static bool take_name(Expression *e, double *value) {
     Parameters *parameters = e->tree->context;
     const size_t length = strspn(e->at + 1, PARAMETER_LETTERS);
-    if (length == 0) return fail(e, e->at, ": a parameter's name must follow the '$'");
-    if (parameters == NULL) return fail(e, e->at, " must not contain parameters");
-    const SceneParameter *parameter = find(parameters, e->at + 1, length);
+    if (length == 0) return parameters_fail(e, e->at, ": a parameter's name must follow the '$'");
+    if (parameters == NULL) return parameters_fail(e, e->at, " must not contain parameters");
+    const SceneParameter *parameter = parameters_find(parameters, e->at + 1, length);
     if (parameter == NULL) {
         char name[SCENE_PARAMETER_SIZE];
         snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name), e->at + 1);
@@ -100,7 +100,7 @@ static bool take_sum(Expression *e, double *value);
 static bool take_operand(Expression *e, double *value) {
     e->at += strspn(e->at, " ");
     if (e->parts++ == EXPRESSION_MAX_PARTS)
-        return fail(e, e->at, ": an expression has too many numbers, signs and parentheses");
+        return parameters_fail(e, e->at, ": an expression has too many numbers, signs and parentheses");
     if (parse_leading_double(e->at, value, &e->at)) return true;
     if (*e->at == '$') return take_name(e, value);
     if (*e->at == '-') {
@@ -109,22 +109,22 @@ static bool take_operand(Expression *e, double *value) {
         *value = -*value;
         return true;
     }
-    if (*e->at != '(') return fail(e, e->at, ": a number, a $name or '(' is expected here");
+    if (*e->at != '(') return parameters_fail(e, e->at, ": a number, a $name or '(' is expected here");
     e->at++;
     if (!take_sum(e, value)) return false;
-    return *e->at++ == ')' || fail(e, e->at - 1, ": an operator or ')' is expected here");
+    return *e->at++ == ')' || parameters_fail(e, e->at - 1, ": an operator or ')' is expected here");
 }
 
-static bool apply(const Expression *e, const char *operator, double number, double *value) {
+static bool parameters_apply(const Expression *e, const char *operator, double number, double *value) {
     switch (*operator) {
     case '+': *value += number; break;
     case '-': *value -= number; break;
     case '*': *value *= number; break;
     default:
-        if (number == 0) return fail(e, operator, " is divided by 0");
+        if (number == 0) return parameters_fail(e, operator, " is divided by 0");
         *value /= number;
     }
-    return isfinite(*value) || fail(e, operator, " has an intermediate result that is infinite");
+    return isfinite(*value) || parameters_fail(e, operator, " has an intermediate result that is infinite");
 }
 
 /* Operands with these operators between them, from left to right. Blanks behind them are taken, too. */
@@ -134,7 +134,7 @@ static bool take_chain(Expression *e, bool take(Expression *e, double *value), c
          e->at += strspn(e->at, " ")) {
         const char *operator= e->at++;
         double number = 0;
-        if (!take(e, &number) || !apply(e, operator, number, value)) return false;
+        if (!take(e, &number) || !parameters_apply(e, operator, number, value)) return false;
     }
     return true;
 }
@@ -147,9 +147,10 @@ bool expression_read(const YamlTree *tree, int node, const char *what, double *v
     const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
     Expression e = {tree, node, what, text, text, 0, error};
     if (!expression_is(tree, node) && !(parse_leading_double(text, value, &e.at) && *e.at == '\0'))
-        return fail(&e, text, " must be a number");
+        return parameters_fail(&e, text, " must be a number");
     e.at = text;
-    return take_sum(&e, value) && (*e.at == '\0' || fail(&e, e.at, ": an operator or the end is expected here"));
+    return take_sum(&e, value) &&
+           (*e.at == '\0' || parameters_fail(&e, e.at, ": an operator or the end is expected here"));
 }
 
 /* The key `parameters` of a scene. */
@@ -193,7 +194,7 @@ static bool copy_name(const YamlTree *tree, int node, char *name, Error *error) 
 static bool is_whole(double value) { return value == floor(value); }
 
 /* Checks that involve several keys. */
-static bool check(const YamlTree *tree, const int *nodes, const SceneParameter *parameter, Error *error) {
+static bool parameters_check(const YamlTree *tree, const int *nodes, const SceneParameter *parameter, Error *error) {
     const double numbers[] = {parameter->value, parameter->from, parameter->to};
     for (int i = VALUE; i <= TO; i++)
         if (parameter->whole && !is_whole(numbers[i]))
@@ -210,10 +211,10 @@ static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int 
     SceneParameter parameter = {.whole = false};
     int nodes[FIELDS_MAX];
     if (!copy_name(tree, key, parameter.name, error)) return false;
-    if (find(parameters, parameter.name, strlen(parameter.name)) != NULL)
+    if (parameters_find(parameters, parameter.name, strlen(parameter.name)) != NULL)
         return yaml_error(tree, key, error, "key '%s' is given twice", parameter.name);
     if (!fields_read(tree, value, "a parameter", fields, &parameter, nodes, error) ||
-        !check(tree, nodes, &parameter, error))
+        !parameters_check(tree, nodes, &parameter, error))
         return false;
     parameters->nodes[parameters->count] = key;
     parameters->items[parameters->count++] = parameter;
@@ -393,8 +394,8 @@ ParametersHint parameters_hint(const Parameters *parameters, const char *name) {
     return make_hint(parameters, name, false);
 }
 
-static bool set(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
-    SceneParameter *parameter = find(parameters, setting->name, strlen(setting->name));
+static bool set_parameters(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
+    SceneParameter *parameter = parameters_find(parameters, setting->name, strlen(setting->name));
     if (parameter == NULL && find_common(setting->name) < COMMON) return true;
     if (parameter == NULL)
         return error_input(error, path, "'%s' is not a parameter; %s", setting->name,
@@ -414,7 +415,7 @@ bool parameters_set(Parameters *parameters, const char *path, const SceneSetting
         for (int k = 0; k < i; k++)
             if (strcmp(settings[i].name, settings[k].name) == 0)
                 return error_input(error, path, "the parameter '%s' is set twice", settings[i].name);
-        if (!set(parameters, path, &settings[i], error)) return false;
+        if (!set_parameters(parameters, path, &settings[i], error)) return false;
     }
     return true;
 }

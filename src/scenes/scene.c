@@ -26,8 +26,8 @@ static int node_of(const YamlTree *tree, int bodies, int bomb, const Scene *scen
     return index < scene->body_count ? bodies_entry(tree, bodies, index) : bomb;
 }
 
-static bool refuse(const YamlTree *tree, int bodies, int bomb, const Scene *scene, const BodyPair *pair,
-                   const Box *boxes, Error *error) {
+static bool scene_refuse(const YamlTree *tree, int bodies, int bomb, const Scene *scene, const BodyPair *pair,
+                         const Box *boxes, Error *error) {
     const int node = node_of(tree, bodies, bomb, scene, pair->b);
     const int other = bodies_entry(tree, bodies, pair->a);
     char what[32] = "the bomb";
@@ -54,7 +54,7 @@ bool overlaps_check(const YamlTree *tree, int bodies, int bomb, const Scene *sce
     if (!ok)
         error_memory(error, tree->source.path);
     else if (pair.a >= 0)
-        ok = refuse(tree, bodies, bomb, scene, &pair, boxes, error);
+        ok = scene_refuse(tree, bodies, bomb, scene, &pair, boxes, error);
     free(boxes);
     free(fixed);
     return ok;
@@ -104,7 +104,7 @@ void launches_free(LaunchTable *table) {
 }
 
 /* Row i, completed by the scene's own launch. */
-static Launch complete(const LaunchTable *table, int i, const Scene *scene) {
+static Launch scene_complete(const LaunchTable *table, int i, const Scene *scene) {
     const int *fields = table->csv.fields;
     const Launch *row = (const Launch *)table->csv.rows + i;
     Launch launch = launch_of(scene);
@@ -117,7 +117,7 @@ static Launch complete(const LaunchTable *table, int i, const Scene *scene) {
 }
 
 /* The checks of a scene file that need the scene. */
-static bool fits(const LaunchTable *table, int i, const Scene *scene, const Launch *launch, Error *error) {
+static bool scene_fits(const LaunchTable *table, int i, const Scene *scene, const Launch *launch, Error *error) {
     if (launch->frame > scene->frames)
         return csv_table_error(&table->csv, i, FRAME, error,
                                "the bomb would come in frame %d, after the last of %s (frames: %d)", launch->frame,
@@ -133,8 +133,8 @@ bool launches_for(const LaunchTable *table, const Scene *scene, Launch *out, Err
     if (!scene->bomb.present)
         return error_input(error, table->csv.csv.path, "the scene %s has no bomb to launch", scene->name);
     for (int i = 0; i < table->count; i++) {
-        out[i] = complete(table, i, scene);
-        if (!fits(table, i, scene, &out[i], error)) return false;
+        out[i] = scene_complete(table, i, scene);
+        if (!scene_fits(table, i, scene, &out[i], error)) return false;
     }
     return true;
 }
@@ -155,7 +155,7 @@ bool launch_has_family(const Scene *scene) {
            scene_span_varies(&bomb->mass);
 }
 
-static bool spread(const Scene *scene, bool scoring, int count, Launch *out, Error *error) {
+static bool scene_spread(const Scene *scene, bool scoring, int count, Launch *out, Error *error) {
     const SceneBomb *bomb = &scene->bomb;
     if (!launch_has_family(scene))
         return error_input(
@@ -174,11 +174,11 @@ static bool spread(const Scene *scene, bool scoring, int count, Launch *out, Err
 }
 
 bool launches_for_training(const Scene *scene, int count, Launch *out, Error *error) {
-    return spread(scene, false, count, out, error);
+    return scene_spread(scene, false, count, out, error);
 }
 
 bool launches_for_scoring(const Scene *scene, int count, Launch *out, Error *error) {
-    return spread(scene, true, count, out, error);
+    return scene_spread(scene, true, count, out, error);
 }
 
 static bool bomb_touches(const ContactProblem *problem) {

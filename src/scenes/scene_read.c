@@ -166,7 +166,7 @@ static bool add_names(const YamlTree *tree, const Pattern *pattern, Scene *scene
     return true;
 }
 
-static bool within(float value) { return fabsf(value) <= range_position.maximum; }
+static bool scene_read_within(float value) { return fabsf(value) <= range_position.maximum; }
 
 /* Appends the entry's bodies. `place` is the node for errors: too many bodies, or too far away. */
 static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, Scene *scene, size_t *capacity,
@@ -181,7 +181,7 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
     if (!room) return error_memory(error, tree->source.path);
     for (int64_t i = 0; i < count; i++) {
         BodyDef body = pattern_body(pattern, i);
-        if (!within(body.position.x) || !within(body.position.y))
+        if (!scene_read_within(body.position.x) || !scene_read_within(body.position.y))
             return yaml_error(tree, place, error, "body %lld of the pattern is at (%g, %g), beyond %g m", (long long)i,
                               (double)body.position.x, (double)body.position.y, (double)range_position.maximum);
         scene->bodies[scene->body_count++] = body;
@@ -447,7 +447,7 @@ Scene *scene_read(const char *path, Error *error) { return scene_read_with(path,
 
 static const char *on(bool value) { return value ? "on" : "off"; }
 
-static void trace(const Scene *scene) {
+static void scene_read_trace(const Scene *scene) {
     trace_line("scene %s: %d bodies%s, %d steps of %g s, %d iterations, warm starting %s, accumulated impulses %s, "
                "position correction %s, hash %016" PRIx64,
                scene->name, scene->body_count, scene->bomb.present ? " and a bomb" : "", scene->frames,
@@ -469,7 +469,7 @@ Scene *scene_of_tree(YamlTree *tree, const SceneSetting *settings, int count, Er
     scene->warm_starting = scene->accumulate_impulses = scene->position_correction = true;
     name_scene(scene, tree->source.path);
     if (read_tree(tree, scene, settings, count, error)) {
-        trace(scene);
+        scene_read_trace(scene);
         return scene;
     }
     scene_destroy(scene);

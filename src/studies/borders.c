@@ -142,7 +142,7 @@ static bool add_method(Borders *borders, int i, bool any, Error *error) {
     return true;
 }
 
-static bool gather(Borders *borders, Error *error) {
+static bool borders_gather(Borders *borders, Error *error) {
     const CsvTable *table = borders->table;
     bool any = false, ok = true;
     for (int i = 0; i < table->count; i++) any = any || border_row(table, i)->verdict != LOOK_NOT_APPLICABLE;
@@ -173,7 +173,7 @@ static bool holds_as_far(const Borders *borders, int study, const BorderCell *ce
     return cell->count > 0 && cell->held >= far.held - least_seen;
 }
 
-static void measure(Borders *borders) {
+static void borders_measure(Borders *borders) {
     for (int i = 0; i < borders->study_count; i++)
         left_out_add_unconverged(&borders->foot, borders->unconverged, borders->studies[i].row->study);
     for (int study = 0; study < borders->study_count; study++) {
@@ -291,7 +291,7 @@ static void draw_as_far(const Borders *borders, double y) {
     }
 }
 
-static void fill(Sketch *sketch, double from, double to, double y, uint32_t colour) {
+static void borders_fill(Sketch *sketch, double from, double to, double y, uint32_t colour) {
     sketch_rectangle(sketch, (Point){from, y - tile_height / 2}, (Point){to, y + tile_height / 2},
                      &(Pen){colour, 1, NO_COLOUR, 0, NULL});
 }
@@ -352,11 +352,11 @@ static void draw_cell(const Borders *borders, int study, int method, double y) {
         put_symbol(borders->sketch, left, left + width, y, LOOK_NOT_APPLICABLE);
         return;
     }
-    fill(borders->sketch, left, left + width, y, verdict_looks[VERDICT_UNDECIDED].fill);
+    borders_fill(borders->sketch, left, left + width, y, verdict_looks[VERDICT_UNDECIDED].fill);
     for (int i = 0; i < cell.count; i++) {
         spans[i] = placed(&cell.spans[i], left, width);
-        fill(borders->sketch, spans[i].from, spans[i].to, y,
-             spans[i].holds ? verdict_looks[VERDICT_CREEPS].fill : verdict_looks[spans[i].look].fill);
+        borders_fill(borders->sketch, spans[i].from, spans[i].to, y,
+                     spans[i].holds ? verdict_looks[VERDICT_CREEPS].fill : verdict_looks[spans[i].look].fill);
     }
     const int numbered = number_border(borders->sketch, &cell, spans, y);
     for (int i = 0; i < cell.count; i++)
@@ -382,7 +382,7 @@ static void draw_heading(const Borders *borders, bool struck, double y) {
     const Pen rule = pen_line(0x909090, 0.8, NULL);
     const double top = y + heading_height / 2 - 0.6;
     sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
-    fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_CREEPS].fill);
+    borders_fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_CREEPS].fill);
     plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
               struck ? "as many boxes fall as with the reference" : "holds");
 }
@@ -398,7 +398,7 @@ static void draw_legend(const Borders *borders, double foot, int rows) {
     for (int sample = !borders->few; sample <= borders->rigid; sample++, next++) {
         const Point at = {edge + legend_item * (next % place.columns), place.top - LEGEND_ROW * (next / place.columns)};
         if (sample == 0)
-            fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_CREEPS].fill);
+            borders_fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_CREEPS].fill);
         else
             sketch_line(borders->sketch, (Point){at.x + 1.4, at.y - 1.5}, (Point){at.x + 1.4, at.y + 1.5}, &rigid_pen);
         plot_text(borders->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS,
@@ -450,7 +450,7 @@ static double draw_methods(const Borders *borders, double below) {
 }
 
 /* From the foot: what is left out, legend, rows, names. */
-static void draw(Borders *borders) {
+static void borders_draw(Borders *borders) {
     int items = borders->rigid + borders->few;
     for (int look = 0; look < VERDICT_LOOKS; look++) items += borders->used[look];
     const int columns = legend_columns(borders), rows = (items + columns - 1) / columns;
@@ -487,13 +487,13 @@ static void write_caption(const Borders *borders, PlotPage *page) {
 bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged, const StabilityOwn *own,
                              PlotPage *page, Error *error) {
     Borders borders = {.table = table, .unconverged = unconverged, .own = own, .sketch = &page->sketch};
-    if (!gather(&borders, error)) return false;
+    if (!borders_gather(&borders, error)) return false;
     borders.few = borders.study_count <= FEW_STUDIES;
-    measure(&borders);
+    borders_measure(&borders);
     qsort(borders.studies, (size_t)borders.study_count, sizeof *borders.studies, by_study);
     qsort(borders.methods, (size_t)borders.method_count, sizeof *borders.methods, by_method);
     lay_out(&borders);
-    draw(&borders);
+    borders_draw(&borders);
     write_caption(&borders, page);
     return true;
 }

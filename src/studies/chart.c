@@ -49,7 +49,7 @@ static bool is_times(const ChartScene *scene, int64_t piece) {
     return piece == scene->first + scene->study.launch_count;
 }
 
-static void describe(void *context, int64_t piece, PieceInfo *info) {
+static void describe_chart(void *context, int64_t piece, PieceInfo *info) {
     const ChartScene *scene = scene_of(context, piece);
     const char *name = scene->study.scene->name;
     if (is_times(scene, piece)) {
@@ -83,7 +83,7 @@ static void end_work(ChartScene *scene) {
 }
 
 /* Times are measured with steppers of their own. */
-static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+static bool chart_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
     ChartScene *scene = scene_of(context, piece);
     if (is_times(scene, piece)) {
         empty_pools(context);
@@ -95,7 +95,7 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
     return ok;
 }
 
-static void weigh(ChartScene *scene) {
+static void chart_weigh(ChartScene *scene) {
     const SceneStudy *study = &scene->study;
     const double steps = (double)study->scene->frames * (study->scene->body_count + 1);
     const int timed = scene_study_timed(study);
@@ -116,14 +116,14 @@ static bool has_own_name(const ChartPlan *plan, const char *path, Error *error) 
 static bool chart_plan_make(ChartPlan *plan, const char *const *paths, int count, const ContenderList *contenders,
                             const LaunchChoice *launches, const StudySize *size, Error *error) {
     *plan = (ChartPlan){.scenes = calloc((size_t)count + 1, sizeof *plan->scenes),
-                        .plan = {.describe = describe, .work = work, .context = plan}};
+                        .plan = {.describe = describe_chart, .work = chart_work, .context = plan}};
     if (plan->scenes == NULL) return error_memory(error, "study");
     for (int i = 0; i < count; i++) {
         ChartScene *scene = &plan->scenes[i];
         if (!scene_study_begin(&scene->study, paths[i], contenders, launches, size, error)) return false;
         plan->count++;
         if (!has_own_name(plan, paths[i], error)) return false;
-        weigh(scene);
+        chart_weigh(scene);
         scene->first = plan->plan.count;
         plan->plan.count += scene->study.launch_count + 1;
     }
@@ -300,7 +300,7 @@ static bool find_key(const SpeedAccuracyOptions *options, const ContenderList *c
     return true;
 }
 
-static SpeedAccuracyScene summarise(const Run *run, const SceneStudy *study) {
+static SpeedAccuracyScene chart_summarise(const Run *run, const SceneStudy *study) {
     SpeedAccuracyScene summary = {.contenders = study->contender_count,
                                   .launches = study->launch_count,
                                   .striking = study->striking_count,
@@ -309,14 +309,14 @@ static SpeedAccuracyScene summarise(const Run *run, const SceneStudy *study) {
     return summary;
 }
 
-static void tell(const Run *run) {
+static void chart_tell(const Run *run) {
     for (int i = 0; run->options->begin != NULL && i < run->plan.count; i++) {
-        const SpeedAccuracyScene summary = summarise(run, &run->plan.scenes[i].study);
+        const SpeedAccuracyScene summary = chart_summarise(run, &run->plan.scenes[i].study);
         run->options->begin(&summary);
     }
 }
 
-static bool assemble(Run *run, const Pieces *pieces, Error *error) {
+static bool assemble_chart(Run *run, const Pieces *pieces, Error *error) {
     size_t count = 0;
     for (int i = 0; i < run->plan.count; i++) count += (size_t)run->plan.scenes[i].study.contender_count * ROWS_EACH;
     run->rows = malloc((count + 1) * sizeof *run->rows);
@@ -325,7 +325,7 @@ static bool assemble(Run *run, const Pieces *pieces, Error *error) {
     for (int i = 0; i < run->plan.count; i++) {
         const ChartScene *scene = &run->plan.scenes[i];
         SpeedAccuracyScene *summary = &run->scenes[i];
-        *summary = summarise(run, &scene->study);
+        *summary = chart_summarise(run, &scene->study);
         if (!chart_assemble(pieces, scene, run->rows + run->row_count, run->cpus[i], &summary->solves, error))
             return false;
         summary->timed = pieces_keep_times(pieces, run->cpus[i]);
@@ -335,10 +335,10 @@ static bool assemble(Run *run, const Pieces *pieces, Error *error) {
 }
 
 /* What follows from the pieces, once all are there. */
-static bool finish(Run *run, const Pieces *pieces, Error *error) {
+static bool chart_finish(Run *run, const Pieces *pieces, Error *error) {
     const SpeedAccuracyOptions *options = run->options;
     char path[CSV_PATH_SIZE];
-    return csv_table_path(path, options->folder, &chart_layout, error) && assemble(run, pieces, error) &&
+    return csv_table_path(path, options->folder, &chart_layout, error) && assemble_chart(run, pieces, error) &&
            folder_reserve(options->folder, error) &&
            csv_table_write(path, &chart_layout, run->rows, run->row_count, error) &&
            options->draw(options, run->scenes, pieces->key, error) && pieces_end(pieces, error);
@@ -352,10 +352,10 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
         return false;
     bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders, &options->launches,
                               speed_accuracy_size(options->quick), error);
-    if (ok) tell(&run);
+    if (ok) chart_tell(&run);
     ok = ok && find_key(options, &run.contenders, &key, error) &&
          study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
-         (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
+         (pieces->mode == PIECES_SHARD || chart_finish(&run, pieces, error));
     pieces->plan = NULL;
     chart_plan_free(&run.plan);
     study_key_free(&key);

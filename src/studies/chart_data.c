@@ -112,7 +112,7 @@ static int panel_of(const ChartRow *row, const char *scene) {
     return row->phase == PHASE_IMPACT ? 0 : 1;
 }
 
-static void widen(Chart *chart, const ChartMark *mark) {
+static void chart_data_widen(Chart *chart, const ChartMark *mark) {
     chart->us_least = fmin(chart->us_least, mark->us_q1);
     chart->us_most = fmax(chart->us_most, mark->us_q3);
     chart->error_least = fmin(chart->error_least, mark->error);
@@ -250,7 +250,8 @@ static void fit_axes(Chart *chart) {
     for (int p = 0; p < CHART_PANELS; p++)
         for (int i = 0; i < chart->panels[p].count; i++) {
             const ChartMark *mark = &chart->panels[p].marks[i];
-            if (chart->lines[mark->line].rank == CHART_COLOURED && !mark->beaten && !mark->lost) widen(chart, mark);
+            if (chart->lines[mark->line].rank == CHART_COLOURED && !mark->beaten && !mark->lost)
+                chart_data_widen(chart, mark);
         }
     const Chart alone = *chart;
     const bool any = alone.us_most > 0;
@@ -269,7 +270,7 @@ static void fit_axes(Chart *chart) {
             line->marks[p]++;
             line->varying += mark.varies;
             chart->floored += mark.floored;
-            widen(chart, &mark);
+            chart_data_widen(chart, &mark);
             panel->marks[kept++] = mark;
         }
         panel->count = kept;

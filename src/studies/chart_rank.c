@@ -33,7 +33,7 @@ static void colour(Chart *chart, int line) {
 }
 
 /* The first line of a method, but for its silenced twins; -1: none. */
-static int find(const Chart *chart, const char *method) {
+static int chart_rank_find(const Chart *chart, const char *method) {
     for (int i = 0; i < chart->line_count; i++)
         if (strcmp(chart->lines[i].method, method) == 0 && chart_twin_word(&chart->lines[i]) == NULL) return i;
     return -1;
@@ -50,13 +50,13 @@ static bool is_listed(const Chart *chart, int i, const char *highlight) {
     for (const char *next = highlight; next != NULL && *next != '\0';) {
         const size_t length = strcspn(next, ",");
         snprintf(name, sizeof name, "%.*s", (int)length, next);
-        if (is_named(&chart->lines[i], name) || find(chart, name) == i) return true;
+        if (is_named(&chart->lines[i], name) || chart_rank_find(chart, name) == i) return true;
         next += length + (next[length] == ',');
     }
     return false;
 }
 
-static void ask(Chart *chart, const char *highlight) {
+static void chart_rank_ask(Chart *chart, const char *highlight) {
     for (int i = 0; i < chart->line_count; i++) {
         chart->lines[i].asked = is_listed(chart, i, highlight);
         if (chart->lines[i].asked) colour(chart, i);
@@ -155,21 +155,21 @@ static void hide_variants(Chart *chart) {
     for (int i = 0; i < chart->line_count; i++) {
         ChartLine *line = &chart->lines[i];
         const bool learned = line->description != NULL && line->description->twin != NULL;
-        const bool variant = find(chart, line->method) != i && find(chart, line->method) >= 0;
+        const bool variant = chart_rank_find(chart, line->method) != i && chart_rank_find(chart, line->method) >= 0;
         if (learned && variant && line->rank == CHART_GREY && !is_on_front(chart, i)) line->rank = CHART_HIDDEN;
     }
 }
 
 bool chart_rank(Chart *chart, const char *highlight, const char *path, Error *error) {
     int rival;
-    ask(chart, highlight);
+    chart_rank_ask(chart, highlight);
     if (!find_rival(chart, &rival)) return error_memory(error, path);
     for (int i = 0; i < chart->line_count; i++)
         if (chart_is_program(&chart->lines[i])) colour(chart, i);
-    colour(chart, find(chart, "engine"));
-    colour(chart, find(chart, "interior"));
+    colour(chart, chart_rank_find(chart, "engine"));
+    colour(chart, chart_rank_find(chart, "interior"));
     colour(chart, rival);
-    colour(chart, find(chart, "scene-net"));
+    colour(chart, chart_rank_find(chart, "scene-net"));
     for (int i = 0; i < chart->line_count; i++)
         if (chart->lines[i].rank == CHART_COLOURED) colour(chart, find_twin(chart, i));
     hide_variants(chart);

@@ -29,7 +29,7 @@ bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Err
     return ok;
 }
 
-static void measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
+static void closed_loop_measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
     const int launch = scene->bomb.frame < log->frames ? scene->bomb.frame : log->frames;
     result->energy_put_in = result->energy_most = log->at[launch].energy;
     for (int frame = 1; frame <= log->frames; frame++) {
@@ -60,7 +60,7 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
                            .momentum_error = log->momentum_error,
                            .steps = log->frames,
                            .fallen_back = log->fallen_back};
-    measure(log, launched, result);
+    closed_loop_measure(log, launched, result);
     return true;
 }
 

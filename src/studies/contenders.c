@@ -20,7 +20,7 @@ static MethodRuns default_runs(const MethodDescription *method, ContenderStudy s
     return runs != NULL ? runs : one_run;
 }
 
-static bool add(ContenderList *list, const char *name, const char *setting, Error *error) {
+static bool contenders_add(ContenderList *list, const char *name, const char *setting, Error *error) {
     Contender contender;
     char text[CHART_NAME_SIZE + CHART_SETTING_SIZE + 1];
     if (strlen(name) >= sizeof contender.name || strlen(setting) >= sizeof contender.setting)
@@ -41,17 +41,17 @@ static bool add(ContenderList *list, const char *name, const char *setting, Erro
 
 static bool add_runs(ContenderList *list, const char *name, MethodRuns runs, Error *error) {
     for (; *runs != NULL; runs++)
-        if (!add(list, name, *runs, error)) return false;
+        if (!contenders_add(list, name, *runs, error)) return false;
     return true;
 }
 
 /* A method with the settings that follow its name, if any. */
 static bool add_as_given(ContenderList *list, char *word, Error *error) {
     char *colon = strchr(word, ':');
-    if (colon == NULL) return add(list, word, "", error);
+    if (colon == NULL) return contenders_add(list, word, "", error);
     if (colon[1] == '\0') return method_parse(&(Method){0}, word, error); /* refused */
     *colon = '\0';
-    return add(list, word, colon + 1, error);
+    return contenders_add(list, word, colon + 1, error);
 }
 
 /* A name without settings: the default runs of a chart, or one run if there are none. */
@@ -59,11 +59,11 @@ static bool add_word(ContenderList *list, char *word, ContenderStudy study, Erro
     const MethodDescription *method = method_describe(word);
     if (study == STUDY_STABILITY || strchr(word, ':') != NULL || method == NULL) return add_as_given(list, word, error);
     const MethodRuns runs = default_runs(method, study);
-    return *runs != NULL ? add_runs(list, word, runs, error) : add(list, word, "", error);
+    return *runs != NULL ? add_runs(list, word, runs, error) : contenders_add(list, word, "", error);
 }
 
 /* Ends the first word of the list, at a comma that no setting follows. Returns the next word, or NULL. */
-static char *split(char *text) {
+static char *contenders_split(char *text) {
     for (char *comma = strchr(text, ','); comma != NULL; comma = strchr(comma + 1, ',')) {
         size_t word = strcspn(comma + 1, ",:=");
         if (comma[1 + word] == '=') continue;
@@ -95,7 +95,7 @@ static bool add_words(ContenderList *list, const char *text, ContenderStudy stud
     char *copy = strdup(text), *word = copy;
     bool ok = copy != NULL || error_memory(error, "contenders");
     while (ok && word != NULL) {
-        char *next = split(word);
+        char *next = contenders_split(word);
         ok = add_word(list, word, study, error);
         word = next;
     }

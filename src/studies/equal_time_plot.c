@@ -79,7 +79,8 @@ static bool has_ratio(const EqualTime *table, int family, const char *scene) {
     return false;
 }
 
-static void add(Columns *columns, EqualTimeGrid *grid, const EqualTime *table, int family, bool joined) {
+static void equal_time_plot_add(Columns *columns, EqualTimeGrid *grid, const EqualTime *table, int family,
+                                bool joined) {
     if (!has_ratio(table, family, NULL))
         name_list_add(&grid->left_out, table->curves.families[family].name);
     else if (columns->count < EQUAL_TIME_COLUMNS) {
@@ -92,12 +93,12 @@ static void add(Columns *columns, EqualTimeGrid *grid, const EqualTime *table, i
 static void order_columns(Columns *columns, EqualTimeGrid *grid, const EqualTime *table) {
     const RivalCurves *curves = &table->curves;
     for (int i = 0; i < curves->family_count; i++)
-        if (twin_of(curves, i) == NULL) add(columns, grid, table, i, false);
+        if (twin_of(curves, i) == NULL) equal_time_plot_add(columns, grid, table, i, false);
     for (int i = 0; i < curves->family_count; i++) {
         const int twin = find_twin(curves, i);
         if (twin_of(curves, i) == NULL || !is_whole(curves, i)) continue;
-        add(columns, grid, table, i, false);
-        if (twin >= 0) add(columns, grid, table, twin, has_ratio(table, i, NULL));
+        equal_time_plot_add(columns, grid, table, i, false);
+        if (twin >= 0) equal_time_plot_add(columns, grid, table, twin, has_ratio(table, i, NULL));
     }
 }
 
@@ -211,11 +212,11 @@ static EqualTimePlotLayout lay_out(const EqualTimeGrid *grid) {
 }
 
 /* -1: the full colour of less error, 1: that of more. */
-static double strength(double ratio) { return fmax(-1, fmin(1, log(ratio) / log(strongest))); }
+static double equal_time_plot_strength(double ratio) { return fmax(-1, fmin(1, log(ratio) / log(strongest))); }
 
 static uint32_t colour_of(double ratio) {
     static const double less[] = {0x21, 0x66, 0xAC}, even[] = {0xF4, 0xF4, 0xF4}, more[] = {0xB3, 0x58, 0x06};
-    const double t = strength(ratio);
+    const double t = equal_time_plot_strength(ratio);
     uint32_t colour = 0;
     for (int i = 0; i < 3; i++)
         colour = colour << 8 | (uint32_t)lround(even[i] + fabs(t) * ((t < 0 ? less[i] : more[i]) - even[i]));
@@ -314,8 +315,8 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
                  colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)), NO_COLOUR);
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
         name_ratio(text, marks[i]);
-        plot_text(sketch, (Point){layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2}, TEXT_CENTER, 7,
-                  text);
+        plot_text(sketch, (Point){layout->left + bar_width * (equal_time_plot_strength(marks[i]) + 1) / 2, bottom - 2},
+                  TEXT_CENTER, 7, text);
     }
     snprintf(note, sizeof note, "in the time of momentum with %s sweeps per step",
              layout->grid->time + strcspn(layout->grid->time, "0123456789"));
@@ -341,7 +342,7 @@ static bool write_caption(const EqualTimeGrid *grid, const char *stem, Error *er
     return file_path(path, sizeof path, error, "%s.txt", stem) && file_write(path, caption, strlen(caption), error);
 }
 
-static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
+static bool equal_time_plot_draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
     char stem[PATH_MAX];
     Sketch sketch;
     EqualTimePlotLayout layout = lay_out(grid);
@@ -378,7 +379,7 @@ bool equal_time_plot(const char *chart_csv, const char *folder, EqualTimeFigure 
             chart_make_plain(grid->times);
         }
         if (ok) *figure = (EqualTimeFigure){grid->columns > 0, grid->left_out};
-        ok = ok && (!figure->drawn || draw(grid, folder, error));
+        ok = ok && (!figure->drawn || equal_time_plot_draw(grid, folder, error));
         equal_time_free(&table);
     }
     free(grid);

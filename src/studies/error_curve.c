@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static int compare(const void *left, const void *right) {
+static int error_curve_compare(const void *left, const void *right) {
     const CurvePoint *a = left, *b = right;
     if (a->us != b->us) return a->us < b->us ? -1 : 1;
     return (a->error > b->error) - (a->error < b->error);
@@ -13,7 +13,7 @@ static int compare(const void *left, const void *right) {
 
 int error_curve_front(CurvePoint *points, int count) {
     int kept = 0;
-    qsort(points, (size_t)count, sizeof *points, compare);
+    qsort(points, (size_t)count, sizeof *points, error_curve_compare);
     for (int i = 0; i < count; i++)
         if (kept == 0 || points[i].error < points[kept - 1].error) points[kept++] = points[i];
     return kept;

@@ -45,8 +45,8 @@ static bool converged_velocities(ConvergedStep *converged, const ContactProblem 
 }
 
 /* Stores the state before the step that led to `after`, and the step's converged velocities, if there are any. */
-static bool store(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
-                  Phase phase, ConvergedStep *converged, Error *error) {
+static bool frozen_store(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
+                         Phase phase, ConvergedStep *converged, Error *error) {
     const ContactProblem *problem = world_problem(after);
     if (!array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items))
         return error_memory(error, "study");
@@ -70,8 +70,8 @@ typedef struct Sampler {
     ConvergedStep converged;
 } Sampler;
 
-static bool sample(SnapshotList *list, Sampler *sampler, const Scene *launched, const Sampling *sampling,
-                   Error *error) {
+static bool frozen_sample(SnapshotList *list, Sampler *sampler, const Scene *launched, const Sampling *sampling,
+                          Error *error) {
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     for (int frame = 1; frame <= launched->frames; frame++) {
         const Step step = {.scene = launched, .frame = frame};
@@ -80,7 +80,7 @@ static bool sample(SnapshotList *list, Sampler *sampler, const Scene *launched, 
             return false;
         Phase phase = phase_next(&tracker, world_problem(sampler->world), frame);
         if (sampling_takes(sampling, phase, &tracker, frame) &&
-            !store(list, launched, sampler->before, sampler->world, frame, phase, &sampler->converged, error))
+            !frozen_store(list, launched, sampler->before, sampler->world, frame, phase, &sampler->converged, error))
             return false;
     }
     return true;
@@ -93,7 +93,7 @@ bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sa
                        .world = scene_world(launched, error),
                        .before = empty_world(launched, error)};
     bool ok = sampler.engine != NULL && sampler.world != NULL && sampler.before != NULL &&
-              sample(list, &sampler, launched, sampling, error);
+              frozen_sample(list, &sampler, launched, sampling, error);
     stepper_destroy(sampler.engine);
     world_destroy(sampler.world);
     world_destroy(sampler.before);

@@ -77,7 +77,7 @@ void launch_scores_write(FILE *results, const LaunchScores *scores, int count, i
     for (int i = 0; i < count; i++) write_part(results, &scores[i]);
 }
 
-static bool refuse(const StoredScores *stored, Error *error) {
+static bool launch_scores_refuse(const StoredScores *stored, Error *error) {
     return error_input(error, stored->path, "is no result of a launch; delete it, and its shard does it again");
 }
 
@@ -98,20 +98,20 @@ bool stored_scores_open(StoredScores *stored, const char *path, const char *byte
     if (size >= sizeof head) memcpy(&head, bytes, sizeof head);
     const size_t begin = sizeof head + (size_t)count * sizeof(int64_t);
     if (size < begin || head.count != count || !is_step_count(head.unconverged) || !is_step_count(head.run_unconverged))
-        return refuse(stored, error);
+        return launch_scores_refuse(stored, error);
     for (int i = 0; i < count; i++) {
         const int64_t end = part_begin(stored, i + 1);
         if (end > (int64_t)size || end < part_begin(stored, i) + (int64_t)sizeof(PartHead))
-            return refuse(stored, error);
+            return launch_scores_refuse(stored, error);
     }
-    if (part_begin(stored, count) != (int64_t)size) return refuse(stored, error);
+    if (part_begin(stored, count) != (int64_t)size) return launch_scores_refuse(stored, error);
     stored->unconverged = head.unconverged;
     stored->run_unconverged = head.run_unconverged;
     return true;
 }
 
 /* The counts fit the size of the part. */
-static bool fits(const PartHead *head, size_t size) {
+static bool launch_scores_fits(const PartHead *head, size_t size) {
     size_t rest = (size - sizeof *head) / (2 * sizeof(double));
     for (int protocol = 0; protocol < PROTOCOLS; protocol++)
         for (int phase = 0; phase < PHASES; phase++) {
@@ -142,7 +142,7 @@ static void append_criteria(CriteriaSum *all, const CriteriaSum *more) {
 }
 
 /* Adds `count` errors and shares. False if out of memory. */
-static bool append(PhaseScores *steps, const char *bytes, int count) {
+static bool launch_scores_append(PhaseScores *steps, const char *bytes, int count) {
     const size_t before = (size_t)steps->count, more = (size_t)count;
     if (!array_reserve((void **)&steps->error, &steps->error_capacity, before + more, sizeof(double)) ||
         !array_reserve((void **)&steps->share, &steps->share_capacity, before + more, sizeof(double)))
@@ -160,12 +160,12 @@ static bool append_all(MethodScores *scores, const StoredScores *stored, const P
         for (int phase = 0; phase < PHASES; phase++) {
             PhaseScores *steps = &scores->steps[protocol][phase];
             const int before = steps->count, count = head->counts[protocol][phase];
-            if (!are_criteria(&head->criteria[protocol][phase], count)) return refuse(stored, error);
+            if (!are_criteria(&head->criteria[protocol][phase], count)) return launch_scores_refuse(stored, error);
             append_criteria(&steps->criteria, &head->criteria[protocol][phase]);
-            if (!append(steps, bytes, count)) return error_memory(error, "study");
+            if (!launch_scores_append(steps, bytes, count)) return error_memory(error, "study");
             if (count == 0) continue;
             if (!are_scores(steps->error + before, count, INFINITY) || !are_scores(steps->share + before, count, 1))
-                return refuse(stored, error);
+                return launch_scores_refuse(stored, error);
             bytes += 2 * sizeof(double) * (size_t)count;
             if (protocol == PROTOCOL_CLOSED) /* ignores NaN */
                 scores->worst[phase] = fmax(scores->worst[phase], statistics_mean(steps->error + before, count));
@@ -178,7 +178,7 @@ bool method_scores_add(MethodScores *scores, const StoredScores *stored, int met
     const size_t size = (size_t)(part_begin(stored, method + 1) - begin);
     PartHead head;
     memcpy(&head, stored->bytes + begin, sizeof head);
-    if (!fits(&head, size)) return refuse(stored, error);
+    if (!launch_scores_fits(&head, size)) return launch_scores_refuse(stored, error);
     if (!array_reserve((void **)&scores->measures, &scores->measure_capacity, (size_t)scores->launches + 1,
                        sizeof *scores->measures))
         return error_memory(error, "study");

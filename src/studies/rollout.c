@@ -204,7 +204,7 @@ void rollout_free(Rollout *rollout) {
     *rollout = (Rollout){0};
 }
 
-static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
+static bool rollout_score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
     if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
     const bool found = converged_step_found(&rollout->converged);
@@ -215,7 +215,7 @@ static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores
            error_memory(error, "study");
 }
 
-static bool begin(Rollout *rollout, const Scene *launched, Error *error) {
+static bool rollout_begin(Rollout *rollout, const Scene *launched, Error *error) {
     world_destroy(rollout->world);
     rollout->world = scene_world(launched, error);
     if (rollout->world == NULL) return false;
@@ -224,7 +224,7 @@ static bool begin(Rollout *rollout, const Scene *launched, Error *error) {
 
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error) {
-    if (!begin(rollout, launched, error)) return false;
+    if (!rollout_begin(rollout, launched, error)) return false;
     const bool push_out = !stepper_describe(stepper)->no_push_out;
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     for (int frame = 1; frame <= launched->frames; frame++) {
@@ -238,7 +238,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
         if (scores != NULL && sampling_takes(sampling, phase, &tracker, frame) &&
-            !score(rollout, frame, push_out, &scores[phase], error))
+            !rollout_score(rollout, frame, push_out, &scores[phase], error))
             return false;
     }
     return true;

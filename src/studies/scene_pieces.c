@@ -51,7 +51,7 @@ static void launch_piece_end(LaunchPiece *piece) {
     free(piece->scores);
 }
 
-static bool prepare(LaunchPiece *piece, Error *error) {
+static bool scene_pieces_prepare(LaunchPiece *piece, Error *error) {
     Method method;
     Rollout rollout = {0};
     Stepper *stepper =
@@ -79,7 +79,7 @@ static bool score_with(LaunchPiece *piece, Stepper *stepper, LaunchScores *score
 }
 
 /* Scores a contender, whichever is free. */
-static bool score(void *context, int i, Error *error) {
+static bool scene_pieces_score(void *context, int i, Error *error) {
     (void)i;
     LaunchPiece *piece = context;
     SceneStudy *study = piece->study;
@@ -94,9 +94,9 @@ static bool score(void *context, int i, Error *error) {
 bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Progress *progress, Error *error) {
     LaunchPiece piece;
     ProgressStage stage = {progress, converged_share, 1 - converged_share, false};
-    const ParallelWork work = {score, &piece};
+    const ParallelWork work = {scene_pieces_score, &piece};
     const bool ok =
-        launch_piece_begin(&piece, study, launch, error) && prepare(&piece, error) &&
+        launch_piece_begin(&piece, study, launch, error) && scene_pieces_prepare(&piece, error) &&
         parallel_for(&work, study->contender_count, study->scene->name, &(Progress){progress_stage, &stage}, error);
     if (ok)
         launch_scores_write(results, piece.scores, study->contender_count, piece.snapshots.unconverged,

@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 
-static void sweep(const FloatRange *bomb_x, const Scene *scene, Launch *out) {
+static void scene_study_sweep(const FloatRange *bomb_x, const Scene *scene, Launch *out) {
     for (int i = 0; i < bomb_x->count; i++) {
         out[i] = launch_of(scene);
         out[i].x = range_value(bomb_x, i);
@@ -29,7 +29,7 @@ Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int s
     if (ok && choice->table != NULL)
         ok = launches_for(&table, scene, launches, error);
     else if (ok && choice->bomb_x.count > 0)
-        sweep(&choice->bomb_x, scene, launches);
+        scene_study_sweep(&choice->bomb_x, scene, launches);
     else if (ok)
         ok = launches_for_scoring(scene, *count, launches, error);
     launches_free(&table);

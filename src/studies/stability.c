@@ -54,7 +54,7 @@ static int first_item(const StabilityPlan *plan, int group, int64_t i) {
     return (int)(plan->groups[group].items * i / plan->pieces[group].count);
 }
 
-static void describe(void *context, int64_t piece, PieceInfo *info) {
+static void stability_describe(void *context, int64_t piece, PieceInfo *info) {
     const StabilityPlan *plan = context;
     const int group = find_group(plan, piece);
     const int64_t i = piece - plan->pieces[group].first;
@@ -79,15 +79,16 @@ static bool stability_plan_begin(StabilityGroup *group, Error *error) {
     return ok;
 }
 
-static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+static bool stability_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
     const StabilityPlan *plan = context;
     const int number = find_group(plan, piece);
     StabilityGroup *group = &plan->groups[number];
     const int64_t i = piece - plan->pieces[number].first;
-    const int first = first_item(plan, number, i), end = first_item(plan, number, i + 1);
+    const int first = first_item(plan, number, i), stability_end = first_item(plan, number, i + 1);
     if (!stability_plan_begin(group, error)) return false;
-    return group->scan.study != NULL ? stability_scan_write(&group->scanned, first, end, results, progress, error)
-                                     : stability_grid_write(&group->mapped, first, end, results, progress, error);
+    return group->scan.study != NULL
+               ? stability_scan_write(&group->scanned, first, stability_end, results, progress, error)
+               : stability_grid_write(&group->mapped, first, stability_end, results, progress, error);
 }
 
 /* weight: seconds on two cores, of the whole group. */
@@ -105,7 +106,7 @@ static bool stability_plan_make(StabilityPlan *plan, const StabilityStudy *const
                                 const StabilityMap *const *maps, int map_count, const char *scenes,
                                 const ContenderList *methods, bool quick, Error *error) {
     const size_t count = (size_t)study_count + (size_t)map_count;
-    *plan = (StabilityPlan){.plan = {.describe = describe, .work = work, .context = plan}};
+    *plan = (StabilityPlan){.plan = {.describe = stability_describe, .work = stability_work, .context = plan}};
     plan->groups = calloc(count + 1, sizeof *plan->groups);
     plan->pieces = calloc(count + 1, sizeof *plan->pieces);
     if (plan->groups == NULL || plan->pieces == NULL) return error_memory(error, "stability");
@@ -249,7 +250,7 @@ static bool is_named(const StabilityOptions *options, const char *name, bool qui
 }
 
 /* What is named, or all that belongs to a run of this size. */
-static bool choose(Run *run, Error *error) {
+static bool stability_choose(Run *run, Error *error) {
     const StabilityOptions *options = run->options;
     const StabilityOwn *own = options->own;
     const StabilityStudy *studies = own != NULL ? own->studies : stability_studies;
@@ -334,22 +335,22 @@ static bool write_tables(const Run *run, const Pieces *pieces, Error *error) {
 }
 
 /* What follows from the pieces, once all are there. */
-static bool finish(const Run *run, const Pieces *pieces, Error *error) {
+static bool stability_finish(const Run *run, const Pieces *pieces, Error *error) {
     const StabilityOptions *options = run->options;
     return folder_reserve(options->folder, error) && write_tables(run, pieces, error) &&
            (options->draw == NULL || options->draw(options->draw_context, pieces->key, error)) &&
            pieces_end(pieces, error);
 }
 
-static bool begin(Run *run, const StabilityOptions *options, Error *error) {
+static bool stability_begin(Run *run, const StabilityOptions *options, Error *error) {
     *run = (Run){.options = options};
     return know_names(options, error) && contenders_parse(&run->methods, options->methods, STUDY_STABILITY, error) &&
-           choose(run, error) &&
+           stability_choose(run, error) &&
            stability_plan_make(&run->plan, run->studies, run->study_count, run->maps, run->map_count, options->scenes,
                                &run->methods, options->quick, error);
 }
 
-static void end(Run *run) {
+static void stability_end(Run *run) {
     stability_plan_free(&run->plan);
     contenders_free(&run->methods);
     free(run->studies);
@@ -359,19 +360,19 @@ static void end(Run *run) {
 bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
     Run run;
     StudyKey key = {0};
-    const bool ok = begin(&run, options, error) && find_key(&run, &key, error) &&
+    const bool ok = stability_begin(&run, options, error) && find_key(&run, &key, error) &&
                     study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
-                    (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
+                    (pieces->mode == PIECES_SHARD || stability_finish(&run, pieces, error));
     pieces->plan = NULL;
     study_key_free(&key);
-    end(&run);
+    stability_end(&run);
     return ok;
 }
 
 bool stability_estimate(const StabilityOptions *options, PiecesEstimate *estimate, const Progress *progress,
                         Error *error) {
     Run run;
-    const bool ok = begin(&run, options, error) && pieces_estimate(estimate, &run.plan.plan, progress, error);
-    end(&run);
+    const bool ok = stability_begin(&run, options, error) && pieces_estimate(estimate, &run.plan.plan, progress, error);
+    stability_end(&run);
     return ok;
 }

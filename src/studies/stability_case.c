@@ -146,7 +146,7 @@ const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value)
     return run;
 }
 
-static bool store(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
+static bool stability_case_store(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
     bool ok;
 #pragma omp critical(converged_runs)
     {
@@ -165,7 +165,8 @@ const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double
     run->value = value;
     bool ok = converged_run_once(&run->log, scene, error);
     if (ok) run->convergence = convergence_of(&run->log);
-    ok = ok && stability_truth(scene, judged, &run->truth, &run->convergence, error) && store(runs, run, error);
+    ok = ok && stability_truth(scene, judged, &run->truth, &run->convergence, error) &&
+         stability_case_store(runs, run, error);
     if (ok) return run;
     energy_log_free(&run->log);
     free(run);

@@ -17,7 +17,7 @@
 #include <string.h>
 
 /* Inserts a value into a sorted list, if it is new. False if the list is full. */
-static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
+static bool stability_map_insert(double values[MAP_MAX_VALUES], int *count, double value) {
     int at = 0;
     while (at < *count && values[at] < value) at++;
     if (at < *count && values[at] == value) return true;
@@ -28,7 +28,7 @@ static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
     return true;
 }
 
-static int find(const double *values, double value) {
+static int stability_map_find(const double *values, double value) {
     int i = 0;
     while (values[i] != value) i++;
     return i;
@@ -36,8 +36,8 @@ static int find(const double *values, double value) {
 
 static bool gather_values(MapPanels *map, const CsvTable *table, int first, int end, Error *error) {
     for (int i = first; i < end; i++)
-        if (!insert(map->x, &map->x_count, map_cell(table, i)->x) ||
-            !insert(map->y, &map->y_count, map_cell(table, i)->y))
+        if (!stability_map_insert(map->x, &map->x_count, map_cell(table, i)->x) ||
+            !stability_map_insert(map->y, &map->y_count, map_cell(table, i)->y))
             return csv_table_error(table, i, 0, error, "more than %d values of a parameter", MAP_MAX_VALUES);
     return true;
 }
@@ -52,7 +52,8 @@ static bool gather_looks(MapPanels *map, const CsvTable *table, int first, int e
                                        MAP_MAX_METHODS);
             map->methods[map->panel_count++] = cell;
         }
-        unsigned char *look = &map->looks[map->panel_count - 1][find(map->x, cell->x)][find(map->y, cell->y)];
+        unsigned char *look =
+            &map->looks[map->panel_count - 1][stability_map_find(map->x, cell->x)][stability_map_find(map->y, cell->y)];
         if (*look != LOOK_MISSING)
             return csv_table_error(table, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
                                    cell->x, cell->y_parameter, cell->y);
@@ -434,7 +435,7 @@ static void draw_tiles(const Layout *layout, int panel, const PlotPanel *plot) {
 }
 
 /* One holds and the other fails; cells without a verdict do neither. */
-static bool differ(int look, int other) {
+static bool stability_map_differ(int look, int other) {
     return look < VERDICTS && other < VERDICTS && verdict_holds((Verdict)look) != verdict_holds((Verdict)other);
 }
 
@@ -451,9 +452,9 @@ static void draw_border(const Layout *layout, int panel, const PlotPanel *plot) 
         for (int y = 0; y < map->y_count; y++) {
             const int here = map->looks[panel][x][y];
             const Point corner = plot_place(plot, x + 0.5, y + 0.5); /* the upper right one */
-            if (x + 1 < map->x_count && differ(here, map->looks[panel][x + 1][y]))
+            if (x + 1 < map->x_count && stability_map_differ(here, map->looks[panel][x + 1][y]))
                 draw_edge(layout, (Point){corner.x, corner.y - layout->cell_y}, corner);
-            if (y + 1 < map->y_count && differ(here, map->looks[panel][x][y + 1]))
+            if (y + 1 < map->y_count && stability_map_differ(here, map->looks[panel][x][y + 1]))
                 draw_edge(layout, (Point){corner.x - layout->cell_x, corner.y}, corner);
         }
 }

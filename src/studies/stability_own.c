@@ -16,7 +16,7 @@ static const double linear_ratio = 20;
 
 enum { SCAN_POINTS = 13, SCAN_QUICK_POINTS = 5, MAP_POINTS = 10, MAP_QUICK_POINTS = 4 };
 
-static const SceneParameter *find(const Scene *scene, const char *name, Error *error) {
+static const SceneParameter *stability_own_find(const Scene *scene, const char *name, Error *error) {
     const SceneParameter *found = scene_parameter(scene, name);
     NameList known = {0};
     for (int i = 0; i < scene->parameter_count; i++) name_list_add(&known, scene->parameters[i].name);
@@ -80,7 +80,7 @@ static bool read_text(const Scene *scene, const char *text, char name[SCENE_PARA
                       Error *error) {
     const size_t length = strcspn(text, "=");
     snprintf(name, SCENE_PARAMETER_SIZE, "%.*s", (int)length, text);
-    const SceneParameter *parameter = find(scene, name, error);
+    const SceneParameter *parameter = stability_own_find(scene, name, error);
     if (parameter == NULL) return false;
     double from = parameter->from, to = parameter->to, step = 0;
     const char *rest;

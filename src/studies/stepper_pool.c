@@ -35,7 +35,7 @@ void stepper_pool_empty(StepperPool *pool) {
 }
 
 /* *free: it is taken, as no other thread had it. */
-static int choose(StepperPool *pool, const bool *chosen, int from, bool *free) {
+static int stepper_pool_choose(StepperPool *pool, const bool *chosen, int from, bool *free) {
     int found = -1;
     for (int k = 0; k < pool->count; k++) {
         const int i = (from + k) % pool->count;
@@ -52,7 +52,7 @@ int stepper_pool_take(StepperPool *pool, bool *chosen, int from) {
     bool free = false;
 #pragma omp critical(stepper_pool)
     {
-        index = choose(pool, chosen, from, &free);
+        index = stepper_pool_choose(pool, chosen, from, &free);
         chosen[index] = true;
     }
     if (!free) omp_set_lock(&pool->items[index].taken);

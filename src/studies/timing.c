@@ -143,7 +143,7 @@ static bool warm_up(const Timing *timing, const Meter *meter, Error *error) {
 }
 
 /* All contenders, or those that vary, in turns. */
-static bool repeat(Timing *timing, int repetition, bool again, const Meter *meter, Error *error) {
+static bool timing_repeat(Timing *timing, int repetition, bool again, const Meter *meter, Error *error) {
     for (int i = 0; i < timing->count; i++) {
         const Timed *timed = &timing->items[i];
         if (again && !varies(timing, i)) continue;
@@ -158,7 +158,7 @@ static bool repeat(Timing *timing, int repetition, bool again, const Meter *mete
 static bool repeat_all(Timing *timing, bool again, const Meter *meter, const Progress *progress, Error *error) {
     const int repetitions = timing->options->repetitions;
     for (int r = 0; r < repetitions; r++) {
-        if (!repeat(timing, r, again, meter, error)) return false;
+        if (!timing_repeat(timing, r, again, meter, error)) return false;
         if (!progress_report(progress, again ? repetitions : r + 1, repetitions))
             return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
     }
@@ -218,7 +218,7 @@ static int fewest(const StepLog *logs, int repetitions) {
 }
 
 /* times: scratch, [repetitions]. */
-static StepCost summarise(const Timed *timed, int protocol, int phase, int repetitions, double *times) {
+static StepCost timing_summarise(const Timed *timed, int protocol, int phase, int repetitions, double *times) {
     const StepLog *logs = timed->logs[protocol];
     StepCost sum = {0};
     int steps = 0;
@@ -240,18 +240,18 @@ static StepCost summarise(const Timed *timed, int protocol, int phase, int repet
                       .instructions = timed->instructions[protocol][phase]};
 }
 
-static double distance(const StepCost *cost) { return cost->solver_q3 - cost->solver_q1; }
+static double timing_distance(const StepCost *cost) { return cost->solver_q3 - cost->solver_q1; }
 
-static double spread(const StepCost *cost) { return distance(cost) / cost->solver; }
+static double timing_spread(const StepCost *cost) { return timing_distance(cost) / cost->solver; }
 
 /* Whether a time varies more than those of the others in that phase: another process may have disturbed it. */
 static bool is_disturbed(const StepCost (*costs)[PHASES], int count, int contender, int phase, double *spreads) {
     int others = 0;
     for (int i = 0; i < count; i++)
-        if (i != contender && costs[i][phase].solver > 0) spreads[others++] = spread(&costs[i][phase]);
-    const double usual = statistics_quantile(spreads, others, 0.5), own = spread(&costs[contender][phase]);
+        if (i != contender && costs[i][phase].solver > 0) spreads[others++] = timing_spread(&costs[i][phase]);
+    const double usual = statistics_quantile(spreads, others, 0.5), own = timing_spread(&costs[contender][phase]);
     return own > TIMES_VARY_FACTOR * usual && own > TIMES_VARY_LEAST &&
-           distance(&costs[contender][phase]) > TIMES_VARY_US;
+           timing_distance(&costs[contender][phase]) > TIMES_VARY_US;
 }
 
 static void summarise_all(const Timing *timing) {
@@ -259,7 +259,8 @@ static void summarise_all(const Timing *timing) {
         for (int phase = 0; phase < PHASES; phase++) {
             StepCost(*costs)[PHASES] = timing->costs[p];
             for (int i = 0; i < timing->count; i++)
-                costs[i][phase] = summarise(&timing->items[i], p, phase, timing->options->repetitions, timing->numbers);
+                costs[i][phase] =
+                    timing_summarise(&timing->items[i], p, phase, timing->options->repetitions, timing->numbers);
             for (int i = 0; i < timing->count; i++)
                 costs[i][phase].varies =
                     is_disturbed((const StepCost(*)[PHASES])costs, timing->count, i, phase, timing->numbers);
@@ -300,7 +301,7 @@ static void timing_end(Timing *timing) {
     world_destroy(timing->world);
 }
 
-static bool measure(Timing *timing, const Progress *progress, Error *error) {
+static bool measure_timing(Timing *timing, const Progress *progress, Error *error) {
     const Meter clock = {meter_time, meter_time_overhead()};
     if (!warm_up(timing, &clock, error) || !repeat_all(timing, false, &clock, progress, error) ||
         !count_instructions(timing, error))
@@ -319,7 +320,7 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
                      .count = count,
                      .costs = {[PROTOCOL_CLOSED] = closed, [PROTOCOL_FROZEN] = frozen}};
     meter_pin();
-    const bool ok = timing_begin(&timing, contenders, error) && measure(&timing, progress, error);
+    const bool ok = timing_begin(&timing, contenders, error) && measure_timing(&timing, progress, error);
     meter_unpin();
     timing_end(&timing);
     return ok;

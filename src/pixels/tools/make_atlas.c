@@ -20,7 +20,7 @@ enum { ASCII_FIRST = 0x20, ASCII_LAST = 0x7E, FIGURE_SPACE_CODE = 0x2007 };
 static FILE *output;
 static unsigned bitmap_size;
 
-static void quit(const char *what) {
+static void make_atlas_quit(const char *what) {
     fprintf(stderr, "make_atlas: %s\n", what);
     exit(1);
 }
@@ -30,10 +30,10 @@ static unsigned code_point(int i) {
     return i < ascii ? (unsigned)(ASCII_FIRST + i) : extra[i - ascii];
 }
 
-static FT_Pos load(FT_Face face, unsigned code) {
+static FT_Pos make_atlas_load(FT_Face face, unsigned code) {
     FT_UInt index = FT_Get_Char_Index(face, code);
-    if (index == 0) quit("a character is missing in the font");
-    if (FT_Load_Glyph(face, index, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) quit("cannot load a glyph");
+    if (index == 0) make_atlas_quit("a character is missing in the font");
+    if (FT_Load_Glyph(face, index, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) make_atlas_quit("cannot load a glyph");
     return (face->glyph->linearHoriAdvance + (1 << 9)) >> 10; /* Tabular figures: changing numbers must not shift. */
 }
 
@@ -41,7 +41,7 @@ static FT_Pos load(FT_Face face, unsigned code) {
 static FT_Pos figure_advance(FT_Face face) {
     FT_Pos widest = 0;
     for (unsigned code = '0'; code <= '9'; code++) {
-        FT_Pos advance = load(face, code);
+        FT_Pos advance = make_atlas_load(face, code);
         if (advance > widest) widest = advance;
     }
     return widest;
@@ -60,12 +60,12 @@ static void print_bitmap(const FT_Bitmap *bitmap) {
 
 static FontGlyph render(FT_Face face, unsigned code, FT_Pos figure) {
     if (code == FIGURE_SPACE_CODE) return (FontGlyph){.code = code, .advance = (short)figure};
-    FT_Pos advance = load(face, code);
+    FT_Pos advance = make_atlas_load(face, code);
     if (code >= '0' && code <= '9') {
         FT_Outline_Translate(&face->glyph->outline, (figure - advance) / 2, 0);
         advance = figure;
     }
-    if (FT_Render_Glyph(face->glyph, FT_RENDER_MODE_NORMAL) != 0) quit("cannot render a glyph");
+    if (FT_Render_Glyph(face->glyph, FT_RENDER_MODE_NORMAL) != 0) make_atlas_quit("cannot render a glyph");
     FT_GlyphSlot slot = face->glyph;
     FontGlyph glyph = {code,
                        bitmap_size,
@@ -102,15 +102,15 @@ static void print_glyphs(FontGlyph glyphs[FONT_FACES][FONT_SIZES][FONT_GLYPHS]) 
 int main(int argc, char **argv) {
     static FontGlyph glyphs[FONT_FACES][FONT_SIZES][FONT_GLYPHS];
     FT_Library library;
-    if (argc != FONT_FACES + 2) quit("usage: make_atlas REGULAR.otf SEMIBOLD.otf OUTPUT.c");
-    if ((output = fopen(argv[FONT_FACES + 1], "w")) == NULL) quit("cannot write the output");
-    if (FT_Init_FreeType(&library) != 0) quit("cannot start FreeType");
+    if (argc != FONT_FACES + 2) make_atlas_quit("usage: make_atlas REGULAR.otf SEMIBOLD.otf OUTPUT.c");
+    if ((output = fopen(argv[FONT_FACES + 1], "w")) == NULL) make_atlas_quit("cannot write the output");
+    if (FT_Init_FreeType(&library) != 0) make_atlas_quit("cannot start FreeType");
     fputs("#include \"pixels/gl.h\"\nconst uint8_t font_bitmaps[] = \"", output);
     for (int i = 0; i < FONT_FACES; i++) {
         FT_Face face;
-        if (FT_New_Face(library, argv[1 + i], 0, &face) != 0) quit("cannot read a font");
+        if (FT_New_Face(library, argv[1 + i], 0, &face) != 0) make_atlas_quit("cannot read a font");
         for (int size = 0; size < FONT_SIZES; size++) {
-            if (FT_Set_Pixel_Sizes(face, 0, (FT_UInt)sizes[size]) != 0) quit("cannot set a size");
+            if (FT_Set_Pixel_Sizes(face, 0, (FT_UInt)sizes[size]) != 0) make_atlas_quit("cannot set a size");
             FT_Pos figure = figure_advance(face);
             for (int j = 0; j < FONT_GLYPHS; j++) glyphs[i][size][j] = render(face, code_point(j), figure);
         }
@@ -119,6 +119,6 @@ int main(int argc, char **argv) {
     fputs("\";\n", output);
     print_glyphs(glyphs);
     FT_Done_FreeType(library);
-    if (fclose(output) != 0) quit("cannot write the output");
+    if (fclose(output) != 0) make_atlas_quit("cannot write the output");
     return 0;
 }

@@ -17,52 +17,54 @@ static OutlineStep steps[STEPS_MAX];
 static Glyph glyphs[GLYPHS_MAX];
 static int step_count, glyph_count;
 
-static void quit(const char *what) {
+static void make_outlines_quit(const char *what) {
     fprintf(stderr, "make_outlines: %s\n", what);
     exit(1);
 }
 
-static void add(OutlineKind kind, const FT_Vector *to) {
-    if (step_count == STEPS_MAX) quit("too many outlines");
+static void make_outlines_add(OutlineKind kind, const FT_Vector *to) {
+    if (step_count == STEPS_MAX) make_outlines_quit("too many outlines");
     steps[step_count++] = (OutlineStep){(short)kind, (short)to->x, (short)to->y};
 }
 
-static int move(const FT_Vector *to, void *context) {
+static int make_outlines_move(const FT_Vector *to, void *context) {
     (void)context;
-    add(OUTLINE_MOVE, to);
+    make_outlines_add(OUTLINE_MOVE, to);
     return 0;
 }
 
 static int line(const FT_Vector *to, void *context) {
     (void)context;
-    add(OUTLINE_LINE, to);
+    make_outlines_add(OUTLINE_LINE, to);
     return 0;
 }
 
 static int conic(const FT_Vector *control, const FT_Vector *to, void *context) {
     (void)control, (void)to, (void)context;
-    quit("the font has quadratic curves");
+    make_outlines_quit("the font has quadratic curves");
     return 1;
 }
 
 static int cubic(const FT_Vector *first, const FT_Vector *second, const FT_Vector *to, void *context) {
     (void)context;
-    add(OUTLINE_CURVE, first);
-    add(OUTLINE_CURVE, second);
-    add(OUTLINE_CURVE, to);
+    make_outlines_add(OUTLINE_CURVE, first);
+    make_outlines_add(OUTLINE_CURVE, second);
+    make_outlines_add(OUTLINE_CURVE, to);
     return 0;
 }
 
 static void add_glyph(FT_Face face, unsigned code, unsigned index) {
-    static const FT_Outline_Funcs functions = {move, line, conic, cubic, 0, 0};
-    if (glyph_count == GLYPHS_MAX) quit("too many characters");
-    if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING) != 0) quit("cannot load a glyph");
+    static const FT_Outline_Funcs functions = {make_outlines_move, line, conic, cubic, 0, 0};
+    if (glyph_count == GLYPHS_MAX) make_outlines_quit("too many characters");
+    if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING) != 0)
+        make_outlines_quit("cannot load a glyph");
     int first = step_count;
-    if (FT_Outline_Decompose(&face->glyph->outline, &functions, NULL) != 0) quit("cannot read an outline");
+    if (FT_Outline_Decompose(&face->glyph->outline, &functions, NULL) != 0)
+        make_outlines_quit("cannot read an outline");
     glyphs[glyph_count++] = (Glyph){code, index, (int)face->glyph->metrics.horiAdvance, first, step_count - first};
 }
 
-static void print(FILE *output, const char *name) {
+static void make_outlines_print(FILE *output, const char *name) {
     fprintf(output, "static const Glyph %s_glyphs[] = {\n", name);
     for (int i = 0; i < glyph_count; i++)
         fprintf(output, "{%u,%u,%d,%d,%d},\n", glyphs[i].code, glyphs[i].index, glyphs[i].advance, glyphs[i].first,
@@ -74,7 +76,7 @@ static void print(FILE *output, const char *name) {
 
 static FT_Face open_font(FT_Library library, const char *path) {
     FT_Face face = NULL;
-    if (FT_New_Face(library, path, 0, &face) != 0) quit("cannot read a font");
+    if (FT_New_Face(library, path, 0, &face) != 0) make_outlines_quit("cannot read a font");
     return face;
 }
 
@@ -83,21 +85,21 @@ static void write_face(FILE *output, FT_Face face, const char *name) {
     glyph_count = step_count = 0;
     for (FT_ULong code = FT_Get_First_Char(face, &index); index != 0; code = FT_Get_Next_Char(face, code, &index))
         add_glyph(face, (unsigned)code, index);
-    print(output, name);
+    make_outlines_print(output, name);
 }
 
 static void check_small(FT_Face small, FT_Face whole) {
     FT_UInt index;
     for (FT_ULong code = FT_Get_First_Char(small, &index); index != 0; code = FT_Get_Next_Char(small, code, &index))
-        if (FT_Get_Char_Index(whole, code) != index) quit("a glyph of the small font has another index");
+        if (FT_Get_Char_Index(whole, code) != index) make_outlines_quit("a glyph of the small font has another index");
 }
 
 int main(int argc, char **argv) {
     FT_Library library;
-    if (argc != 5) quit("usage: make_outlines REGULAR.otf SEMIBOLD.otf SMALL.otf OUTPUT.c");
+    if (argc != 5) make_outlines_quit("usage: make_outlines REGULAR.otf SEMIBOLD.otf SMALL.otf OUTPUT.c");
     FILE *output = fopen(argv[4], "w");
-    if (output == NULL) quit("cannot write the output");
-    if (FT_Init_FreeType(&library) != 0) quit("cannot start FreeType");
+    if (output == NULL) make_outlines_quit("cannot write the output");
+    if (FT_Init_FreeType(&library) != 0) make_outlines_quit("cannot start FreeType");
     FT_Face regular = open_font(library, argv[1]), semibold = open_font(library, argv[2]);
     FT_Face small = open_font(library, argv[3]);
     check_small(small, regular);
@@ -105,10 +107,11 @@ int main(int argc, char **argv) {
     write_face(output, regular, "regular");
     const int count = glyph_count;
     write_face(output, semibold, "semibold");
-    if (glyph_count != count || semibold->units_per_EM != regular->units_per_EM) quit("the faces differ in kind");
+    if (glyph_count != count || semibold->units_per_EM != regular->units_per_EM)
+        make_outlines_quit("the faces differ in kind");
     fprintf(output, "const int type_units = %d, type_glyph_count = %d;\nconst unsigned type_small_count = %ld;\n",
             regular->units_per_EM, count, small->num_glyphs);
     FT_Done_FreeType(library);
-    if (fclose(output) != 0) quit("cannot write the output");
+    if (fclose(output) != 0) make_outlines_quit("cannot write the output");
     return 0;
 }
