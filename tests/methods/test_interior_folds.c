@@ -5,6 +5,8 @@
 #include "kernels.h"
 #include "reference_worlds.h"
 
+#include "methods/interior.h"
+
 #include <limits.h>
 
 enum { COURSES = 7, PER_COURSE = 7 };

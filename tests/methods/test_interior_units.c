@@ -5,6 +5,7 @@
 #include "reference_worlds.h"
 
 #include "methods/islands.h"
+#include "methods/residual.h"
 
 enum { BODIES_MAX = 64, CONTACTS_MAX = 256 };
 

@@ -6,6 +6,7 @@
 #include "random_structures.h"
 #include "worlds.h"
 
+#include "methods/residual.h"
 #include "methods/islands.h"
 #include "runs/runs.h"
 
