@@ -48,16 +48,15 @@ set(module_sources
     base/base base/hash base/json_write base/npy base/npz base/parse base/path base/stream base/yaml
     engine/box engine/broad_phase engine/contact_problem engine/world
     live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
-    methods/admm methods/admm_scalar methods/avbd methods/block_lu methods/block_order methods/closed_form
-    methods/engine methods/gns methods/gns_graph methods/hybrid methods/interior methods/interior_look methods/interior_path methods/interior_point methods/interior_scalar
-    methods/islands methods/method methods/momentum methods/nncg methods/order methods/pair methods/pair_net methods/reference_point
-    methods/reference_scalar methods/sain_view methods/residual methods/sain methods/scene_net methods/soft_step methods/steppers methods/stopping
-    methods/subspace methods/substepping methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/hybrid_memory
-    methods/hybrid_memory_file
+    methods/admm methods/admm_scalar methods/avbd methods/block_lu methods/block_order methods/closed_form methods/engine
+    methods/gns methods/gns_graph methods/hybrid methods/hybrid_memory methods/hybrid_memory_file methods/interior
+    methods/interior_look methods/interior_path methods/interior_point methods/interior_scalar methods/islands methods/method
+    methods/momentum methods/nncg methods/order methods/pair methods/pair_net methods/reference_point methods/reference_scalar
+    methods/residual methods/sain methods/sain_view methods/scene_net methods/soft_step methods/steppers methods/stopping
+    methods/subspace methods/substepping methods/sweeps methods/sweeps_scalar methods/sweeps_simd128
     nets/gns_net nets/kernels nets/kernels_scalar nets/net_file nets/network nets/scene_net_layers nets/subspace_net
     runs/contact_finder runs/framing runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks
-    runs/verdict_energy runs/verdict_passes
-    runs/verdict_words
+    runs/verdict_energy runs/verdict_passes runs/verdict_words
     scenes/parameters scenes/scene scenes/scene_read scenes/scene_world scenes/shapes)
 # Where most of the time is spent; the rest is made small.
 set(module_fast
