@@ -4,9 +4,9 @@
 #include "base/json.h"
 #include "base/machine.h"
 #include "cli/json_output.h"
+#include "cli/larger_commands.h"
 #include "cli/notes.h"
 #include "cli/progress_bar.h"
-#include "cli/larger_commands.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 

@@ -3,9 +3,9 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/larger_commands.h"
 #include "cli/notes.h"
 #include "cli/options.h"
-#include "cli/larger_commands.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 

@@ -3,8 +3,8 @@
 #include "base/base.h"
 #include "learning/learning.h"
 #include "learning/sain_training.h"
-#include "methods/sain_view.h"
 #include "methods/sain.h"
+#include "methods/sain_view.h"
 #include "nets/nets.h"
 
 #include <omp.h>

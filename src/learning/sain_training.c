@@ -10,8 +10,8 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "methods/reference.h"
-#include "methods/sain_view.h"
 #include "methods/sain.h"
+#include "methods/sain_view.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 

@@ -6,8 +6,8 @@
 #include "learning/learning.h"
 #include "learning/scene_training.h"
 #include "methods/methods.h"
-#include "methods/sain_view.h"
 #include "methods/sain.h"
+#include "methods/sain_view.h"
 #include "nets/nets.h"
 #include "scenes/scenes.h"
 

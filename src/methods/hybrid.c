@@ -17,12 +17,12 @@
 #include "base/base.h"
 #include "base/hash.h"
 #include "engine/engine.h"
-#include "methods/methods.h"
 #include "methods/hybrid.h"
+#include "methods/hybrid_memory.h"
+#include "methods/methods.h"
 #include "methods/residual.h"
 #include "methods/scene_net.h"
 #include "methods/sweeps.h"
-#include "methods/hybrid_memory.h"
 
 #include <math.h>
 #include <stdlib.h>

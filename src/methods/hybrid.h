@@ -3,8 +3,8 @@
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
-#include "methods/methods.h"
 #include "methods/hybrid_memory.h"
+#include "methods/methods.h"
 
 #include <stdbool.h>
 

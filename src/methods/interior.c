@@ -16,12 +16,12 @@
    methods there is which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/interior.h"
 #include "methods/interior_look.h"
 #include "methods/interior_path.h"
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
-#include "methods/interior.h"
 #include "methods/momentum.h"
 #include "methods/residual.h"
 #include "methods/stopping.h"

@@ -21,8 +21,8 @@
 #include "base/npz.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "methods/sain_view.h"
 #include "methods/sain.h"
+#include "methods/sain_view.h"
 #include "nets/nets.h"
 
 #include <math.h>

@@ -6,8 +6,8 @@
 #include "figures/sketch.h"
 #include "pictures/page.h"
 #include "runs/verdict.h"
-#include "studies/study_page.h"
 #include "studies/stability.h"
+#include "studies/study_page.h"
 
 #include <math.h>
 #include <stdlib.h>

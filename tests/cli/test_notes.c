@@ -3,9 +3,9 @@
 #include "testing.h"
 #include "files.h"
 
+#include "base/base.h"
 #include "cli/notes.h"
 #include "cli/progress_bar.h"
-#include "base/base.h"
 
 static double now; /* s */
 

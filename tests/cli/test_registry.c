@@ -6,9 +6,9 @@
 
 #include "cli/cli.h"
 #include "cli/draw_panels.h"
+#include "methods/methods.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
-#include "methods/methods.h"
 #include "studies/contenders.h"
 
 static void *create(const Settings *chosen, Error *error) { return solver_engine.create(chosen, error); }

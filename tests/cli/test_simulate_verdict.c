@@ -2,8 +2,8 @@
 /* Which failures of a run are verdicts. */
 #include "made.h"
 
-#include "cli/larger_commands.h"
 #include "base/file.h"
+#include "cli/larger_commands.h"
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step; no scene file may have that speed. */
 TEST(a_run_that_overflows_has_a_verdict) {

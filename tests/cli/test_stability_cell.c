@@ -2,8 +2,8 @@
 /* Cells of maps: what holds there, and the runs that show what happened. The verdicts are made up. */
 #include "testing.h"
 
-#include "cli/larger_commands.h"
 #include "base/file.h"
+#include "cli/larger_commands.h"
 
 #include <math.h>
 

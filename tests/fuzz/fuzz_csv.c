@@ -2,13 +2,13 @@
 /* CSV files: launches, the tables of charts and studies, runs. */
 #include "fuzz.h"
 
-#include "paper/paper_internal.h"
 #include "paper/paper.h"
+#include "paper/paper_internal.h"
+#include "runs/trajectory.h"
 #include "scenes/scenes.h"
-#include "studies/stability.h"
 #include "studies/chart_table.h"
 #include "studies/equal_time.h"
-#include "runs/trajectory.h"
+#include "studies/stability.h"
 
 #include <math.h>
 #include <string.h>

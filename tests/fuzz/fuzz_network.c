@@ -4,10 +4,10 @@
 
 #include "fuzz_archive.h"
 #include "learning/learning.h"
-#include "nets/nets.h"
-#include "nets/kinds.h"
-#include "methods/sain.h"
 #include "methods/hybrid_memory.h"
+#include "methods/sain.h"
+#include "nets/kinds.h"
+#include "nets/nets.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -48,7 +48,7 @@ CASES = [
     (2, "not a regular file", ["/dev/zero", "small.png"], "compare @ @"),
     (2, "not a regular file", ["/dev/zero"], "export @ -o x.csv"),
     (2, "not a regular file", ["/dev/zero"], "check @"),
-    (2, "results.json:2:1: error: 'a.png' is there twice", ["copies/results.json"], "approve copies"),
+    (2, "results.json: error: 'a.png' is there twice", ["copies/results.json"], "approve copies"),
     (2, "maximum parsing depth reached", ["deep/results.json"], "approve deep"),
     (2, "a value must have at most 65536 bytes", ["long/results.json"], "approve long"),
     (2, "a value must take at most 1048576 bytes of memory", ["many/results.json"], "approve many"),

@@ -6,8 +6,8 @@
 #include "random_structures.h"
 #include "worlds.h"
 
-#include "methods/residual.h"
 #include "methods/islands.h"
+#include "methods/residual.h"
 #include "runs/runs.h"
 
 #include <float.h>

@@ -5,8 +5,8 @@
 #include "sanitized.h"
 
 #include "base/machine.h"
-#include "studies/stability_internal.h"
 #include "studies/stability.h"
+#include "studies/stability_internal.h"
 
 #include <math.h>
 

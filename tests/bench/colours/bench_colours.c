@@ -5,12 +5,12 @@
    all steps; the orders take turns. */
 #include "report.h"
 
-#include "methods/momentum.h"
-#include "methods/reference.h"
 #include "base/base.h"
 #include "learning/scene_training.h"
-#include "scenes/scenes.h"
+#include "methods/momentum.h"
+#include "methods/reference.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
