@@ -144,6 +144,7 @@ static bool is_last(const Nncg *solver, int sweep, const ContactProblem *problem
 /* False when memory is short. */
 static bool nncg_run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
     if (!sweeps_begin(&solver->sweeps, kernel, problem, true) || !nncg_reserve(solver)) return false;
+    if (solver->sweeps.pair_count == 0) return true; /* and no island */
     sweeps_group(&solver->sweeps);
     begin_all(solver);
     for (int sweep = 1;; sweep++) {
