@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Results as JSON (--json). */
+/* Results as JSON (--json): one object on standard output and nothing else there. Its first key is "format": the
+   name of the command and the version of the keys, "twinbox solve 1". A number that is not finite is null. After an
+   error nothing is printed. */
 #pragma once
 #include "base/base.h"
 #include "base/json_write.h"
 #include "cli/options.h"
 
 #include <stdbool.h>
-
-/* One object on standard output and nothing else there. Its first key is "format": the name of
-   the command and the version of the keys, "twinbox solve 1". A number that is not finite is null. After an error
-   nothing is printed. */
 
 #define OPTION_JSON(T, member) \
     "--json", 0, NULL, "Print the result as one JSON object on standard output", OPTION_FLAG(T, member)

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a command prints on standard error beside its errors. */
+/* What a command prints on standard error beside its errors. The options -q and -v, which every command has, set the
+   level; errors do not depend on it, nor do results that go to no file. */
 #pragma once
 #include "base/base.h"
 #include "runs/trajectory.h"
 
 #include <stdbool.h>
-
-/* The options -q and -v, which every command has, set the
-   level; errors do not depend on it, nor do results that go to no file. */
 
 typedef enum NoteLevel { NOTES_QUIET, NOTES_NORMAL, NOTES_VERBOSE } NoteLevel;
 

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks of output paths before the work begins. */
+/* Checks of output paths before the work begins, so that hours of training do not end in "cannot write". A check
+   leaves nothing behind. What may still fail later (a full disk) is reported by the writer. */
 #pragma once
 #include "base/base.h"
 
 #include <stdbool.h>
-
-/* So that hours of training do not end in "cannot write". A check leaves
-   nothing behind. What may still fail later (a full disk) is reported by the writer. */
 
 /* A file can be written to `path`: its folder exists and takes new files, and the path is no folder. ending: of the name,
    such as ".npz"; NULL: any. "-" (standard output), devices and pipes pass. ERROR_INPUT: another ending, or a folder;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pages of a study, folder/pages/NAME.html, and the table that lists them. */
+/* The pages of a study, folder/pages/NAME.html, and the table that lists them. Pages are written in parts, one after
+   the other, so that a study that is interrupted continues with the page that it was at. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -11,9 +12,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
-
-/* They are written in parts, one after the
-   other, so that a study that is interrupted continues with the page that it was at. */
 
 /* All pages of a folder together, and the states in one page, which has only every n-th frame if they would take more. */
 #define PAGE_SET_MAX_BYTES (256 << 20)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runs in a picture, and what their steps cost. */
+/* The runs in a picture, and what their steps cost. Runs are read from .npz, or simulated from a scene, by the
+   engine and pair-net unless methods are given. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -9,8 +10,6 @@
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-
-/* Read from .npz, or simulated from a scene, with the engine and with pair-net unless methods are given. */
 
 typedef struct Panels {
     int count;

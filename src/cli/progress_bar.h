@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The progress bar, and the time that is left. */
+/* The progress bar: a bar on a terminal, lines of text elsewhere; with the time left once it is known. A signal
+   requests the work to stop. Work of less than a second shows nothing. There is one bar at a time. */
 #pragma once
 #include "base/machine.h"
 
 #include <stdbool.h>
-
-/* A progress bar on a terminal, lines of text elsewhere; with the time left once it is known.
-   A signal requests the work to stop. Work of less than a second shows nothing. There is one bar at a time. */
 
 /* Replaces the bar before it, and returns what the work reports to. Signals that are held stay so. */
 const Progress *progress_bar_begin(const char *what);

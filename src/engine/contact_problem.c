@@ -71,10 +71,11 @@ static float smallest_half(const Box *a, const Box *b) {
 
 static float radius(const Box *box) { return sqrtf(vec2_dot(box->half, box->half)); }
 
-/* Adds the arbiter of the last step with the points that it had; false if it must be found anew. A single point is: a
+static const float least_cosine = 0.98f; /* of the angle up to which directions count as one, as in Box2D */
+
+/* Adds the arbiter of the last step with the points that it had; false if it must be found again. A single point is: a
    corner that another may soon join. */
 static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter *old, const Box *boxes, float keep) {
-    const float least_cosine = 0.98f; /* Box2D's angle */
     if (old->count < 2) return false;
     const Box *a = &boxes[old->a], *b = &boxes[old->b];
     const Vec2 shift = vec2_sub(vec2_sub(b->position, a->position), old->found.between);
@@ -165,7 +166,6 @@ static bool is_flush(const Side *side, const ContactSet *set, const Arbiter *sup
 }
 
 static bool is_covered(const Side *side, const ContactSet *set, int body_count) {
-    const float least_cosine = 0.98f; /* as of kept contacts */
     const int bodies[] = {set->arbiters[side->arbiter].a, set->arbiters[side->arbiter].b};
     for (int end = 0; end < 2; end++)
         for (int i = set->partners[bodies[end]]; i >= 0; i = set->partners[body_count + i]) {

@@ -300,7 +300,7 @@ typedef struct ContactSet {
 
 /* How contacts are found. Zeros: as Box2D-Lite finds them, with its bits.
 
-   keep > 0: a pair of two points in the last step is kept, instead of found anew, while its boxes have shifted along its face,
+   keep > 0: a pair of two points in the last step is kept instead of being found again, while its boxes have shifted along its face,
    or apart, by less than `keep` of the smaller side since its points were found, and neither has turned by more than 0.2 rad.
    Its separations follow the boxes and may be positive; lever arms and normal stay as they were in world coordinates. So a
    column that leans a little has no tipping moment from contacts that give way under its own weight, which it would

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fits a slot network: sweeps that are unrolled and differentiated, the loss of a sample, mini-batches. */
+/* Fits the network of scene-net: sweeps that are unrolled and differentiated, the loss of a sample, mini-batches. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The first slot network, from samples: its slots, projections, scales and weights. */
+/* The first network of scene-net, from samples: its slots, projections, scales and weights. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "learning/scene_training.h"

@@ -87,7 +87,7 @@ bool solver_with(ContactSolver *solver, const ContactSolverKind *kind, const cha
 /* Does nothing with one that was zero-initialised and not made. */
 void solver_destroy(ContactSolver *solver);
 
-/* Training samples of a slot network: contact problems of impacts with their converged solutions. */
+/* Training samples of scene-net: contact problems of impacts with their converged solutions. */
 
 typedef struct SceneNetSample {
     ContactProblem problem; /* owns its arrays */
@@ -144,7 +144,7 @@ typedef struct SceneNetVerdict {
     double microseconds;  /* of a step by the network and its sweeps */
 } SceneNetVerdict;
 
-/* Initialises a slot network from samples of a scene: slots, input projections, output scales, random weights. */
+/* Initialises scene-net's network from samples of a scene: slots, input projections, output scales, random weights. */
 
 typedef struct SceneNetWidths {
     int state, present, warm; /* number of input components of each projection */

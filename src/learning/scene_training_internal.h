@@ -49,7 +49,7 @@ static inline void add_scaled(double *restrict sums, double scale, const double 
     for (size_t i = 0; i < count; i++) sums[i] += scale * numbers[i];
 }
 
-/* Whitened principal components of sparse rows, the inputs of a slot network (nets/kinds.h). Source: Halko,
+/* Whitened principal components of sparse rows, the inputs of scene-net's network (nets/kinds.h). Source: Halko,
    Martinsson, Tropp, "Finding Structure with Randomness" (2011), algorithm 4.4, randomised subspace iteration. */
 
 /* Fits a projection, allocated by the caller with from = columns and to = number of components. Over the rows,
@@ -64,7 +64,7 @@ static inline void add_scaled(double *restrict sums, double scale, const double 
    projection is then unchanged. */
 bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection, Error *error);
 
-/* The training loss of a slot network for one sample, and its gradient.
+/* The training loss of scene-net for one sample, and its gradient.
 
        loss = impulse_weight * mean over present slots of smooth L1((impulse - reference impulse) / scale)
             + velocity_weight * sqrt(e^2 + 0.01^2)
@@ -133,7 +133,7 @@ typedef struct SceneNetRollout {
 bool scene_net_rollout(const SceneNetRollout *rollout, SceneNetSamples *samples, const Progress *progress,
                        Error *error);
 
-/* Fits a slot network to samples by mini-batch Adam; the rate decays to 0 by half a cosine. Quantisation-aware: loss
+/* Fits scene-net's network to samples by mini-batch Adam; the rate decays to 0 by half a cosine. Quantisation-aware: loss
    and gradient are computed with the packed rows (nets/kernels.h), the step changes the float rows, which are
    then packed again. Source: straight-through estimator, Bengio, Leonard, Courville, "Estimating or Propagating
    Gradients Through Stochastic Neurons for Conditional Computation" (2013), 4. */

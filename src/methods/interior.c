@@ -12,8 +12,8 @@
    solution. The analysis of the matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a
    pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is left to sweeps.
 
-   Fails at impacts whose central path turns back, beyond 128 bodies, where the bound leaves no room to follow it: what bounds all
-   methods there is which contacts open, stick and slide. */
+   Fails at impacts on more than 128 bodies whose central path turns back, as the bound leaves no room to follow it. The
+   difficulty there, for all methods, is to find which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior.h"
@@ -43,8 +43,7 @@ enum {
     LEAST_ITERATIONS_AT_REST = 3 /* and one more for each hundred bodies */
 };
 
-/* A step takes at most the work of so many sweeps of each island (methods/interior.h). It is counted, not timed: as sweeps over the same
-   contacts. */
+/* Work is counted, not timed, in sweeps over the island's contacts; its bound is in methods/interior.h. */
 static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and walls, 1.4 in
    piles. */

@@ -13,10 +13,12 @@
    Extrapolation can carry impulses past the solution for ever. It even makes errors grow where boxes slide: there friction
    follows the normal impulse and acts on the normal velocity, too, so a visit overshoots, by a share e of the error, and the
    error grows if e (1 + 2 beta) > 1 (its factor z solves z^2 + e (1 + beta) z - e beta = 0). So the first sweeps have a
-   lower beta where contacts slide, and sweeps are watched there, and in runs of 32 or more: each island's residual is
-   measured after blocks of 16, or of 8 where contacts slide or a stopping rule reads it. Where it exceeds 4 times the least, one block follows without extrapolation, and momentum
-   begins anew (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient Schemes", 2015). An island whose residual is
-   not its least in the end goes back to the solution that was best.
+   lower beta where contacts slide.
+
+   Sweeps are watched there, and in runs of 32 or more: each island's residual is measured after blocks of 16, or of 8 where
+   contacts slide or a stopping rule reads it. If the residual exceeds 4 times the least, one block follows without
+   extrapolation, and momentum restarts (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient Schemes", 2015). An
+   island whose residual is not its least in the end goes back to the solution that was best.
 
    Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the first sweeps of an impact
    gain little. */
@@ -89,7 +91,7 @@ float *momentum_factors_make(int count) {
 /* The course of an island. Residuals are squared and summed over its contacts, (m/s)^2 (residual_of_pair()). */
 struct MomentumIsland {
     float left, best; /* after the last block; the least, whose solution is kept */
-    float least;      /* since momentum last began, */
+    float least;      /* since the last restart, */
     int sweeps;       /* so many sweeps ago */
     float most;       /* beta is at most this, in the first sweeps */
     bool plain;       /* the next block is without extrapolation */
@@ -99,10 +101,10 @@ enum {
     SLIDING_EVERY = 8, /* sweeps between two looks at an island in which contacts slide, and at others: */
     CALM_EVERY = 16,   /* a look takes the time of two sweeps */
     LONGEST_BLOCK = 2 * CALM_EVERY - 1,
-    LONG_RUN = 48 /* sweeps from which on velocities are computed anew at each look */
+    LONG_RUN = 48 /* sweeps: from here on velocities are recomputed from the impulses at each look */
 };
 
-/* Momentum makes residuals rise and fall. It begins anew at this multiple of the least sum of squares. */
+/* Momentum makes residuals rise and fall. It restarts at this multiple of the least sum of squares. */
 static const float risen = 4;
 
 void momentum_free(Momentum *momentum) {
@@ -129,7 +131,7 @@ static void keep_all(Momentum *momentum) {
     sweeps_keep(&momentum->sweeps, momentum->chosen);
 }
 
-/* Finds the islands, and keeps what there is. */
+/* Finds the islands, whose residuals are not known yet. */
 static void watch(Momentum *momentum) {
     Sweeps *sweeps = &momentum->sweeps;
     if (momentum->watched) return;
@@ -171,7 +173,7 @@ bool momentum_begin(Momentum *momentum, const ContactProblem *problem) {
     return true;
 }
 
-static void begin_anew(MomentumIsland *course, bool plain) {
+static void restart(MomentumIsland *course, bool plain) {
     course->least = course->left;
     course->sweeps = 0;
     course->plain = plain;
@@ -214,7 +216,7 @@ static bool momentum_judge(MomentumIsland *course) {
     const bool lost = !(course->left < HUGE_VALF);
     if (lost) course->left = course->best;
     if (lost || course->left > risen * course->least) {
-        begin_anew(course, true);
+        restart(course, true);
         return lost;
     }
     course->least = course->left < course->least ? course->left : course->least;
@@ -264,7 +266,7 @@ static bool run_block(Momentum *momentum, Run *run, int count) {
     return true;
 }
 
-/* Chooses the islands that have been better. False if there are none. */
+/* Chooses the islands whose residual was smaller before. False if no residual was. */
 static bool choose_worse(Momentum *momentum) {
     bool any = false;
     for (int k = 0; k < momentum->sweeps.groups; k++) {
@@ -279,8 +281,8 @@ static void settle(Momentum *momentum) {
     if (choose_worse(momentum)) sweeps_return(&momentum->sweeps, momentum->chosen);
 }
 
-static void begin_all_anew(Momentum *momentum) {
-    for (int k = 0; k < momentum->sweeps.groups; k++) begin_anew(&momentum->courses[k], false);
+static void restart_all(Momentum *momentum) {
+    for (int k = 0; k < momentum->sweeps.groups; k++) restart(&momentum->courses[k], false);
 }
 
 static void forget_best(Momentum *momentum) {
@@ -293,7 +295,7 @@ bool momentum_run(Momentum *momentum, const float *factors, int count) {
     Run run = {.factors = factors, .total = count};
     momentum->refreshes = count >= LONG_RUN;
     watch(momentum);
-    begin_all_anew(momentum);
+    restart_all(momentum);
     forget_best(momentum); /* the start: its impulses may be outside of the cones */
     keep_all(momentum);    /* for islands in which the first numbers are infinite */
     while (run.done < count) {
@@ -314,7 +316,7 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
     forget_best(momentum);
     choose_all(momentum);
     momentum_measure(momentum);
-    begin_all_anew(momentum);
+    restart_all(momentum);
     while (stopping_needs_more(rule, run.done, sweeps, problem))
         if (!run_block(momentum, &run, STOPPING_BLOCK)) return false;
     if (residual_reaches(sweeps, problem->contact_count, rule->near)) settle(momentum);

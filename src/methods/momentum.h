@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps with momentum. */
+/* Sweeps with momentum: a scalar reference implementation, and the fast implementation of the solvers, which visits
+   contacts in the order of colours (methods/sweeps.h). The solvers choose the factors. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -8,9 +9,6 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-
-/* A scalar reference implementation, and the fast one of the solvers, which visits
-   contacts in the order of colours (methods/sweeps.h). The solvers choose the factors. */
 
 /* Scalar reference implementation: `count` sweeps over the contacts visits[contact_count]; before each sweep s > 0 the
    extrapolation by factors[s] >= 0. `before`: work space, a solution of the same size. sweeps_run_momentum gives the
@@ -35,7 +33,7 @@ typedef struct Momentum {
     float *more_factors; /* [rule.more] */
     const ContactProblem *problem;
     bool watched;            /* its islands have courses */
-    bool refreshes;          /* the run computes velocities anew after each block: long ones */
+    bool refreshes;          /* long runs recompute velocities from the impulses after each block */
     MomentumIsland *courses; /* [sweeps.groups] */
     bool *chosen;            /* [sweeps.groups] */
     float *of_pairs;         /* [sweeps.pair_count] what was last measured */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A network trained on pairs, and what pair-net and contact-net have in common. */
+/* A network trained on pairs (learning/pair_training.h), ready to predict: its inputs, its outputs and what they
+   mean. Then what pair-net and contact-net have in common. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -9,8 +10,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-
-/* A network trained on pairs (learning/pair_training.h), ready to predict: its inputs, its outputs and what they mean. */
 
 /* Zero-initialise. */
 typedef struct PairNetwork {

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The residual of the impulses in a set of sweeps. */
+/* The residual of the impulses in a set of sweeps: how far contacts are from their target velocities. After the warm
+   start it is near zero while boxes rest, and metres per second while a shock travels through them; so it tells
+   whether a step is worth a network. After sweeps it tells whether they have converged. */
 #pragma once
 #include "engine/engine.h"
 #include "methods/sweeps.h"
 
 #include <stdbool.h>
-
-/* How far contacts are from their target velocities. After the warm
-   start it is near zero while boxes rest, and metres per second while a shock travels through them; so it tells whether
-   a step is worth a network. After sweeps it tells whether they have converged. */
 
 /* True if the root mean square over the contacts of (bias - normal velocity) is at least `limit` (m/s). Separating
    contacts without an impulse do not count as error. */

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The networks of sain, their answers, and the method with a network in memory. */
+/* The networks of sain, and the method with networks in memory. A relation network answers each row of a view
+   (methods/sain_view.h) with effects; the effects of a receiver's rows are added; an object network answers its own
+   state and the sum with its outputs.
+
+   Here the relation network has two hidden layers of 32 units and 16 effects, the object network one layer of 32.
+   The interaction network of Battaglia et al. (2016) has four of 150 and 50 effects, and one of 100; a
+   reimplementation of Ajay et al. (2019) has 128, 64, 32 and 16. */
 #pragma once
 #include "base/base.h"
 #include "methods/methods.h"
@@ -7,12 +13,6 @@
 #include "nets/nets.h"
 
 #include <stdbool.h>
-
-/* A relation network answers each row of a view with effects; the effects of a
-   receiver's rows are added; an object network answers its own state and the sum with its outputs. Here the first has
-   two hidden layers of 32 units and 16 effects, the second one of 32. The interaction network of Battaglia et al.
-   (2016) has four of 150 and 50 effects, and one of 100; a reimplementation of Ajay et al. (2019) has 128, 64, 32 and
-   16. */
 
 enum {
     SAIN_VERSION = 1,

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A contact problem as the inputs of a slot network (nets/kinds.h). A bomb rotated by a quarter turn is the
+/* A contact problem as the inputs of its network (nets/kinds.h). A bomb rotated by a quarter turn is the
    same box with its edges renamed. So the view rotates it back to within an eighth of a turn (a quarter if it is
    oblong), and renames the features of its contacts. Otherwise the network would have to learn each quarter turn
    separately. */

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The stopping rule of the iterative methods. */
+/* The stopping rule of the iterative methods: after the first k sweeps, blocks of 8 follow while the residual is at
+   least `near`, up to `more` sweeps. Most steps need few sweeps and an impact needs many, so the rule spends them
+   where they are needed. Fails where the residual is small and the error is not: an error that is spread over a
+   whole stack leaves each contact close to its target. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -7,11 +10,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-
-/* After the first k sweeps, blocks of 8 follow while the residual is at least
-   `near`, up to `more` sweeps. Most steps need few sweeps and an impact needs many, so the rule spends them where they
-   are needed. Fails where the residual is small and the error is not: an error that is spread over a whole stack leaves
-   each contact close to its target. */
 
 enum {
     STOPPING_BLOCK = 8, /* sweeps; the residual is read before each block */

@@ -97,7 +97,7 @@ bool png_files_are_same(PngFile files[2]);
    sizes, or memory is short. Then some rows may have been given. threads: with a second thread. */
 bool png_files_scan(PngFile files[2], bool threads, const RowSink *sink);
 
-/* Copies the value of the first text with this key before the pixels of a file in memory. `value` is empty if there is none, if it
+/* Copies the value of the first text with this key before the pixels of a file in memory. `value` is empty without such a text, if it
    cannot be read or needs more than `value_size` bytes. False with error set only when memory is short. */
 bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error);
 

@@ -199,7 +199,7 @@ typedef struct RegressionFrame {
 /* A trajectory that is in both folders. */
 typedef struct RegressionRun {
     char *name;
-    char *paths[SIDES]; /* of the files, also where there is none */
+    char *paths[SIDES]; /* where the files are, or would be */
     RegressionFile files[SIDES];
     bool alone[SIDES]; /* only this folder has it; there is no difference then */
     TrajectoryDifference difference;

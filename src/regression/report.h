@@ -60,7 +60,7 @@ typedef struct ReportCase {
     const char *name, *verdict;
     bool failed;
     RegressionText words;
-    const char *paths[SIDES]; /* of the files; NULL where there is none */
+    const char *paths[SIDES]; /* of the files; NULL: no such file */
     double seconds;
     const RegressionFrame *frame; /* NULL for a trajectory */
 } ReportCase;

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* chart.csv: its rows, and what charts and tables read there. */
+/* chart.csv: speed and accuracy of every method, one row for each scene, method, setting, protocol and phase; and
+   what charts and tables read in these rows. */
 #pragma once
 #include "base/csv.h"
 #include "base/machine.h"
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-
-/* chart.csv: speed and accuracy of every method; one row for each scene, method, setting, protocol and phase. */
 
 enum { CHART_MAX_ROWS = 20000, CHART_NAME_SIZE = 128, CHART_SETTING_SIZE = 256 };
 

@@ -54,7 +54,7 @@ static bool add_as_given(ContenderList *list, char *word, Error *error) {
     return contenders_add(list, word, colon + 1, error);
 }
 
-/* A name without settings: the default runs of a chart, or one run if there are none. */
+/* A name without settings: the default runs of a chart, or one run of a method that has no default. */
 static bool add_word(ContenderList *list, char *word, ContenderStudy study, Error *error) {
     const MethodDescription *method = method_describe(word);
     if (study == STUDY_STABILITY || strchr(word, ':') != NULL || method == NULL) return add_as_given(list, word, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors at equal time: each method beside its best rival. */
+/* Errors at equal time: each method beside its best rival, as tables and as a figure. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -9,8 +9,6 @@
 #include "studies/error_curve.h"
 
 #include <stdbool.h>
-
-/* Its tables, and the figure of the latter. */
 
 typedef struct EqualTimeFigure {
     bool drawn; /* false if no method has a rival: there are tables only */

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Error over time: curves of methods. */
+/* Curves of error over time: those of a method's runs with several settings. */
 #pragma once
-
-/* The error of a method over its time, from runs with several settings. */
 
 typedef struct CurvePoint {
     double us, error; /* microseconds; m/s; both greater than 0 */

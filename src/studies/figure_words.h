@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the words of a figure mean, for its caption. */
+/* What the words of a figure mean, for its caption: each method by what frames call it, each key of a setting by its
+   help, "nncg: conjugate gradients over sweeps". */
 #pragma once
 
 #include <stddef.h>
 
-/* Each method by what frames call it, each key of a setting by its help,
-   "nncg: conjugate gradients over sweeps". Zero-initialise. */
-
 enum { WORDS_MAX = 48, WORD_SIZE = 160 };
 
+/* Zero-initialise. */
 typedef struct WordList {
     int count;
     char items[WORDS_MAX][WORD_SIZE];

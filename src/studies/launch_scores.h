@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scores of a launch as they are stored, and the rows of chart.csv that are made of them. */
+/* The scores of the methods on the launches of a scene, and the rows of chart.csv that are made of them. The scores
+   of one launch are stored as bytes of this machine: the number of methods, the frozen steps that were left out,
+   where each method's part ends, then the parts; so those of one method are found at once. */
 #pragma once
 #include "base/base.h"
 #include "scenes/scenes.h"
@@ -12,9 +14,6 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-
-/* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of
-   methods, the frozen steps that were left out, where each method's part ends, then the parts; so one method's is found at once. */
 
 /* A method on one launch. Zero-initialise. */
 typedef struct LaunchScores {

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Steppers that threads use in turns. */
+/* One stepper for each of several methods of a scene. Threads use them in turns, as some take seconds and much
+   memory to be made. A stepper keeps nothing of a launch for the next, so the order of launches does not matter. */
 #pragma once
 #include "base/base.h"
 #include "methods/methods.h"
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-
-/* One stepper for each of several methods of a scene, which threads use in turns: some take seconds and much memory to be
-   made. A stepper keeps nothing of a launch for the next, so the order of launches does not matter. */
 
 typedef struct PooledStepper PooledStepper;
 

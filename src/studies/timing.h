@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cost of methods. */
+/* The cost of contenders, measured in turns on one core, with repetitions. The first steps of each, those of one
+   launch, do not count.
+
+   A time varies if the distance of its quartiles, as a share of its median, is more than TIMES_VARY_FACTOR that of
+   the middle one of the other contenders in the same protocol and phase, more than TIMES_VARY_LEAST, and more than a
+   clock's own error, TIMES_VARY_US. A contender with such a time is measured again, and has the times of the second
+   measurement only. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -8,13 +14,6 @@
 #include "studies/frozen.h"
 
 #include <stdbool.h>
-
-/* Measures the cost of contenders, in turns on one core, with repetitions. The first steps of each, those of one launch, do
-   not count.
-
-   A time varies if the distance of its quartiles, as a share of its median, is more than TIMES_VARY_FACTOR that of the middle
-   one of the other contenders in the same protocol and phase, more than TIMES_VARY_LEAST, and more than a clock's own error,
-   TIMES_VARY_US. A contender with such a time is measured again, and has the times of the second measurement only. */
 
 #define TIMES_VARY_FACTOR 3.0
 #define TIMES_VARY_LEAST 0.1

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Impacts of the stack as training samples for slot networks. */
+/* Impacts of the stack as training samples of scene-net. */
 #pragma once
 #include "trainings.h"
 

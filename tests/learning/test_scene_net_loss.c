@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loss of a slot network on impacts of the stack, and its gradient against finite differences. */
+/* The loss of scene-net on impacts of the stack, and its gradient against finite differences. */
 #include "impacts.h"
 
 #include "engine/uniform.h"

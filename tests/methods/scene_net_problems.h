@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Random contact problems with a slot network that knows a part of their contacts. */
+/* Random contact problems with a network of scene-net that knows a part of their contacts. */
 #pragma once
 #include "random_problem.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How random contact problems look to slot networks that know a part of their contacts. */
+/* How random contact problems look to networks of scene-net that know a part of their contacts. */
 #include "scene_net_problems.h"
 
 #include "engine/engine.h"
