@@ -25,8 +25,8 @@ typedef struct VideoFormat {
     double max_rate;            /* highest frame rate, Hz; 0: any */
     double usual_rate;          /* the same unless a rate was chosen */
     const char *encoder[24];    /* arguments for ffmpeg */
-    const char *ahead;          /* its argument for the number of frames that it looks ahead, */
-    int ahead_frames;           /* and its default; NULL: none */
+    const char *ahead;          /* its argument for the number of frames that it looks ahead; NULL: none */
+    int ahead_frames;           /* how many of full HD it may keep */
 } VideoFormat;
 
 /* Convert to BT.709 and tag the stream: untagged, players guess the matrix from the picture size. */
@@ -36,13 +36,15 @@ typedef struct VideoFormat {
 /* GIFs are for pages, where 800 pixels are wide, and their bytes grow with every pixel that changes. */
 #define GIF_SCALE "scale=w='min(800,iw)':h='min(800,ih)':force_original_aspect_ratio=decrease:flags=area"
 
+/* H.264: `veryfast` with crf 16 takes 0.65 of the time that `medium`, the default, takes with 18. Brightness comes as
+   near (SSIM); files are 15 to 20% larger. */
 static const VideoFormat formats[] = {
     {".mp4",
      "mp4",
      true,
      0,
      0,
-     {BT709, "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"},
+     {BT709, "-c:v", "libx264", "-preset", "veryfast", "-crf", "16", "-pix_fmt", "yuv420p", "-movflags", "+faststart"},
      "-rc-lookahead",
      40},
     {".webm",
@@ -195,8 +197,9 @@ static bool write_raw(void *context, const Image *image) {
     return process_write(&target->process, target->rgb, 3 * pixels);
 }
 
-/* An encoder keeps the frames that it looks ahead, and more for each thread. Of frames larger than full HD it keeps no more
-   pixels than of full HD, in as many threads on every machine; otherwise 3840x2160 takes 1.7 GB with two cores. */
+/* An encoder keeps the frames that it looks ahead, and more for each thread. Of frames larger than full HD it keeps no
+   more pixels than it may of full HD, in as many threads on every machine; otherwise 3840x2160 takes 1.7 GB with two
+   cores. */
 static void bound_memory(Arguments *arguments, const Encoding *encoding, char ahead[16]) {
     enum { FULL_HD = 1920 * 1080, AHEAD_LEAST = 2 };
     const long pixels = (long)encoding->width * encoding->height;
