@@ -359,6 +359,17 @@ def check_bad_scenes(checks, browser):
     page.close()
 
 
+def check_beginning(checks, browser):
+    """Before a worker has sent a state, only verdicts are known."""
+    idle = "window.Worker = class { postMessage() {} };"
+    page = open_scene(checks, browser, "stack", "engine", "pair-net", before=idle)
+    told = page.run("['summary', 'check'].map(id => document.getElementById(id).textContent)")
+    checks.true("verdicts", "explodes" in told[0], told[0])
+    for claim in "parts from", "stays with", "equals engine", "hash":
+        checks.true(f"not known yet: {claim}", not any(claim in text for text in told), told)
+    page.close()
+
+
 SHORT = """{
   const Whole = Float32Array;
   window.Float32Array = class extends Whole {
@@ -401,6 +412,7 @@ def main():
         with Chromium("!!window.player?.data") as browser:
             browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
             check_launches(checks, browser)
+            check_beginning(checks, browser)
             check_controls(checks, browser)
             check_shell(checks, browser)
             check_framing(checks, browser)

@@ -242,6 +242,7 @@ function begin_live() {
   for (const run of live_runs()) {
     const {live, name, ems, note, note_ems} = run;
     run.given = {live, name, ems, note, note_ems};
+    run.hash = ""; /* until its states are here */
   }
   for (const run of recorded) Object.assign(run, {name: run.name + " (recorded)", ems: weigh(run.name + " (recorded)")});
   on_checked.push(take_stock);

@@ -10,15 +10,16 @@ const away = frame => `at ${time_text(frame)}`;
 /* Without figures: "collapses: 8 of 10 boxes fell". */
 const outcome = run => (short_verdict(run) || (runs[run].live ? "still runs" : "")).split(", first at")[0];
 
-/* Whether a live page has all states of a run. */
-const is_whole = run => run.live ? run.ended && run.reached >= 0 : known(run) === run.frames - 1;
+/* Whether a live page has all states of a run. The verdict is there from the beginning. */
+const is_whole = run => run.live ? Boolean(run.hash) : known(run) === run.frames - 1;
+const may_yet_part = run => data.live && ![runs[0], run].every(is_whole);
 
 /* When a run is seen to part from the first one. */
 function parting(run) {
   const {compared, why, differs, distances} = run, visible = distances.findIndex(metres => metres > VISIBLE * data.scales.box);
   if (!compared) return why && `cannot be compared (${cut(why, 200)})`;
   if (visible >= 0) return `parts from ${names[0]} at ${seconds(visible).toFixed(2)} s`;
-  if (data.live && ![runs[0], run].every(is_whole)) return "";
+  if (may_yet_part(run)) return "";
   return differs ? `stays with ${names[0]}` : `equals ${names[0]}, bit for bit`;
 }
 
@@ -34,7 +35,7 @@ function headline(run, index) {
 function figures(run, index) {
   const {compared, elsewhere, ended, differs, apart} = run, from = names[0], parts = [ended];
   if (index > 0 && compared && !elsewhere)
-    parts.push(!differs ? `equals ${from}, bit for bit`
+    parts.push(!differs ? !may_yet_part(run) && `equals ${from}, bit for bit`
       : `first differs from ${from} ${away(differs.frame)}` + (apart ? ` and is 1 mm away ${away(apart.frame)}` : ", never by 1 mm"));
   return make("p", swatch(index), ": ", parts.filter(text => text).join("; "));
 }
