@@ -276,6 +276,7 @@ static void gpu_panel(const void *of, int panel, PlotPanel *to) {
     for (int i = 0; i < way_count * SIZES; i++) plot_range_include(&range, ways[i / SIZES].plotted[i % SIZES]);
     to->x = plot_log_axis(sizes[0], sizes[SIZES - 1], "Pairs in a batch");
     to->y = plot_log_axis(range.least, range.most, "Time of a batch (µs)");
+    to->x.powers = to->y.powers = true;
     (void)of, (void)panel;
 }
 
@@ -289,8 +290,8 @@ static bool gpu_point(const void *of, int panel, int series, int i, PlotPoint *t
 static void draw(void) {
     static PlotPage page;
     const char *caption = "Time of pair-net on a batch of pairs: on cores by each instruction set, and on a device.";
-    const PlotGrid grid = {FIGURE_PAGE_WIDTH, 110, 14, 3, 38, 4, 1, 1, 0, 0};
-    const PlotSpec spec = {NULL, grid, 1, way_count, SIZES, gpu_panel, gpu_look, gpu_point, 2, 6, 24, caption};
+    const PlotGrid grid = {FIGURE_PAGE_WIDTH, 106, 19, 3, 34, 4, 1, 1, 0, 0};
+    const PlotSpec spec = {NULL, grid, 1, way_count, SIZES, gpu_panel, gpu_look, gpu_point, 2, 6, 20, caption};
     check(plot_draw(&page, &spec, "gpu", &error) && file_make_directory("out", &error) &&
           plot_page_write(&page, "out", "", "gpu", &error));
     plot_page_free(&page);
