@@ -30,6 +30,11 @@ double samples_quantile(const Samples *samples, double share) {
 
 double samples_median(const Samples *samples) { return samples_quantile(samples, 0.5); }
 
+void give_up(const char *reason) {
+    fprintf(stderr, "%s\n", reason);
+    exit(3);
+}
+
 double processor_seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

@@ -18,6 +18,9 @@ double samples_median(const Samples *samples);
 /* Seconds of processor time, which does not count pauses on a busy machine (a long run has more of them than a short one). */
 double processor_seconds(void);
 
+/* Ends the program with a reason. */
+void give_up(const char *reason);
+
 void report_header(void);
 void report_line(const char *benchmark, const char *rival, const char *figure, const char *unit,
                  const Samples *samples);

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Networks on a graphics device beside the same on the cores, in turns: batches of pairs from main memory to main memory, and
-   without transfers; in one call and in many; steps of a pyramid, and of 4,096, by a network. Lines have the device's name: that of
-   Mesa's software renderer ("llvmpipe") says nothing of a graphics card. Without compute shaders only cores are measured. Draws
-   out/gpu.svg, with its caption in out/gpu.txt. */
+/* Networks on a graphics device beside the same on the cores, in turns: pairs from main memory to main memory, and without transfers;
+   in one call and in many; steps of a pyramid, and of 4,096. Lines have the device's name: that of Mesa's software renderer
+   ("llvmpipe") says nothing of a graphics card. Draws out/gpu.svg. */
 #include "gpu.h"
 #include "report.h"
 
 #include "base/file.h"
 #include "figures/sketch.h"
-#include "methods/methods.h"
 #include "methods/pair_net.h"
 #include "nets/kernels.h"
+#include "runs/runs.h"
 #include "scenes/scenes.h"
 
 #include <limits.h>
@@ -33,9 +32,7 @@ static Error error;
 static Gpu gpu;
 
 static void check(bool ok) {
-    if (ok) return;
-    fprintf(stderr, "%s\n", error.message);
-    exit(3);
+    if (!ok) give_up(error.message);
 }
 
 /* The first graphics card with compute shaders, else what the program draws with. */
@@ -44,22 +41,19 @@ static bool open_device(void) {
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
 #ifdef TWINBOX_EGL
     PFNEGLGETPROCADDRESSPROC find;
-    PFNEGLQUERYDEVICESEXTPROC query = NULL;
     EGLDeviceEXT devices[16];
     EGLint count = 0;
-    if (context_load("libEGL.so.1", "libegl1", &(ContextFunction){"eglGetProcAddress", 0}, 1, &find, &error))
-        query = (PFNEGLQUERYDEVICESEXTPROC)find("eglQueryDevicesEXT");
-    if (query != NULL) query(sizeof devices / sizeof *devices, devices, &count);
+    if (context_load("libEGL.so.1", "libegl1", &(ContextFunction){"eglGetProcAddress", 0}, 1, &find, &error)) {
+        PFNEGLQUERYDEVICESEXTPROC query = (PFNEGLQUERYDEVICESEXTPROC)find("eglQueryDevicesEXT");
+        if (query != NULL) query(sizeof devices / sizeof *devices, devices, &count);
+    }
     for (EGLint i = 0; i < count; i++)
         if ((state = context_egl_open(EGL_PLATFORM_DEVICE_EXT, devices[i], 4, 3, &error)) != NULL &&
             gpu_open(&gpu, (Context){&context_egl, state}, &error))
             return true;
 #endif
-    for (int i = 0; context_kinds[i] != NULL; i++)
-        if ((state = context_kinds[i]->create(&error)) != NULL &&
-            gpu_open(&gpu, (Context){context_kinds[i], state}, &error))
-            return true;
-    return false;
+    const ContextKind *kind = context_kinds[0];
+    return (state = kind->create(&error)) != NULL && gpu_open(&gpu, (Context){kind, state}, &error);
 }
 
 /* How a network is evaluated, and what a figure takes that way. */
@@ -138,36 +132,34 @@ static void predict(Job *job, const Way *way) {
             check(gpu_run(&job->nets[way->half], from, way->stays ? NULL : out, (size_t)pairs, &error));
 }
 
-/* Copies of the settled pyramid, which step together by the network of six outputs: the changes of velocity of both bodies. */
+/* Copies of the settled pyramid, which step together by the network of six outputs: the changes of velocity of both bodies. All have the
+   same pairs. */
 static World *start, *worlds[WORLDS];
 static ContactProblem problems[WORLDS];
 static ContactSolution *solutions[WORLDS];
-static int rows[WORLDS + 1]; /* where a world's pairs begin in the batch of all */
 static float dt;
 
-static void change(const ContactProblem *problem, int body, const float *by, int stride, BodyVelocity *velocities) {
-    if (problem->bodies[body].inv_mass == 0) return;
-    velocities[body].linear = vec2_add(velocities[body].linear, vec2(by[0], by[stride]));
-    velocities[body].angular += by[2 * stride];
+static void change(int w, int body, const float *by, int stride) {
+    BodyVelocity *velocity = &solutions[w]->velocities[body];
+    if (problems[w].bodies[body].inv_mass == 0) return;
+    velocity->linear = vec2_add(velocity->linear, vec2(by[0], by[stride]));
+    velocity->angular += by[2 * stride];
 }
 
-typedef enum Visit { VISIT_COUNT, VISIT_LOOK, VISIT_CHANGE } Visit;
-
-/* Goes through the pairs of a world: counts them, fills the network's inputs, or applies its outputs. */
-static void visit(int w, Visit what, int pairs) {
+/* Fills the network's inputs, or applies its outputs, for the pairs of a world, which are `stride` in all worlds; without, only counts
+   them. */
+static int visit(int w, int row, int stride, bool apply) {
     const ContactProblem *problem = &problems[w];
-    const ContactPoint *contacts = problem->contacts;
-    int row = what == VISIT_COUNT ? 0 : rows[w];
-    if (what == VISIT_CHANGE) contact_solution_begin(problem, solutions[w]);
+    if (apply) contact_solution_begin(problem, solutions[w]);
     for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first), row++) {
         float numbers[PAIR_INPUTS_MAX];
-        if (what == VISIT_LOOK) pair_inputs(problem, NULL, first, PAIR_RELATIVE, numbers);
-        for (int i = 0; what == VISIT_LOOK && i < PAIR_INPUTS; i++) in[i * pairs + row] = numbers[i];
-        if (what != VISIT_CHANGE) continue;
-        change(problem, contacts[first].a, out + row, pairs, solutions[w]->velocities);
-        change(problem, contacts[first].b, out + row + 3 * pairs, pairs, solutions[w]->velocities);
+        if (apply) change(w, problem->contacts[first].a, out + row, stride);
+        if (apply) change(w, problem->contacts[first].b, out + row + 3 * stride, stride);
+        if (apply || stride == 0) continue;
+        pair_inputs(problem, NULL, first, PAIR_RELATIVE, numbers);
+        for (int i = 0; i < PAIR_INPUTS; i++) in[i * stride + row] = numbers[i];
     }
-    if (what == VISIT_COUNT) rows[w + 1] = row;
+    return row;
 }
 
 /* Returns the time that the network takes, s. */
@@ -175,20 +167,18 @@ static double step(Job *job, const Way *way) {
     const int threads = job->worlds < way->threads ? job->worlds : way->threads;
     bool ok = true;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(&& : ok)
-    for (int w = 0; w < job->worlds; w++) {
+    for (int w = 0; w < job->worlds; w++)
         ok = world_begin_step(worlds[w], dt, &problems[w], &solutions[w], &(Error){0}) && ok;
-        visit(w, VISIT_COUNT, 0);
-    }
-    for (int w = 0; w < job->worlds; w++) rows[w + 1] += rows[w];
-    job->pairs = rows[job->worlds];
+    const int each = visit(0, 0, 0, false);
+    job->pairs = job->worlds * each;
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int w = 0; w < job->worlds; w++) visit(w, VISIT_LOOK, job->pairs);
+    for (int w = 0; w < job->worlds; w++) visit(w, w * each, job->pairs, false);
     const double begun = clock_seconds();
     predict(job, way);
     const double taken = clock_seconds() - begun;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(&& : ok)
     for (int w = 0; w < job->worlds; w++) {
-        visit(w, VISIT_CHANGE, job->pairs);
+        visit(w, w * each, job->pairs, true);
         ok = world_end_step(worlds[w], &(Error){0}) && ok;
     }
     check(ok || error_input(&error, "benchmark", "a world cannot step"));
@@ -251,22 +241,18 @@ static void measure_pairs(const char *name) {
 
 static void measure_steps(void) {
     Job job = job_begin("pair-net-six");
+    Simulation run;
     Method engine;
-    Stepper *stepper = NULL;
     Scene *scene = scene_read(SOURCE_DIR "/scenes/pyramid_settled.yaml", &error);
-    check(scene != NULL && (start = scene_world(scene, &error)) != NULL && method_parse(&engine, "engine", &error) &&
-          (stepper = stepper_create(&engine, scene, &error)) != NULL);
-    for (int frame = 1; frame <= SETTLED; frame++)
-        check(stepper_step(stepper, start, &(Step){scene, frame, true, NULL}, &error));
-    dt = scene->dt;
+    check(scene != NULL && method_parse(&engine, "engine", &error) && simulation_begin(&run, scene, &engine, &error));
+    for (int frame = 1; frame <= SETTLED; frame++) check(simulation_step(&run, frame, &error));
     for (int w = 0; w < WORLDS; w++) check((worlds[w] = scene_world(scene, &error)) != NULL);
-    job.worlds = 1;
-    measure(&job, "a step of a pyramid");
-    job.worlds = WORLDS;
-    measure(&job, "a step of 4096 pyramids");
+    start = run.world;
+    dt = scene->dt;
+    for (job.worlds = 1; job.worlds <= WORLDS; job.worlds *= WORLDS)
+        measure(&job, job.worlds == 1 ? "a step of a pyramid" : "a step of 4096 pyramids");
     for (int w = 0; w < WORLDS; w++) world_destroy(worlds[w]);
-    world_destroy(start);
-    stepper_destroy(stepper);
+    simulation_end(&run);
     scene_destroy(scene);
     job_end(&job);
 }

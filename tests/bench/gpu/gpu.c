@@ -19,11 +19,10 @@ bool gpu_open(Gpu *gpu, Context context, Error *error) {
     if (ok && 10 * version[0] + version[1] < 43)
         ok = error_system(error, "gpu", "compute shaders need OpenGL 4.3 (found %d.%d)", version[0], version[1]);
     if (!ok) return gpu_close(gpu), false;
-    gpu->bind_buffer_base = (PFNGLBINDBUFFERBASEPROC)context.kind->find(context.state, "glBindBufferBase");
-    gpu->dispatch = (PFNGLDISPATCHCOMPUTEPROC)context.kind->find(context.state, "glDispatchCompute");
-    gpu->finish = (PFNGLFINISHPROC)context.kind->find(context.state, "glFinish");
-    gpu->get_buffer = (PFNGLGETBUFFERSUBDATAPROC)context.kind->find(context.state, "glGetBufferSubData");
-    gpu->memory_barrier = (PFNGLMEMORYBARRIERPROC)context.kind->find(context.state, "glMemoryBarrier");
+#define LOAD(type, name) gpu->name = (type)context.kind->find(context.state, "gl" #name)
+    LOAD(PFNGLBINDBUFFERBASEPROC, BindBufferBase), LOAD(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute);
+    LOAD(PFNGLGETBUFFERSUBDATAPROC, GetBufferSubData), LOAD(PFNGLMEMORYBARRIERPROC, MemoryBarrier);
+    LOAD(PFNGLFINISHPROC, Finish);
     gpu->gl.GetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &gpu->buffer_bytes);
     text_add(gpu->name, sizeof gpu->name, "%s", (const char *)gpu->gl.GetString(GL_RENDERER));
     for (char *comma = gpu->name; (comma = strchr(comma, ',')) != NULL;) *comma = ';';
@@ -36,6 +35,14 @@ void gpu_close(Gpu *gpu) { context_destroy(&gpu->context); }
 static const char float16[] =
     "#ifdef GL_AMD_gpu_shader_half_float\n#extension GL_AMD_gpu_shader_half_float : require\n#else\n"
     "#extension GL_NV_gpu_shader5 : require\n#endif\n#define REAL float16_t\n";
+
+/* numbers NULL: only takes memory. */
+static bool gpu_fill(const GpuNet *net, int buffer, size_t count, const float *numbers, Error *error) {
+    const GlFunctions *gl = &net->gpu->gl;
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, net->buffers[buffer]);
+    gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)(count * sizeof *numbers), numbers, GL_DYNAMIC_COPY);
+    return gpu_check(net->gpu, "while memory was taken", error);
+}
 
 /* sizes: the network's, in GLSL. */
 static bool gpu_program(GpuNet *net, const char *sizes, bool half, Error *error) {
@@ -62,30 +69,24 @@ static bool gpu_program(GpuNet *net, const char *sizes, bool half, Error *error)
 
 bool gpu_network(GpuNet *net, const Gpu *gpu, const Network *network, bool half, Error *error) {
     const int last = network->layers - 1, *widths = network->widths, inputs = widths[0], outputs = widths[last + 1];
-    const int parameters = network_parameter_count(network);
+    const int parameters = network_parameter_count(network), numbers = parameters + 2 * (inputs + outputs);
     int widest = inputs, turns = inputs + GPU_GROUP * (widths[last] + 1); /* of all loops of an invocation */
-    char sizes[1024] = "";
+    char sizes[1024] = "#define LAYERS";
     *net = (GpuNet){.gpu = gpu, .inputs = (size_t)inputs, .outputs = (size_t)outputs};
-    for (int l = 1; l <= last; l++) {
-        widest = widths[l] > widest ? widths[l] : widest;
-        turns += (widths[l - 1] + 1) * widths[l];
-    }
-    if (widest > GPU_WIDTH_MAX || turns > GPU_TURNS_MAX)
-        return error_input(error, "gpu", "the network is %d wide and takes %d turns; the shader takes up to %d and %d",
-                           widest, turns, GPU_WIDTH_MAX, GPU_TURNS_MAX);
-    text_add(sizes, sizeof sizes,
-             "const int INPUTS = %d, OUTPUTS = %d, LAST = %d, LAST_KIND = %d, WIDEST = %d, PARAMETERS = %d;\n", inputs,
-             outputs, widths[last], network->activations[last], widest, parameters);
-    text_add(sizes, sizeof sizes, "#define LAYERS");
-    for (int l = 0; l < last; l++)
+    for (int l = 0; l < last; l++) {
         text_add(sizes, sizeof sizes, " LAYER(%d, %d, %d)", widths[l], widths[l + 1], network->activations[l]);
-    text_add(sizes, sizeof sizes, "\n");
+        widest = widths[l + 1] > widest ? widths[l + 1] : widest;
+        turns += (widths[l] + 1) * widths[l + 1];
+    }
+    if (turns > GPU_TURNS_MAX)
+        return error_input(error, "gpu", "the network takes %d turns of loops; the shader takes up to %d", turns,
+                           GPU_TURNS_MAX);
+    text_add(sizes, sizeof sizes,
+             "\nconst int INPUTS = %d, OUTPUTS = %d, LAST = %d, LAST_KIND = %d, WIDEST = %d, PARAMETERS = %d;\n",
+             inputs, outputs, widths[last], network->activations[last], widest, parameters);
     if (!gpu_program(net, sizes, half, error)) return false;
     gpu->gl.GenBuffers(3, net->buffers);
-    gpu->gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, net->buffers[0]);
-    gpu->gl.BufferData(GL_SHADER_STORAGE_BUFFER, (parameters + 2 * (inputs + outputs)) * (GLsizeiptr)sizeof(float),
-                       network->weights[0], GL_STATIC_DRAW);
-    return gpu_check(gpu, "while the network was placed", error);
+    return gpu_fill(net, 0, (size_t)numbers, network->weights[0], error);
 }
 
 Network *gpu_scene_layers(const SceneNet *network, Error *error) {
@@ -116,20 +117,15 @@ void gpu_net_free(GpuNet *net) {
 }
 
 static bool gpu_reserve(GpuNet *net, size_t rows, Error *error) {
-    const GlFunctions *gl = &net->gpu->gl;
     const size_t widest = net->inputs > net->outputs ? net->inputs : net->outputs;
     if (rows > (size_t)net->gpu->buffer_bytes / sizeof(float) / widest)
         return error_input(error, "gpu", "%zu rows of %zu numbers; a buffer of the device has up to %d bytes", rows,
                            widest, net->gpu->buffer_bytes);
-    if (rows * widest <= net->held) return true;
-    net->held = 0;
-    for (int i = 1; i < 3; i++) {
-        gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, net->buffers[i]);
-        gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)(rows * widest * sizeof(float)), NULL, GL_DYNAMIC_COPY);
-    }
-    if (!gpu_check(net->gpu, "while memory was taken", error)) return false;
-    net->held = rows * widest;
-    return true;
+    if (rows <= net->room) return true;
+    const bool ok =
+        gpu_fill(net, 1, rows * net->inputs, NULL, error) && gpu_fill(net, 2, rows * net->outputs, NULL, error);
+    net->room = ok ? rows : 0;
+    return ok;
 }
 
 bool gpu_run(GpuNet *net, const float *inputs, float *outputs, size_t rows, Error *error) {
@@ -138,16 +134,16 @@ bool gpu_run(GpuNet *net, const float *inputs, float *outputs, size_t rows, Erro
     if (!gpu_reserve(net, rows, error)) return false;
     const size_t groups = (rows + GPU_GROUP - 1) / GPU_GROUP, lines = (groups + GPU_GROUPS - 1) / GPU_GROUPS;
     const GLsizeiptr number = (GLsizeiptr)(rows * sizeof(float));
-    for (GLuint i = 0; i < 3; i++) gpu->bind_buffer_base(GL_SHADER_STORAGE_BUFFER, i, net->buffers[i]);
+    for (GLuint i = 0; i < 3; i++) gpu->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, net->buffers[i]);
     gpu->gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, net->buffers[1]);
     if (inputs != NULL) gpu->gl.BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, number * (GLsizeiptr)net->inputs, inputs);
     gpu->gl.UseProgram(net->program);
     gpu->gl.Uniform2i(gpu->gl.GetUniformLocation(net->program, "size"), (GLint)rows, 0);
-    gpu->dispatch((GLuint)((groups + lines - 1) / lines), (GLuint)lines,
-                  (GLuint)((net->outputs + GPU_GROUP - 1) / GPU_GROUP));
-    gpu->memory_barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gpu->DispatchCompute((GLuint)((groups + lines - 1) / lines), (GLuint)lines,
+                         (GLuint)((net->outputs + GPU_GROUP - 1) / GPU_GROUP));
+    gpu->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     gpu->gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, net->buffers[2]);
-    if (outputs != NULL) gpu->get_buffer(GL_SHADER_STORAGE_BUFFER, 0, number * (GLsizeiptr)net->outputs, outputs);
-    if (outputs == NULL) gpu->finish();
+    if (outputs != NULL) gpu->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, number * (GLsizeiptr)net->outputs, outputs);
+    if (outputs == NULL) gpu->Finish();
     return gpu_check(gpu, "in a batch", error);
 }

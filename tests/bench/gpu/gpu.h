@@ -9,11 +9,11 @@
 typedef struct Gpu {
     Context context;
     GlFunctions gl;
-    PFNGLBINDBUFFERBASEPROC bind_buffer_base;
-    PFNGLDISPATCHCOMPUTEPROC dispatch;
-    PFNGLFINISHPROC finish;
-    PFNGLGETBUFFERSUBDATAPROC get_buffer;
-    PFNGLMEMORYBARRIERPROC memory_barrier;
+    PFNGLBINDBUFFERBASEPROC BindBufferBase;
+    PFNGLDISPATCHCOMPUTEPROC DispatchCompute;
+    PFNGLFINISHPROC Finish;
+    PFNGLGETBUFFERSUBDATAPROC GetBufferSubData;
+    PFNGLMEMORYBARRIERPROC MemoryBarrier;
     char name[96];      /* of the device, without commas */
     GLint buffer_bytes; /* that a shader sees of a buffer */
 } Gpu;
@@ -22,19 +22,18 @@ typedef struct Gpu {
 bool gpu_open(Gpu *gpu, Context context, Error *error);
 void gpu_close(Gpu *gpu);
 
-/* Rows of a work group; groups in a line, which every device takes; the widest layer but the last; turns of loops, of which Mesa's
-   software renderer leaves out those beyond 65,535. */
-enum { GPU_GROUP = 64, GPU_GROUPS = 65535, GPU_WIDTH_MAX = 128, GPU_TURNS_MAX = 60000 };
+/* Rows of a work group; groups in a line, which every device takes; turns of loops: Mesa's software renderer leaves out those beyond
+   65,535. */
+enum { GPU_GROUP = 64, GPU_GROUPS = 65535, GPU_TURNS_MAX = 60000 };
 
 /* A network on a device with its buffers: the network, inputs, outputs. Free it in any case. */
 typedef struct GpuNet {
     const Gpu *gpu; /* outlives it */
     unsigned program, buffers[3];
-    size_t inputs, outputs;
-    size_t held; /* numbers for which inputs and outputs have room */
+    size_t inputs, outputs, room; /* rows for which there is room */
 } GpuNet;
 
-/* half: layers in float16; ERROR_SYSTEM: the device has none. ERROR_INPUT: beyond GPU_WIDTH_MAX or GPU_TURNS_MAX. */
+/* half: layers in float16; ERROR_SYSTEM: the device has none. ERROR_INPUT: beyond GPU_TURNS_MAX. */
 bool gpu_network(GpuNet *net, const Gpu *gpu, const Network *network, bool half, Error *error);
 void gpu_net_free(GpuNet *net);
 
