@@ -249,6 +249,8 @@ static void measure_steps(void) {
     for (int w = 0; w < WORLDS; w++) check((worlds[w] = scene_world(scene, &error)) != NULL);
     start = run.world;
     dt = scene->dt;
+    job.worlds = WORLDS;
+    sample(&job, &ways[0]); /* warms up; measure() forgets it */
     for (job.worlds = 1; job.worlds <= WORLDS; job.worlds *= WORLDS)
         measure(&job, job.worlds == 1 ? "a step of a pyramid" : "a step of 4096 pyramids");
     for (int w = 0; w < WORLDS; w++) world_destroy(worlds[w]);
