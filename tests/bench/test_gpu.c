@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Networks by compute shaders against those in C, by Mesa's software renderer in each context that has compute shaders. Without
-   one the test is skipped. */
+/* Networks by the compute shader against those in C, by Mesa's software renderer in each context. Where none has
+   compute shaders, the test is skipped. */
 #include "testing.h"
 
 #include "gpu/gpu.h"

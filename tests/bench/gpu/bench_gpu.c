@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Networks on a graphics device beside the same on the cores, in turns: pairs from main memory to main memory, and without transfers;
-   in one call and in many; steps of a pyramid, and of 4,096. Lines have the device's name: that of Mesa's software renderer
-   ("llvmpipe") says nothing of a graphics card. Draws out/gpu.svg. */
+/* Networks on a graphics device beside the same on the cores, in turns: pairs from main memory to main memory, and
+   without transfers; in one call and in many; steps of a pyramid, and of 4,096. Lines have the device's name: that of
+   Mesa's software renderer ("llvmpipe") says nothing of a graphics card. Draws out/gpu.svg. */
 #include "gpu.h"
 #include "report.h"
 
@@ -132,8 +132,8 @@ static void predict(Job *job, const Way *way) {
             check(gpu_run(&job->nets[way->half], from, way->stays ? NULL : out, (size_t)pairs, &error));
 }
 
-/* Copies of the settled pyramid, which step together by the network of six outputs: the changes of velocity of both bodies. All have the
-   same pairs. */
+/* Copies of the settled pyramid, which step together by the network of six outputs: the changes of velocity of both
+   bodies. All have the same pairs. */
 static World *start, *worlds[WORLDS];
 static ContactProblem problems[WORLDS];
 static ContactSolution *solutions[WORLDS];
@@ -146,8 +146,8 @@ static void change(int w, int body, const float *by, int stride) {
     velocity->angular += by[2 * stride];
 }
 
-/* Fills the network's inputs, or applies its outputs, for the pairs of a world, which are `stride` in all worlds; without, only counts
-   them. */
+/* Fills the network's inputs, or applies its outputs, for the pairs of a world, of which all worlds have `stride`; 0:
+   counts them. */
 static int visit(int w, int row, int stride, bool apply) {
     const ContactProblem *problem = &problems[w];
     if (apply) contact_solution_begin(problem, solutions[w]);

@@ -47,7 +47,8 @@ static Scene *read_scene(int i) {
 
 static void step(Contender *method, float dt) {
     Error error = {0};
-    if (!world_step(method->world, method->solver.kind->solve, method->solver.state, dt, &error)) give_up(error.message);
+    if (!world_step(method->world, method->solver.kind->solve, method->solver.state, dt, &error))
+        give_up(error.message);
 }
 
 static Contender settle(int k, const Scene *scene) {
