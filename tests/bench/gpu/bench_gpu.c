@@ -171,8 +171,8 @@ static double step(Job *job, const Way *way) {
         ok = world_begin_step(worlds[w], dt, &problems[w], &solutions[w], &(Error){0}) && ok;
     const int each = visit(0, 0, 0, false);
     job->pairs = job->worlds * each;
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int w = 0; w < job->worlds; w++) visit(w, w * each, job->pairs, false);
+#pragma omp parallel for num_threads(threads) schedule(static) reduction(&& : ok)
+    for (int w = 0; w < job->worlds; w++) ok = visit(w, w * each, job->pairs, false) == (w + 1) * each && ok;
     const double begun = clock_seconds();
     predict(job, way);
     const double taken = clock_seconds() - begun;
@@ -181,7 +181,7 @@ static double step(Job *job, const Way *way) {
         visit(w, w * each, job->pairs, true);
         ok = world_end_step(worlds[w], &(Error){0}) && ok;
     }
-    check(ok || error_input(&error, "benchmark", "a world cannot step"));
+    check(ok || error_input(&error, "benchmark", "a world cannot step, or has other pairs"));
     return taken;
 }
 
