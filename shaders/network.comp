@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A network of layers (src/nets/nets.h) on a row of a batch, of which an invocation computes up to GROUP outputs, with
-// the sums in the order of C. The host puts before this: GROUP; of the network INPUTS, OUTPUTS, LAST (inputs of the last
-// layer), LAST_KIND (its Activation), WIDEST (of the others), PARAMETERS, and LAYERS, a LAYER for each layer but the
-// last; REAL, the type of the layers.
+// the sums in the order of C. The host puts before this GROUP; of the network INPUTS, OUTPUTS, LAST (inputs of the last
+// layer), LAST_KIND (its Activation), WIDEST (of the others), PARAMETERS, and LAYERS, a LAYER for each but the last;
+// and REAL, the type of the layers.
 layout(local_size_x = GROUP) in;
 layout(std430, binding = 0) readonly buffer Network { float numbers[]; };  // its block
 layout(std430, binding = 1) readonly buffer Inputs { float inputs[]; };    // [INPUTS, rows]

@@ -152,9 +152,8 @@ int main(void) {
     for (int i = 0; context_kinds[i] != NULL; i++) {
         Error error = {0};
         Context context;
-        const bool made = context_create(&context, context_kinds[i]->choice, &error);
-        if (made && gpu_open(&gpus[gpu_count], context, &error))
-            print_message("%d: %s\n", gpu_count++, context_kinds[i]->name);
+        if (context_create(&context, context_kinds[i]->choice, &error))
+            gpu_count += gpu_open(&gpus[gpu_count], context, &error);
     }
     if (gpu_count == 0) return 77;
     const int failed = _cmocka_run_group_tests("tests", tests_of_file, test_count, NULL, NULL);

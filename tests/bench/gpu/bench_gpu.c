@@ -21,8 +21,7 @@
 #endif
 
 enum { SIZES = 7, PAIRS_MAX = 1000000, TURNS = 11, STEPS = 4, CONTACTS = 200, LAUNCHES = 64, WORLDS = 4096, WAYS = 12 };
-enum { SETTLED = 150 };  /* frames in which the boxes of the pyramid fall into place */
-enum { SCRATCH = 8192 }; /* numbers; the widest network here takes half of them */
+enum { SCRATCH = 8192, SETTLED = 150 }; /* numbers, of which the widest network takes half; frames until boxes rest */
 
 static const int sizes[SIZES] = {1, 10, CONTACTS, 1000, 10000, 100000, PAIRS_MAX};
 static const double shortest = 2e-3; /* s: of a sample, far above the clock's resolution */
@@ -88,8 +87,7 @@ static void add_ways(bool device) {
 /* What a figure measures: a network on so many pairs in so many calls, or steps of so many worlds. */
 typedef struct Job {
     Network *network;
-    GpuNet nets[2]; /* float32 and float16 */
-    bool has[2];
+    GpuNet nets[2]; /* float32 and float16; without room: the device has none */
     int pairs, calls, worlds;
 } Job;
 
@@ -102,9 +100,9 @@ static Job job_begin(const char *name) {
     check(job.network != NULL);
     for (size_t i = 0; i < sizeof in / sizeof *in; i++) in[i] = (float)(i * 7 % 401) / 50 - 4;
     for (int half = 0; gpu.context.state != NULL && half < 2; half++)
-        job.has[half] = gpu_network(&job.nets[half], &gpu, job.network, half, &error) &&
-                        gpu_run(&job.nets[half], in, out, 1, &error);
-    check(gpu.context.state == NULL || job.has[0]);
+        check((gpu_network(&job.nets[half], &gpu, job.network, half, &error) &&
+               gpu_run(&job.nets[half], in, out, 1, &error)) ||
+              half > 0);
     return job;
 }
 
@@ -123,13 +121,16 @@ static void on_cores(const Job *job, const Way *way, int pairs) {
     }
 }
 
-static void predict(Job *job, const Way *way) {
+/* Returns the time that it takes, s. */
+static double predict(Job *job, const Way *way) {
     const float *from = way->stays ? NULL : in;
+    const double begun = clock_seconds();
     for (int call = 0, pairs = job->pairs / job->calls; call < job->calls; call++)
         if (way->kernels != NULL)
             on_cores(job, way, pairs);
         else
             check(gpu_run(&job->nets[way->half], from, way->stays ? NULL : out, (size_t)pairs, &error));
+    return clock_seconds() - begun;
 }
 
 /* Copies of the settled pyramid, which step together by the network of six outputs: the changes of velocity of both
@@ -173,16 +174,14 @@ static double step(Job *job, const Way *way) {
     job->pairs = job->worlds * each;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(&& : ok)
     for (int w = 0; w < job->worlds; w++) ok = visit(w, w * each, job->pairs, false) == (w + 1) * each && ok;
-    const double begun = clock_seconds();
-    predict(job, way);
-    const double taken = clock_seconds() - begun;
+    const double network = predict(job, way);
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(&& : ok)
     for (int w = 0; w < job->worlds; w++) {
         visit(w, w * each, job->pairs, true);
         ok = world_end_step(worlds[w], &(Error){0}) && ok;
     }
     check(ok || error_input(&error, "benchmark", "a world cannot step, or has other pairs"));
-    return taken;
+    return network;
 }
 
 /* Returns the time that is spent on it, s. */
@@ -192,10 +191,7 @@ static double sample(Job *job, Way *way) {
     for (int w = 0; w < job->worlds; w++) check(world_copy(worlds[w], start, &error));
     const double begun = clock_seconds();
     do {
-        if (job->worlds > 0)
-            network += step(job, way);
-        else
-            predict(job, way);
+        network += job->worlds > 0 ? step(job, way) : predict(job, way);
         taken = clock_seconds() - begun;
     } while (++count < (job->worlds > 0 ? STEPS : INT_MAX) && taken < shortest);
     samples_add(&way->us, 1e6 * taken / count);
@@ -211,7 +207,7 @@ static void measure(Job *job, const char *figure) {
     for (int i = 0; i < way_count; i++) ways[i].us.count = ways[i].network_us.count = 0;
     for (int turn = 0; turn < TURNS; turn++)
         for (Way *way = ways; way < ways + way_count; way++)
-            if ((way->kernels != NULL || job->has[way->half]) && !(way->stays && job->worlds > 0) &&
+            if ((way->kernels != NULL || job->nets[way->half].room > 0) && !(way->stays && job->worlds > 0) &&
                 spent[way - ways] < longest)
                 spent[way - ways] += sample(job, way);
     for (Way *way = ways; way < ways + way_count; way++) {
