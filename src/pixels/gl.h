@@ -201,6 +201,9 @@ typedef struct ContextKind {
 
 extern const ContextKind context_osmesa, context_egl;
 
+/* What context_egl creates, but on a platform's display (EGL_EXT_platform_device: a graphics card) and of a version. */
+void *context_egl_open(unsigned platform, void *native, int major, int minor, Error *error);
+
 /* Those that are built in, in the order in which CONTEXT_AUTO tries them. NULL ends them. */
 extern const ContextKind *const context_kinds[];
 

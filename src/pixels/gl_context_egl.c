@@ -51,16 +51,15 @@ static void egl_destroy(void *state) {
     free(egl);
 }
 
-static bool open_display(Egl *egl) {
-    void *native = (void *)EGL_DEFAULT_DISPLAY;
-    egl->display = egl->get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, native, NULL);
+static bool open_display(Egl *egl, EGLenum platform, void *native) {
+    egl->display = egl->get_platform_display(platform, native, NULL);
     return egl->display != EGL_NO_DISPLAY && egl->initialize(egl->display, NULL, NULL) && egl->bind_api(EGL_OPENGL_API);
 }
 
-static bool open_context(Egl *egl) {
+static bool open_context(Egl *egl, int major, int minor) {
     static const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-    static const EGLint attributes[] = {
-        EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           major,   EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     EGLConfig config;
     EGLint count = 0;
@@ -69,18 +68,22 @@ static bool open_context(Egl *egl) {
     return egl->context != EGL_NO_CONTEXT && egl_make_current(egl);
 }
 
-static void *egl_create(Error *error) {
+void *context_egl_open(unsigned platform, void *native, int major, int minor, Error *error) {
     Egl *egl = calloc(1, sizeof *egl);
     if (egl == NULL) return error_memory(error, "render"), NULL;
     if (context_load("libEGL.so.1", "libegl1", functions, sizeof functions / sizeof functions[0], egl, error)) {
-        if (open_display(egl) && open_context(egl)) return egl;
+        if (open_display(egl, platform, native) && open_context(egl, major, minor)) return egl;
         /* EGL gives no reason. With a limit, that is the likely one. */
         const MemoryLimit limit = memory_limit();
-        error_system(error, "render", "EGL cannot create a surfaceless OpenGL 3.3 context%s",
+        error_system(error, "render", "EGL cannot create a surfaceless OpenGL %d.%d context%s", major, minor,
                      limit.text[0] != '\0' ? limit.text : "; install the Debian package libgl1-mesa-dri");
     }
     egl_destroy(egl);
     return NULL;
+}
+
+static void *egl_create(Error *error) {
+    return context_egl_open(EGL_PLATFORM_SURFACELESS_MESA, (void *)EGL_DEFAULT_DISPLAY, 3, 3, error);
 }
 
 const ContextKind context_egl = {CONTEXT_EGL, "egl", egl_create, egl_make_current, egl_find, egl_destroy};

@@ -35,11 +35,6 @@ typedef struct Solver {
     ContactSolution solution;
 } Solver;
 
-static void give_up(const char *reason) {
-    fprintf(stderr, "%s\n", reason);
-    exit(3);
-}
-
 typedef struct Recording {
     ImpactProblems problems;
     Reference reference;

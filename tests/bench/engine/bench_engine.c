@@ -17,17 +17,12 @@ enum { RIVALS = 3, SIZES = 4, LAUNCHES = 201, ROLLOUTS_REPEATED = 5 };
 
 static const Rival *const rivals[RIVALS] = {&rival_twinbox, &rival_chipmunk, &rival_box2d};
 
-static void give_up(const Error *error) {
-    fprintf(stderr, "%s\n", error->message);
-    exit(3);
-}
-
 static Scene *read_scene(const char *name) {
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
     Scene *scene = scene_read(path, &error);
-    if (scene == NULL) give_up(&error);
+    if (scene == NULL) give_up(error.message);
     return scene;
 }
 
@@ -152,7 +147,7 @@ static double roll_out(const Scene *scene, int threads) {
         Method method;
         const StepObserver observer = {ignore_step, NULL};
         if (!method_parse(&method, "engine", &error) || !simulate_observed(&launch, &method, &observer, &error))
-            give_up(&error);
+            give_up(error.message);
     }
     return clock_seconds() - start;
 }

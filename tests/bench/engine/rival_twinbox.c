@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox's engine with the defaults of a scene file. */
+#include "report.h"
 #include "rival.h"
 
 #include "engine/engine.h"
@@ -14,9 +15,7 @@ typedef struct Engine {
 } Engine;
 
 static void check(bool ok, const Error *error) {
-    if (ok) return;
-    fprintf(stderr, "%s\n", error->message);
-    exit(3);
+    if (!ok) give_up(error->message);
 }
 
 static void *create(void) {

@@ -24,11 +24,6 @@ static const double limit = 0.5; /* the own kernel stays where it takes at most 
 static BlockEdge edges[3 * BOXES_MAX];
 static Vec4 x[BOXES_MAX + 1];
 
-static void give_up(const char *reason) {
-    fprintf(stderr, "%s\n", reason);
-    exit(3);
-}
-
 /* Box i of row r (from below, with `base` - r boxes) rests on boxes i and i + 1 of the row below and touches its
    neighbour. Returns the number of edges. */
 static int pyramid_edges(int base) {

@@ -4,6 +4,7 @@
        time_learn predict NET.npz PAIRS         per pair: "name seconds" for each of the kernels, and one by one
        time_learn train DATA.npz ITERATIONS     per iteration
        time_learn record THREADS SCENE.yaml...  for 201 launches of every scene, in memory */
+#include "base/machine.h"
 #include "nets/kernels.h"
 #include "learning/pair_training.h"
 
@@ -11,13 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static double now(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 /* The buffers of a prediction. */
 typedef struct Batch {
@@ -41,14 +35,14 @@ static void predict_singly(const Network *network, const Batch *batch) {
 /* Seconds per pair; kernels NULL: one by one. Repeated for about 2 ms, far above the resolution of the clock. */
 static double time_prediction(const Kernels *kernels, const Network *network, const Batch *batch) {
     int repeats = 2000000 / (batch->pairs * 10) + 1;
-    double start = now();
+    double start = clock_seconds();
     for (int i = 0; i < repeats; i++) {
         if (kernels != NULL)
             predict_by(kernels, network, batch);
         else
             predict_singly(network, batch);
     }
-    return (now() - start) / repeats / batch->pairs;
+    return (clock_seconds() - start) / repeats / batch->pairs;
 }
 
 static bool predict(const char *path, int pairs, Error *error) {
@@ -81,8 +75,8 @@ typedef struct Span {
 
 static bool note_time(void *context, double done, double total) {
     Span *span = context;
-    if (done == 0) span->start = now();
-    if (done == total) span->end = now();
+    if (done == 0) span->start = clock_seconds();
+    if (done == total) span->end = clock_seconds();
     return true;
 }
 
@@ -105,10 +99,10 @@ static bool record(int threads, const char *const *scenes, int count, Error *err
     omp_set_num_threads(threads);
     const DatasetOptions options = {
         .scenes = scenes, .scene_count = count, .bomb_x = {.first = -5, .step = 0.05, .count = 201}, .seed = 1};
-    double start = now();
+    double start = clock_seconds();
     Dataset *dataset = dataset_record(&options, NULL, error);
     if (dataset == NULL) return false;
-    printf("%.6g\n", now() - start);
+    printf("%.6g\n", clock_seconds() - start);
     dataset_destroy(dataset);
     return true;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* step_native SCENE METHOD RUNS: the functions of the module (src/live/live.h) as part of a program. Prints the milliseconds of a run
    and the hash of its last frame. Of each ten steps the fastest of all runs counts, as other processes interrupt. */
-#define _POSIX_C_SOURCE 200809L
 #include "base/base.h"
+#include "base/machine.h"
 #include "live/bundle.h"
 #include "live/live.h"
 
@@ -10,18 +10,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { STEPS = 10, PARTS_MAX = 10000 };
 
 /* Networks come from files. */
 void bundle_use(Bundle bundle) { (void)bundle; }
-
-static double now(void) {
-    struct timespec at;
-    clock_gettime(CLOCK_MONOTONIC, &at);
-    return (double)at.tv_sec * 1e3 + (double)at.tv_nsec / 1e6;
-}
 
 /* Steps a run to its end. Returns the hash of its last frame, 0 for an error. */
 static uint64_t time_run(LiveScene *scene, const char *method, double best[PARTS_MAX]) {
@@ -30,9 +23,9 @@ static uint64_t time_run(LiveScene *scene, const char *method, double best[PARTS
     const int last = live_frames(run) - 1;
     int frame = 0;
     for (int part = 0; frame < last && part < PARTS_MAX; part++) {
-        const double began = now();
+        const double began = clock_seconds();
         frame = live_step(run, STEPS);
-        best[part] = fmin(best[part], now() - began);
+        best[part] = fmin(best[part], 1e3 * (clock_seconds() - began));
     }
     const uint64_t hash = live_hash(run, frame);
     live_end(run);

@@ -2,6 +2,7 @@
 /* Lower bounds for a renderer of this kind, in ms per frame: copying the pixels, clearing and reading them back, and
    writing a file of the same size. Arguments: DIR WIDTH HEIGHT BYTES. */
 #include "base/file.h"
+#include "base/machine.h"
 #include "pixels/png.h"
 #include "pixels/gl.h"
 #include "pixels/gl_functions.h"
@@ -9,15 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { REPEATED = 50 };
-
-static double clock_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static double copy(Image *to, const Image *from) {
     double start = clock_seconds();

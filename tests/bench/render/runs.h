@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shared by the programs of this benchmark. */
 #pragma once
+#include "base/machine.h" /* clock_seconds() */
 #include "runs/trajectory.h"
 
 enum { PANELS = 2 };
@@ -15,5 +16,3 @@ typedef struct Job {
 /* Reads the arguments. Runs repeat until all frames are filled. Ends the program on an error. */
 Job job_read(int argc, char **argv);
 void job_free(Job *job);
-
-double clock_seconds(void);

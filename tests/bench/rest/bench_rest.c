@@ -36,23 +36,19 @@ typedef struct Contender {
     ContactSolution found;
 } Contender;
 
-static void give_up(const Error *error) {
-    fprintf(stderr, "%s\n", error->message);
-    exit(3);
-}
-
 static Scene *read_scene(int i) {
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/stability/%s.yaml", SOURCE_DIR, cases[i].scene);
     Error error = {0};
     Scene *scene = scene_read_with(path, &cases[i].setting, 1, &error);
-    if (scene == NULL) give_up(&error);
+    if (scene == NULL) give_up(error.message);
     return scene;
 }
 
 static void step(Contender *method, float dt) {
     Error error = {0};
-    if (!world_step(method->world, method->solver.kind->solve, method->solver.state, dt, &error)) give_up(&error);
+    if (!world_step(method->world, method->solver.kind->solve, method->solver.state, dt, &error))
+        give_up(error.message);
 }
 
 static Contender settle(int k, const Scene *scene) {
@@ -61,9 +57,9 @@ static Contender settle(int k, const Scene *scene) {
     Contender method = {{methods[k].kind, NULL}, scene_world(scene, &error), {0}};
     if (method.world == NULL ||
         !settings_parse(&settings, methods[k].settings, methods[k].kind->description.settings, methods[k].name, &error))
-        give_up(&error);
+        give_up(error.message);
     method.solver.state = methods[k].kind->create(&settings, &error);
-    if (method.solver.state == NULL) give_up(&error);
+    if (method.solver.state == NULL) give_up(error.message);
     for (int i = 0; i < SETTLED; i++) step(&method, scene->dt);
     const ContactProblem *problem = world_problem(method.world);
     method.found = (ContactSolution){
@@ -79,7 +75,7 @@ static double microseconds(Contender *method) {
     const ContactProblem *problem = world_problem(method->world);
     const double start = processor_seconds();
     for (int i = 0; i < SOLVES; i++)
-        if (!method->solver.kind->solve(method->solver.state, problem, &method->found, &error)) give_up(&error);
+        if (!method->solver.kind->solve(method->solver.state, problem, &method->found, &error)) give_up(error.message);
     return 1e6 * (processor_seconds() - start) / SOLVES;
 }
 

@@ -29,11 +29,6 @@ typedef struct Kind {
     int steps, converged;
 } Kind;
 
-static void give_up(const Error *error) {
-    fprintf(stderr, "%s\n", error->message);
-    exit(3);
-}
-
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Run *run = state;
     if (!pair_moment_reserve(&run->space, problem)) return error_memory(error, "structures");
@@ -57,9 +52,9 @@ static void measure(const Scene *scene, Kind *kind) {
     World *world = scene_world(scene, &error);
     if (world == NULL || !settings_parse(&settings, "", solver_interior.description.settings, "interior", &error) ||
         (run.interior = solver_interior.create(&settings, &error)) == NULL)
-        give_up(&error);
+        give_up(error.message);
     for (int frame = 1; frame <= scene->frames; frame++)
-        if (!world_step(world, solve, &run, scene->dt, &error)) give_up(&error);
+        if (!world_step(world, solve, &run, scene->dt, &error)) give_up(error.message);
     samples_add(&kind->reference, 1e6 * run.by_reference / run.steps);
     samples_add(&kind->interior, 1e6 * run.by_interior / run.steps);
     kind->steps += run.steps;
