@@ -72,8 +72,8 @@ bool colours_order(Colours *colours, const ContactProblem *problem);
 
    Contacts that share no moving body commute exactly. sweeps.c sorts the visits of several sweeps into levels
    of independent visits, and a level is solved in the lanes of a vector, one pair of bodies per lane (sweeps_lanes.c).
-   For few contacts, or on a processor without such vectors, visits run one by one on the same packed records. Visits
-   follow the order of the problem's contacts, which is the engine's, or colours: fewer levels, other bits.
+   For few contacts, or where AVX2 was built in and the processor lacks it, visits run one by one on the same records.
+   Visits follow the order of the problem's contacts, which is the engine's, or colours: fewer levels, other bits.
 
    Exact as long as all numbers are finite; sweeps_end() returns false otherwise. */
 
