@@ -297,7 +297,7 @@ static inline Lanes squared_of_visit(const LanePair *pair, const LanePoint *poin
     const Lanes limit = pair->surface.friction * point->normal;
     const Lanes wanted = lanes_min(point->tangent - point->masses[1] * slip, limit);
     const Lanes tangent = (point->tangent - lanes_max(-limit, wanted)) / point->masses[1];
-    return normal * normal + tangent * tangent + ((v.x - v.x) + (v.y - v.y));
+    return normal * normal + tangent * tangent + (0.0f * v.x + 0.0f * v.y); /* NaN for what is not finite */
 }
 
 /* The operations of overshoot_of_point() in residual.c. Anything for a point that is not there. */
