@@ -136,20 +136,13 @@ bool pose_components_fit(const PoseRows *rows, const Scene *scene, const BodyPos
     return ok || error_memory(error, "subspace");
 }
 
-static float components_component(const PoseRows *rows, const SubspaceNet *net, const float *row, int k) {
-    const float *axis = net->basis + (size_t)k * (size_t)subspace_lanes(rows->numbers);
-    double sum = 0;
-    for (int j = 0; j < rows->numbers; j++) sum += (double)axis[j] * ((double)row[j] - (double)net->rest[j]);
-    return (float)sum;
-}
-
 void pose_components_project(const PoseRows *rows, SubspaceNet *net, float *components) {
     const int count = net->shape.components;
     const int64_t states = (int64_t)rows->launches * rows->states;
 #pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < states; i++)
         for (int k = 0; k < count; k++)
-            components[i * count + k] = components_component(rows, net, rows->rows + i * rows->numbers, k);
+            components[i * count + k] = subspace_component(net, rows->rows + i * rows->numbers, k);
     for (int k = 0; k < count; k++) net->low[k] = net->high[k] = components[k];
     for (int64_t i = 0; i < states; i++)
         for (int k = 0; k < count; k++) {

@@ -46,13 +46,7 @@ static bool dataset_label(LaunchRecorder *recorder, const World *world, ContactS
     *known = reference_converged(reference);
     recorder->launch->unconverged += !*known;
     if (!dataset_reserve(&recorder->labels, problem, solution, error)) return false;
-    for (int i = 0; i < problem->body_count; i++) {
-        const ReferenceVelocity *v = &reference->velocities[i];
-        solution->velocities[i] = (BodyVelocity){vec2((float)v->x, (float)v->y), (float)v->spin};
-    }
-    for (int i = 0; i < problem->contact_count; i++)
-        solution->impulses[i] =
-            (ContactImpulse){(float)reference->impulses[i].normal, (float)reference->impulses[i].tangent};
+    reference_round(reference, problem, solution);
     return true;
 }
 

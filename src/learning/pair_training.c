@@ -21,11 +21,6 @@ static float input_at(const Dataset *dataset, int64_t row, int column) {
     return dataset->inputs[row * dataset_inputs(dataset) + column];
 }
 
-static float target_at(const Dataset *dataset, int64_t row, int outputs, int column) {
-    const float *changes = dataset->changes + row * pair_change_count(dataset->target);
-    return outputs == pair_change_count(dataset->target) ? changes[column] : changes[column + 3] - changes[column];
-}
-
 typedef struct Spread {
     double minimum, maximum, mean, deviation;
 } Spread;
@@ -39,7 +34,7 @@ static Spread column_spread(const Dataset *dataset, int outputs, int column) {
         int64_t count = 0;
         for (int64_t row = 0; row < dataset->rows; row++) {
             if (dataset_is_test(dataset, row)) continue;
-            double x = outputs == 0 ? input_at(dataset, row, column) : target_at(dataset, row, outputs, column);
+            double x = outputs == 0 ? input_at(dataset, row, column) : dataset_target(dataset, row, outputs, column);
             spread.minimum = fmin(spread.minimum, x);
             spread.maximum = fmax(spread.maximum, x);
             sum += pass == 0 ? x : (x - spread.mean) * (x - spread.mean);
@@ -99,7 +94,7 @@ static void store_row(Samples *samples, int64_t to, const Dataset *dataset, int6
             pair_training_normalise(&network->input, i, input_at(dataset, row, i));
     for (int k = 0; k < samples->outputs; k++)
         samples->y[(b * samples->outputs + k) * BLOCK_ROWS + r] =
-            pair_training_normalise(&network->output, k, target_at(dataset, row, samples->outputs, k));
+            pair_training_normalise(&network->output, k, dataset_target(dataset, row, samples->outputs, k));
 }
 
 Samples *samples_create(const Dataset *dataset, const Network *network, bool test, Error *error) {

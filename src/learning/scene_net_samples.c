@@ -139,14 +139,10 @@ bool scene_net_samples_compute_inputs(SceneNetSamples *samples, int first, const
 }
 
 /* *finite: false if the new state is NaN or infinite. */
-static bool scene_net_samples_step(const Scene *scene, const ContactSolver *solver, World *world,
-                                   ContactProblem *problem, bool *finite, Error *error) {
-    ContactSolution *solution;
-    if (!world_begin_step(world, scene->dt, problem, &solution, error) ||
-        !solver->kind->solve(solver->state, problem, solution, error))
-        return false;
+static bool scene_net_samples_step(const Scene *scene, const ContactSolver *solver, World *world, bool *finite,
+                                   Error *error) {
     Error failure = {0};
-    *finite = world_end_step(world, &failure);
+    *finite = world_step(world, solver->kind->solve, solver->state, scene->dt, &failure);
     if (*finite || failure.failure != FAILURE_NONE) return true;
     *error = failure;
     return false;
@@ -157,11 +153,9 @@ World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *err
     quiet.bomb.present = false;
     World *world = scene_world(&quiet, error);
     bool ok = world != NULL, finite = true;
-    for (int frame = 1; ok && frame <= scene->bomb.frame; frame++) {
-        ContactProblem problem;
-        ok = scene_net_samples_step(scene, solver, world, &problem, &finite, error) &&
+    for (int frame = 1; ok && frame <= scene->bomb.frame; frame++)
+        ok = scene_net_samples_step(scene, solver, world, &finite, error) &&
              (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
-    }
     if (ok) return world;
     world_destroy(world);
     return NULL;
@@ -177,11 +171,10 @@ bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, c
          finite = true;
     for (int frame = launched.bomb.frame + 1; ok && finite && phase != PHASE_AFTER && frame <= launched.frames;
          frame++) {
-        ContactProblem problem;
-        ok = scene_net_samples_step(scene, solver, world, &problem, &finite, error);
+        ok = scene_net_samples_step(scene, solver, world, &finite, error);
         if (!ok) break;
-        phase = phase_next(&tracker, &problem, frame);
-        ok = see(context, &problem, phase, frame - tracker.touch, error);
+        phase = phase_next(&tracker, world_problem(world), frame);
+        ok = see(context, world_problem(world), phase, frame - tracker.touch, error);
     }
     world_destroy(world);
     return ok;

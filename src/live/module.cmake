@@ -53,7 +53,7 @@ set(module_sources
     methods/interior_look methods/interior_path methods/interior_point methods/interior_scalar methods/islands methods/method
     methods/momentum methods/nncg methods/order methods/pair methods/pair_net methods/reference_point methods/reference_scalar
     methods/residual methods/sain methods/sain_view methods/scene_net methods/soft_step methods/steppers methods/stopping
-    methods/subspace methods/substepping methods/sweeps methods/sweeps_scalar methods/sweeps_simd128
+    methods/subspace methods/substepping methods/sweeps methods/sweeps_lanes methods/sweeps_scalar
     nets/gns_net nets/kernels nets/kernels_scalar nets/net_file nets/network nets/scene_net_layers nets/subspace_net
     runs/contact_finder runs/framing runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks
     runs/verdict_energy runs/verdict_passes runs/verdict_words
@@ -62,7 +62,7 @@ set(module_sources
 set(module_fast
     engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior
     methods/interior_point methods/interior_scalar methods/islands methods/momentum methods/order methods/soft_step methods/sweeps
-    methods/sweeps_scalar methods/sweeps_simd128
+    methods/sweeps_lanes methods/sweeps_scalar
     nets/kernels_scalar)
 
 if(TWINBOX_LIVE)

@@ -22,14 +22,7 @@ static inline void project(AdmmGroup *g, Vec4 normal, Vec4 tangent) {
 /* Adds J^T of scaled impulses to target. */
 static inline void push(const AdmmGroup *g, const BlockPair pairs[BLOCK_PAIRS], Vec4 normal, Vec4 tangent,
                         Vec4 *target) {
-    const Vec4 along = g->root_normal * normal, across = g->root_tangent * tangent;
-    for (int half = 0, slot = 0; half < BLOCK_PAIRS; half++, slot += 2) {
-        const BlockPair *pair = &pairs[half];
-        const Vec4 force = (pair->normal[0] * along[slot] + pair->tangent[0] * across[slot]) +
-                           (pair->normal[1] * along[slot + 1] + pair->tangent[1] * across[slot + 1]);
-        target[pair->a] += as_body_a(force);
-        target[pair->b] += force;
-    }
+    block_push(pairs, g->root_normal * normal, g->root_tangent * tangent, target);
 }
 
 /* J^T J of a pair's scaled rows, over D. */

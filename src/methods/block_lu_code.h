@@ -25,6 +25,17 @@ static inline Relative relative(const BlockRows *rows, const BlockPair pairs[BLO
         (rows->normal_y * along_x - rows->normal_x * along_y) + (rows->tangent_b * spin_b + rows->tangent_a * spin_a)};
 }
 
+/* x += J^T impulses, of a group's pairs */
+static inline void block_push(const BlockPair pairs[BLOCK_PAIRS], Vec4 normal, Vec4 tangent, Vec4 *x) {
+    for (int half = 0, slot = 0; half < BLOCK_PAIRS; half++, slot += 2) {
+        const BlockPair *pair = &pairs[half];
+        const Vec4 force = (pair->normal[0] * normal[slot] + pair->tangent[0] * tangent[slot]) +
+                           (pair->normal[1] * normal[slot + 1] + pair->tangent[1] * tangent[slot + 1]);
+        x[pair->a] += as_body_a(force);
+        x[pair->b] += force;
+    }
+}
+
 /* The masses on the diagonal, and zeros elsewhere. */
 static void begin_blocks(BlockGraph *graph) {
     BlockLu *lu = &graph->lu;

@@ -168,20 +168,10 @@ static HybridQuery make_query(Hybrid *hybrid, const ContactProblem *problem) {
     return query;
 }
 
-static void push_all(const ContactProblem *problem, ContactSolution *solution) {
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        solution->velocities[i] = (BodyVelocity){body->velocity, body->angular_velocity};
-    }
-    for (int i = 0; i < problem->contact_count; i++)
-        contact_push(solution->velocities, &problem->contacts[i], problem->bodies, solution->impulses[i]);
-}
-
 static bool is_impact(const Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution) {
+    static const SequentialOptions warm = {.accumulate = true, .warm = true};
     if (problem->bomb < 0) return false;
-    for (int i = 0; i < problem->contact_count; i++)
-        solution->impulses[i] = (ContactImpulse){problem->contacts[i].warm_normal, problem->contacts[i].warm_tangent};
-    push_all(problem, solution);
+    sequential_impulses_begin(problem, &warm, solution);
     return residual_reaches_scalar(problem, solution, hybrid->memory != NULL ? hybrid->memory->gate : hybrid_gate);
 }
 
@@ -210,9 +200,11 @@ static bool is_bounded(const ContactProblem *problem, const ContactSolution *sol
 
 void hybrid_answer(const HybridMemory *memory, int entry, const float *key, const ContactProblem *problem,
                    ContactSolution *solution) {
+    contact_solution_begin(problem, solution);
     hybrid_memory_answer(memory, entry, key, solution->impulses);
     solution->fallbacks.outside_cone += clamp(problem, solution->impulses);
-    push_all(problem, solution);
+    for (int i = 0; i < problem->contact_count; i++)
+        contact_push(solution->velocities, &problem->contacts[i], problem->bodies, solution->impulses[i]);
 }
 
 /* The fallbacks so far are added to those of interior. */

@@ -24,14 +24,9 @@ static inline void aim(InteriorGroup *g, double tau2) {
         larger4(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
 }
 
-/* Impulses on the contacts of a group. */
-typedef struct Impulses {
-    Vec4 normal, tangent;
-} Impulses;
-
-/* Those of the right-hand side. */
-static inline Impulses right_side(const InteriorGroup *g) {
-    return (Impulses){g->l + g->rn, g->t + g->rt + g->s * g->rn};
+/* x += J^T impulses, those of the right-hand side. */
+static inline void push_right_side(const InteriorGroup *g, const BlockPair pairs[BLOCK_PAIRS], Vec4 *x) {
+    block_push(pairs, g->l + g->rn, g->t + g->rt + g->s * g->rn, x);
 }
 
 /* The impulses that are eliminated: D_n, D_t, s, r_n, r_t. One division for all quotients: with the distances u and w
@@ -124,17 +119,6 @@ static void momentum_left(const Interior *s, Vec4 *x) {
     x[s->graph.lu.count] = all4(0);
 }
 
-/* x += J^T impulses */
-static inline void push(const BlockPair pairs[BLOCK_PAIRS], Impulses by, Vec4 *x) {
-    for (int half = 0, slot = 0; half < BLOCK_PAIRS; half++, slot += 2) {
-        const BlockPair *pair = &pairs[half];
-        const Vec4 force = (pair->normal[0] * by.normal[slot] + pair->tangent[0] * by.tangent[slot]) +
-                           (pair->normal[1] * by.normal[slot + 1] + pair->tangent[1] * by.tangent[slot + 1]);
-        x[pair->a] += as_body_a(force);
-        x[pair->b] += force;
-    }
-}
-
 /* The pair's J^T D J in its own coordinates, by columns. The first two rows of J are those of the normal, for both
    contacts. */
 static inline void stiffness(const InteriorGroup *g, const BlockPair *pair, int slot, Vec4 columns[4]) {
@@ -160,7 +144,7 @@ static void assemble(Interior *s, double target, Vec4 *right) {
         const BlockPair *pairs = &s->pairs[BLOCK_PAIRS * i];
         aim(g, target);
         linearise(g);
-        push(pairs, right_side(g), right);
+        push_right_side(g, pairs, right);
         for (int half = 0; half < BLOCK_PAIRS; half++) {
             Vec4 columns[4];
             stiffness(g, &pairs[half], 2 * half, columns);
@@ -175,7 +159,7 @@ static void correct_all(Interior *s, const Vec4 *x, Vec4 *right) {
         InteriorGroup *g = &s->groups[i];
         const BlockPair *pairs = &s->pairs[BLOCK_PAIRS * i];
         correct(g, relative(&g->rows, pairs, x));
-        push(pairs, right_side(g), right);
+        push_right_side(g, pairs, right);
     }
 }
 
@@ -211,7 +195,7 @@ static double answer(Interior *s) {
     Vec4 *x = s->changes, sum = all4(0);
     for (int k = 0; k <= s->graph.lu.count; k++) x[k] = all4(0);
     for (int i = 0; i < s->group_count; i++)
-        push(&s->pairs[BLOCK_PAIRS * i], (Impulses){s->groups[i].answer_normal, s->groups[i].answer_tangent}, x);
+        block_push(&s->pairs[BLOCK_PAIRS * i], s->groups[i].answer_normal, s->groups[i].answer_tangent, x);
     for (int k = 0; k <= s->graph.lu.count; k++) {
         x[k] *= s->graph.inverses[k];
         s->velocities[k] = s->start[k] + x[k];

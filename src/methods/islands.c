@@ -25,12 +25,6 @@ static bool islands_reserve(Islands *s, const ContactProblem *problem) {
                                ARRAY_PART(s->impulses, contacts));
 }
 
-/* The body that stands for the island; halves the path to it. */
-static int32_t find_islands(int32_t *parent, int32_t body) {
-    while (parent[body] != body) body = parent[body] = parent[parent[body]];
-    return body;
-}
-
 static bool is_new_pair(const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     return i == 0 || contact[-1].a != contact->a || contact[-1].b != contact->b;
@@ -47,7 +41,7 @@ static void islands_connect(Islands *s, const ContactProblem *problem) {
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         if (!is_new_pair(problem, i) || parent[contact->a] < 0 || parent[contact->b] < 0) continue;
-        const int32_t a = find_islands(parent, contact->a), b = find_islands(parent, contact->b);
+        const int32_t a = islands_root(parent, contact->a), b = islands_root(parent, contact->b);
         parent[b] = a;
     }
 }
@@ -58,7 +52,7 @@ static int32_t count_pair(Islands *s, const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     const bool a = s->parent[contact->a] >= 0, b = s->parent[contact->b] >= 0;
     if (!a && !b) return -1;
-    int32_t *number = &s->number[find_islands(s->parent, a ? contact->a : contact->b)];
+    int32_t *number = &s->number[islands_root(s->parent, a ? contact->a : contact->b)];
     if (*number < 0) {
         s->islands[s->count] = (Island){.loops = 1};
         *number = s->count++;
@@ -76,7 +70,7 @@ static void count_contacts(Islands *s, const ContactProblem *problem) {
 }
 
 static int32_t island_of_body(Islands *s, int body) {
-    return s->parent[body] < 0 ? -1 : s->number[find_islands(s->parent, body)];
+    return s->parent[body] < 0 ? -1 : s->number[islands_root(s->parent, body)];
 }
 
 bool islands_find(Islands *s, const ContactProblem *problem) {

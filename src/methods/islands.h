@@ -7,6 +7,12 @@
 
 #include <stdint.h>
 
+/* The body that stands for those that `parent` connects, each with another or itself; halves the path to it. */
+static inline int32_t islands_root(int32_t *parent, int32_t body) {
+    while (parent[body] != body) body = parent[body] = parent[parent[body]];
+    return body;
+}
+
 typedef struct Island {
     int bodies, contacts; /* their numbers; bodies: those that move */
     /* Touching pairs of its bodies that could open without dividing it. A stack has none, a pyramid or a wall almost as many

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps with momentum: a scalar reference implementation, and the fast implementation of the solvers, which visits
-   contacts in the order of colours (methods/sweeps.h). The solvers choose the factors. */
+/* Sweeps with momentum, which visit contacts in the order of colours (methods/sweeps.h). The solvers choose the factors.
+   Their scalar reference implementation is that of the tests (tests/momentum_scalar.h). */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -9,12 +9,6 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-
-/* Scalar reference implementation: `count` sweeps over the contacts visits[contact_count]; before each sweep s > 0 the
-   extrapolation by factors[s] >= 0. `before`: work space, a solution of the same size. sweeps_run_momentum gives the
-   same bits. */
-void momentum_solve_scalar(const ContactProblem *problem, const int32_t *visits, const float *factors, int count,
-                           ContactSolution *before, ContactSolution *solution);
 
 /* The hand-tuned factor before sweep s of `count`, counted from 0: s / (s + 1.4), at most 1 - 7 / (15 + count). The
    limit is lower for few sweeps, as they have no time to correct the overshoot of a large factor. Tuned on launches of

@@ -58,18 +58,14 @@ typedef struct Reference {
     ArrayBlock memory;
 } Reference;
 
-/* m/s. A solve aims at a tenth of it. All 31,200 steps of scenes/stack and scenes/pyramid_settled with the engine (40
-   launches) reach it, and all 6,000 steps of runs with the reference itself. At rest the sweeps' contact states are
-   mostly those of the solution: one or two factorizations. Impacts take 16 factorizations on the stack (median; 25:
-   95%) and 40 on the pyramid (118); the first attempt solves 96% of them.
+/* m/s. A solve aims at a tenth of it. All steps of scenes/stack and scenes/pyramid_settled with the engine, and with
+   the reference itself, reach it.
 
-   Where sweeps with conjugate gradients (in double) reach 1e-8, their velocities mostly agree within 4e-7 m/s (RMS).
-   In 3 of 1,700 steps, all of piles, and in some of the settling pyramid they lie 0.001 to 0.008 m/s apart: redundant
-   contacts drift so slowly that the residual of sweeps hardly shows it. In about 1% of the
-   impacts on walls and piles friction allows a second solution, 0.01 to 2.8 m/s from the first. Some steps of piles
-   between walls have no solution: position correction pushes boxes into each other, and no impulses are large enough.
-   Their residual stays high. Of the steps of random structures that do not converge, most do without position
-   correction (tests/deep/run structures). Scenes without friction are hard, as 0 is computed as a cone of 1e-12. */
+   In about 1% of the impacts on walls and piles friction allows a second solution, 0.01 to 2.8 m/s from the first.
+   Some steps of piles between walls have no solution: position correction pushes boxes into each other, and no
+   impulses are large enough. Their residual stays high. Of the steps of random structures that do not converge, most
+   do without position correction (tests/deep/run structures). Scenes without friction are hard, as 0 is computed as a
+   cone of 1e-12. */
 #define REFERENCE_TOLERANCE 1e-9
 
 /* Whether the last solve reached it. Without it, nothing is to be scored against the answer. */

@@ -7,6 +7,7 @@
 
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/islands.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -280,12 +281,6 @@ void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem, const bool *c
         if (chosen == NULL || chosen[sweeps->group_of_body[i]]) add_velocity(&previous[i], &sweeps->bodies[i], 1);
 }
 
-/* The body that stands for the group; halves the path to it. */
-static int32_t find_root(int32_t *parent, int32_t body) {
-    while (parent[body] != body) body = parent[body] = parent[parent[body]];
-    return body;
-}
-
 /* Whether an island goes on through the pair's body a or b: unlike in `ends`, not through one that does not move. */
 static bool connects_a(const Sweeps *sweeps, int i) {
     return sweeps->bodies[sweep_body_at(sweeps->ends[i].a)].inv_mass > 0 || sweeps->pairs[i].inv_inertia_a > 0;
@@ -300,12 +295,12 @@ void sweeps_group(Sweeps *sweeps) {
     for (int32_t i = 0; i < sweeps->body_count; i++) parent[i] = i, number[i] = -1;
     for (int i = 0; i < sweeps->pair_count; i++) {
         const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
-        if (connects_a(sweeps, i) && connects_b(sweeps, i)) parent[find_root(parent, b)] = find_root(parent, a);
+        if (connects_a(sweeps, i) && connects_b(sweeps, i)) parent[islands_root(parent, b)] = islands_root(parent, a);
     }
     sweeps->groups = 0;
     for (int i = 0; i < sweeps->pair_count; i++) {
         const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
-        int32_t *group = &number[find_root(parent, connects_b(sweeps, i) ? b : a)];
+        int32_t *group = &number[islands_root(parent, connects_b(sweeps, i) ? b : a)];
         if (*group < 0) *group = sweeps->groups++;
         sweeps->group[i] = sweeps->group_of_body[a] = sweeps->group_of_body[b] = *group;
     }

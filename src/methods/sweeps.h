@@ -71,9 +71,9 @@ bool colours_order(Colours *colours, const ContactProblem *problem);
 /* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (sweeps_scalar.c).
 
    Contacts that share no moving body commute exactly. sweeps.c sorts the visits of several sweeps into levels
-   of independent visits, and a level is solved in the lanes of a vector, one pair of bodies per lane (sweeps_lanes_code.h).
-   For few contacts, or on a processor without such vectors, visits run one by one on the same packed records. Visits
-   follow the order of the problem's contacts, which is the engine's, or colours: fewer levels, other bits.
+   of independent visits, and a level is solved in the lanes of a vector, one pair of bodies per lane (sweeps_lanes.c).
+   For few contacts, or where AVX2 was built in and the processor lacks it, visits run one by one on the same records.
+   Visits follow the order of the problem's contacts, which is the engine's, or colours: fewer levels, other bits.
 
    Exact as long as all numbers are finite; sweeps_end() returns false otherwise. */
 
@@ -201,7 +201,7 @@ bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProb
 bool sweeps_run(Sweeps *sweeps, int count);
 
 /* The same with momentum extrapolation before each sweep but the first, with the bits of the scalar reference
-   implementation in momentum.c: velocities and sums advance by factors[sweep, group] times the change by the previous
+   implementation in tests/momentum_scalar.h: velocities and sums advance by factors[sweep, group] times the change by the previous
    sweep, including its extrapolation. */
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
 

@@ -208,6 +208,9 @@ bool subspace_make(Subspace *subspace, const SubspaceNet *net, const SubspacePre
                    Error *error);
 void subspace_free(Subspace *subspace);
 
+/* Component k of z = B u, of a state of 4 numbers per body. */
+float subspace_component(const SubspaceNet *net, const float *numbers, int k);
+
 /* Starts from two states of 4 numbers per body, one step apart. */
 void subspace_start(Subspace *subspace, const float *last, const float *now);
 

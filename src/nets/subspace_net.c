@@ -203,21 +203,19 @@ void subspace_free(Subspace *subspace) {
     *subspace = (Subspace){0};
 }
 
-/* z = B u */
-static void subspace_net_project(const Subspace *subspace, const float *numbers, float *components) {
-    const SubspaceNet *net = subspace->net;
-    const int count = SUBSPACE_POSE * net->shape.bodies, lanes = subspace_lanes(count);
-    for (int k = 0; k < subspace->predictor->components; k++) {
-        const float *row = net->basis + (size_t)k * (size_t)lanes;
-        double sum = 0;
-        for (int j = 0; j < count; j++) sum += (double)row[j] * ((double)numbers[j] - (double)net->rest[j]);
-        components[k] = (float)sum;
-    }
+float subspace_component(const SubspaceNet *net, const float *numbers, int k) {
+    const int count = SUBSPACE_POSE * net->shape.bodies;
+    const float *row = net->basis + (size_t)k * (size_t)subspace_lanes(count);
+    double sum = 0;
+    for (int j = 0; j < count; j++) sum += (double)row[j] * ((double)numbers[j] - (double)net->rest[j]);
+    return (float)sum;
 }
 
 void subspace_start(Subspace *subspace, const float *last, const float *now) {
-    subspace_net_project(subspace, last, subspace->last);
-    subspace_net_project(subspace, now, subspace->now);
+    for (int k = 0; k < subspace->predictor->components; k++) {
+        subspace->last[k] = subspace_component(subspace->net, last, k);
+        subspace->now[k] = subspace_component(subspace->net, now, k);
+    }
 }
 
 static void run_layer(const RowKernels *kernels, const SubspaceLayer *layer, const float *in, float *out) {

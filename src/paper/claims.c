@@ -8,6 +8,7 @@
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
+#include "studies/study_page.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -9,6 +9,7 @@
 #include "paper/report_internal.h"
 #include "scenes/scenes.h"
 #include "studies/closed_loop.h"
+#include "studies/study_page.h"
 
 #include <limits.h>
 #include <math.h>

@@ -304,35 +304,33 @@ static bool same_case(const LawRow *a, const LawRow *b) {
     return a->laws == b->laws && (a->weight == b->weight || (isnan(a->weight) && isnan(b->weight)));
 }
 
-typedef double Value(const LawRow *row);
+/* What a row says: the violation of a law (LawName), or one of these. */
+enum { TEST = LAWS, RELATIVE_TEST };
 
-static double test_of(const LawRow *row) { return row->test; }
-static double relative_test_of(const LawRow *row) { return ratio_of(row->test, row->constant); }
-static double momentum_of(const LawRow *row) { return row->violation[LAW_MOMENTUM]; }
-static double energy_of(const LawRow *row) { return row->violation[LAW_ENERGY]; }
-static double approach_of(const LawRow *row) { return row->violation[LAW_APPROACH]; }
-static double cone_of(const LawRow *row) { return row->violation[LAW_CONE]; }
+static double value_of(const LawRow *row, int what) {
+    return what < LAWS ? row->violation[what] : what == TEST ? row->test : ratio_of(row->test, row->constant);
+}
 
 /* A quantile over the seeds of a case; 0 and 1 are the least and the most. */
-static double quantile(const StudyTables *study, const LawRow *of, Value *value, double fraction) {
+static double quantile(const StudyTables *study, const LawRow *of, int what, double fraction) {
     double values[PAPER_MAX_ROWS];
     int count = 0;
     for (int i = 0; i < study->law_count; i++)
-        if (same_case(&study->laws[i], of) && !isnan(value(&study->laws[i]))) values[count++] = value(&study->laws[i]);
-    return statistics_quantile(values, count, fraction);
+        if (same_case(&study->laws[i], of)) values[count++] = value_of(&study->laws[i], what);
+    return statistics_quantile(values, statistics_known(values, count), fraction);
 }
 
 static LawCase case_of(const StudyTables *study, const LawRow *row) {
     LawCase law_case = {.laws = paper_law_words[row->laws],
                         .weight = row->weight,
-                        .test = quantile(study, row, test_of, 0.5),
-                        .lowest_test = quantile(study, row, test_of, 0),
-                        .highest_test = quantile(study, row, test_of, 1),
-                        .ratio = quantile(study, row, relative_test_of, 0.5),
-                        .momentum = quantile(study, row, momentum_of, 0.5),
-                        .energy = quantile(study, row, energy_of, 0.5),
-                        .approach = quantile(study, row, approach_of, 0.5),
-                        .cone = quantile(study, row, cone_of, 0.5)};
+                        .test = quantile(study, row, TEST, 0.5),
+                        .lowest_test = quantile(study, row, TEST, 0),
+                        .highest_test = quantile(study, row, TEST, 1),
+                        .ratio = quantile(study, row, RELATIVE_TEST, 0.5),
+                        .momentum = quantile(study, row, LAW_MOMENTUM, 0.5),
+                        .energy = quantile(study, row, LAW_ENERGY, 0.5),
+                        .approach = quantile(study, row, LAW_APPROACH, 0.5),
+                        .cone = quantile(study, row, LAW_CONE, 0.5)};
     for (int i = 0; i < study->law_count; i++) law_case.seeds += same_case(&study->laws[i], row);
     return law_case;
 }
@@ -360,8 +358,6 @@ static const CsvColumn findings_laws_columns[] = {
 const FindingsTable findings_laws = FINDINGS_TABLE("laws", findings_laws_columns, LawCase, write_laws);
 
 LawCounts law_counts(const StudyTables *study) {
-    static Value *const violations[LAWS] = {
-        [LAW_MOMENTUM] = momentum_of, [LAW_ENERGY] = energy_of, [LAW_APPROACH] = approach_of, [LAW_CONE] = cone_of};
     LawCounts counts = {0};
     const LawRow *none = NULL;
     for (int i = 0; i < study->law_count && none == NULL; i++)
@@ -369,10 +365,9 @@ LawCounts law_counts(const StudyTables *study) {
     for (int i = 0; none != NULL && i < study->law_count; i++) {
         const LawRow *row = &study->laws[i];
         if (row->laws >= LAWS || !(row->weight > 0) || !is_first_of_case(study, i)) continue;
-        Value *const violation = violations[row->laws];
         counts.cases++;
-        counts.obeyed += quantile(study, row, violation, 0.5) < quantile(study, none, violation, 0.5);
-        counts.better += quantile(study, row, test_of, 0.5) < quantile(study, none, test_of, 0.5);
+        counts.obeyed += quantile(study, row, row->laws, 0.5) < quantile(study, none, row->laws, 0.5);
+        counts.better += quantile(study, row, TEST, 0.5) < quantile(study, none, TEST, 0.5);
     }
     return counts;
 }

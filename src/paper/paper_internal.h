@@ -341,6 +341,9 @@ void paper_plan_free(PaperPlan *plan);
    file's hash. A training that is stopped fails: the name is of a whole training. */
 PaperWrite paper_training_write;
 
+/* networks_folder/NAME.npz of network i. */
+bool paper_network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE], Error *error);
+
 /* *there: whether networks_folder/NAME.npz is the network of these lines. False with error set if the system cannot
    tell. */
 bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error);

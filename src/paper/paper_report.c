@@ -6,6 +6,7 @@
 #include "paper/report_internal.h"
 #include "pictures/page.h"
 #include "pixels/png.h"
+#include "studies/study_page.h"
 
 #include <cmark-gfm-core-extensions.h>
 #include <cmark-gfm-extension_api.h>
@@ -216,27 +217,6 @@ static bool html_page_write_markdown(void *context) {
 bool html_page_write(const HtmlPage *page, FILE *out, Error *error) {
     Writing writing = {page, NULL, out, error};
     return markdown_memory_run(html_page_write_markdown, &writing, error);
-}
-
-/* The text that `write` writes, to be freed. NULL with error set where it fails; `what` is without memory. */
-static char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error) {
-    char *text = NULL;
-    FILE *out = memory_stream(&text, size);
-    if (out == NULL) return error_memory(error, what), NULL;
-    bool written = write(context, out, error);
-    const bool whole = !ferror(out);
-    if ((fclose(out) != 0 || !whole) && written) written = error_memory(error, what);
-    if (written) return text;
-    free(text);
-    return NULL;
-}
-
-bool text_write(const char *path, TextWrite *write, void *context, Error *error) {
-    size_t size;
-    char *text = text_print(write, context, &size, path, error);
-    const bool written = text != NULL && file_write(path, text, size, error);
-    free(text);
-    return written;
 }
 
 static bool fill_markdown(void *folder, FILE *out, Error *error) {

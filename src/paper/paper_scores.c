@@ -21,18 +21,12 @@
 
 enum { COMPONENTS = 2 };
 
-/* Change of the velocity of b relative to a: the label of the two outputs. */
-static double paper_scores_label(const Dataset *dataset, int64_t row, int k) {
-    const float *changes = dataset->changes + row * PAIR_CHANGES;
-    return (double)(changes[k + 3] - changes[k]);
-}
-
 static void mean_label(const Dataset *dataset, double mean[COMPONENTS]) {
     int64_t count = 0;
     mean[0] = mean[1] = 0;
     for (int64_t row = 0; row < dataset->rows; row++) {
         if (dataset_is_test(dataset, row)) continue;
-        for (int k = 0; k < COMPONENTS; k++) mean[k] += paper_scores_label(dataset, row, k);
+        for (int k = 0; k < COMPONENTS; k++) mean[k] += (double)dataset_target(dataset, row, COMPONENTS, k);
         count++;
     }
     for (int k = 0; k < COMPONENTS; k++) mean[k] /= (double)count;
@@ -48,7 +42,7 @@ static bool paper_scores_score(const Dataset *dataset, const Network *network, T
         if (!dataset_is_test(dataset, row)) continue;
         network_predict(network, dataset->inputs + row * dataset_inputs(dataset), scratch, output);
         for (int k = 0; k < COMPONENTS; k++) {
-            const double right = paper_scores_label(dataset, row, k), e = (double)output[k] - right,
+            const double right = (double)dataset_target(dataset, row, COMPONENTS, k), e = (double)output[k] - right,
                          c = mean[k] - right;
             squares += e * e;
             squares_constant += c * c;
@@ -142,10 +136,6 @@ static bool takes_steps(const PaperNetwork *network) {
     return network->target != TARGET_IMPULSE || !pair_views[network->view].by_contact;
 }
 
-static bool network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE], Error *error) {
-    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", plan->networks_folder, plan->networks[i].name);
-}
-
 static bool sample_launch(void *context, int i, Error *error) {
     Scores *scores = context;
     return snapshots_add(&scores->launched.states[i], &scores->launched.launches[i], &scores->plan->size->sampling,
@@ -157,7 +147,7 @@ static bool rate_network(void *context, int i, Error *error) {
     const PaperPlan *plan = scores->plan;
     char path[PAPER_PATH_SIZE];
     const bool warm = i == plan->network_count;
-    if (!warm && !network_path(plan, i, path, error)) return false;
+    if (!warm && !paper_network_path(plan, i, path, error)) return false;
     return pair_rates_measure(warm ? NULL : path, scores->launched.scene, scores->launched.states,
                               scores->launched.count, &plan->size->sampling, &scores->rates[i], error);
 }
@@ -196,7 +186,7 @@ static bool method_of(const PaperPlan *plan, int i, Method *method, Error *error
     char path[PAPER_PATH_SIZE];
     if (i >= plan->network_count) return method_parse(method, solvers[i - plan->network_count], error);
     const char *name = plan->networks[i].target == TARGET_POINTS ? "contact-net" : "pair-net";
-    return network_path(plan, i, path, error) && method_with_network(method, name, path, error);
+    return paper_network_path(plan, i, path, error) && method_with_network(method, name, path, error);
 }
 
 static bool log_launch(void *context, int i, Error *error) {

@@ -196,20 +196,13 @@ static void write_score(void *context, const TrainingScore *score) {
     writer->ok = writer->ok && piece_tables_print(writer->lines, &paper_score_layout, -1, &row, writer->error);
 }
 
-/* Label of output k: one of all changes, or the change of b's velocity relative to a's. */
-static double change_of(const Dataset *dataset, int64_t row, int outputs, int k) {
-    const int count = pair_change_count(dataset->target);
-    const float *changes = dataset->changes + row * count;
-    return (double)(outputs == count ? changes[k] : changes[k + 3] - changes[k]);
-}
-
 static void find_ranges(const Dataset *dataset, int outputs, double range[PAIR_CHANGES]) {
     for (int k = 0; k < outputs; k++) {
         double least = INFINITY, most = -INFINITY;
         for (int64_t row = 0; row < dataset->rows; row++) {
             if (dataset_is_test(dataset, row)) continue;
-            least = fmin(least, change_of(dataset, row, outputs, k));
-            most = fmax(most, change_of(dataset, row, outputs, k));
+            least = fmin(least, (double)dataset_target(dataset, row, outputs, k));
+            most = fmax(most, (double)dataset_target(dataset, row, outputs, k));
         }
         range[k] = most - least;
     }
@@ -227,7 +220,7 @@ bool paper_accuracy(const Network *network, const Dataset *dataset, double *accu
         network_predict(network, dataset->inputs + row * inputs, scratch, output);
         bool near = true;
         for (int k = 0; k < outputs; k++)
-            near &= fabs((double)output[k] - change_of(dataset, row, outputs, k)) <= near_share * range[k];
+            near &= fabs((double)output[k] - (double)dataset_target(dataset, row, outputs, k)) <= near_share * range[k];
         right += near;
         rows++;
     }
@@ -261,9 +254,8 @@ static bool write_network(FILE *lines, const PaperNetwork *of, const Network *ne
     return piece_tables_print(lines, &paper_trained_layout, -1, &row, error);
 }
 
-static bool network_path(const PaperPlan *plan, const PaperPart *part, char path[PAPER_PATH_SIZE], Error *error) {
-    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", plan->networks_folder,
-                     plan->networks[part->index].name);
+bool paper_network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE], Error *error) {
+    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", plan->networks_folder, plan->networks[i].name);
 }
 
 /* The note that tells a network from one of the same name. */
@@ -280,7 +272,7 @@ bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const ch
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
     Error reason = {0};
     *there = false;
-    if (!network_path(plan, part, path, error)) return false;
+    if (!paper_network_path(plan, part->index, path, error)) return false;
     if (print_note(note, path, &reason)) *there = strstr(lines, note) != NULL;
     if (reason.kind == ERROR_NONE || reason.kind == ERROR_INPUT) return true;
     *error = reason;
@@ -291,7 +283,7 @@ static bool paper_training_store(const PaperPlan *plan, const PaperPart *part, N
                                  Error *error) {
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
     snprintf(network->command, sizeof network->command, "twinbox paper: %s", plan->networks[part->index].name);
-    if (!network_path(plan, part, path, error) || !network_write(network, path, error) ||
+    if (!paper_network_path(plan, part->index, path, error) || !network_write(network, path, error) ||
         !print_note(note, path, error))
         return false;
     fputs(note, lines);

@@ -13,13 +13,6 @@
 
 #include <stddef.h>
 
-/* A text of the report is complete in memory before it becomes a file. */
-
-typedef bool TextWrite(void *context, FILE *out, Error *error);
-
-/* Writes to a file what `write` writes. False with error set where it fails, or memory is short. */
-bool text_write(const char *path, TextWrite *write, void *context, Error *error);
-
 /* A Markdown text as one HTML5 page that needs no other file, for phones, screens and paper. */
 
 typedef struct HtmlPage {

@@ -81,16 +81,10 @@ static void measured_end(Measured *measured) {
 /* Each method by itself: a slow one would let the others' data leave the caches. */
 static bool time_methods(Measured *measured, bool quick, Error *error) {
     const Scene *launched = &measured->launched.launches[0];
-    const TimingOptions options = {.launches = launched,
-                                   .launch_count = 1,
-                                   .repetitions = quick ? 1 : 5,
-                                   .last_frame = launched->frames,
-                                   .no_instructions = true};
-    const SnapshotList none = {0};
     for (int i = 0; i < measured->count; i++) {
         const Contender *contender = &measured->contenders[i];
-        StepCost closed[1][PHASES], frozen[1][PHASES];
-        if (!timing_measure(&contender, 1, &options, &none, closed, frozen, NULL, error)) return false;
+        StepCost closed[1][PHASES];
+        if (!timing_of_launch(&contender, 1, launched, launched->frames, quick ? 1 : 5, closed, error)) return false;
         measured->us_step[i] = step_cost_mean(closed[0], contender->method.kind->description->no_contacts);
     }
     return true;

@@ -134,14 +134,10 @@ static bool time_method(const Scores *scores, Scored *method, StepCost engine[PH
     const Contender *const turns[] = {&scores->methods[ENGINE].contender, &method->contender};
     const Scene *launched = &scores->launched.launches[0];
     const int last = scores->plan->size->system_timed_frames + launched->bomb.frame;
-    const TimingOptions options = {.launches = launched,
-                                   .launch_count = 1,
-                                   .repetitions = scores->plan->size->system_repetitions,
-                                   .last_frame = last < launched->frames ? last : launched->frames,
-                                   .no_instructions = true};
-    StepCost closed[2][PHASES], frozen[2][PHASES];
-    const SnapshotList none = {0};
-    if (!timing_measure(turns, 2, &options, &none, closed, frozen, NULL, error)) return false;
+    StepCost closed[2][PHASES];
+    if (!timing_of_launch(turns, 2, launched, last < launched->frames ? last : launched->frames,
+                          scores->plan->size->system_repetitions, closed, error))
+        return false;
     memcpy(engine, closed[0], sizeof closed[0]);
     memcpy(method->closed, closed[1], sizeof closed[1]);
     return true;

@@ -136,14 +136,13 @@ bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int 
                         Error *error) {
     *difference = (ContactDifference){0};
     if (body < 0 && same_bytes(a, b, step)) {
-        difference->count_a = difference->count_b = (int)(a->contact_start[step + 1] - a->contact_start[step]);
+        difference->count_a = (int)(a->contact_start[step + 1] - a->contact_start[step]);
         return true;
     }
     ContactList of_a, of_b = {0, NULL};
     bool ok = list_contacts(a, step, body, &of_a, error) && list_contacts(b, step, body, &of_b, error);
     if (ok) {
         difference->count_a = of_a.count;
-        difference->count_b = of_b.count;
         compare_runs_merge(&of_a, &of_b, difference);
     }
     free(of_a.items);

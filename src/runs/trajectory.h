@@ -203,7 +203,7 @@ bool trajectory_different_worlds(const Trajectory *a, const Trajectory *b, char 
 
 /* The contacts of one step of two runs, matched by bodies and feature. */
 typedef struct ContactDifference {
-    int count_a, count_b;
+    int count_a;                            /* in the first run */
     int only_a, only_b;                     /* that the other does not have */
     int moved;                              /* matched, with another point or normal */
     int changed;                            /* matched, with another impulse */

@@ -189,21 +189,31 @@ static bool is_solver(const ChartLine *line) {
            (line->competes || (line->description != NULL && line->description->role == METHOD_REFERENCE));
 }
 
+CurvePoint *chart_front(const Chart *chart, int p, bool (*counts)(const ChartLine *line), int *count) {
+    const ChartPanel *panel = &chart->panels[p];
+    CurvePoint *front = malloc((size_t)panel->count * sizeof *front + 1);
+    *count = 0;
+    for (int i = 0; front != NULL && i < panel->count; i++) {
+        const ChartMark *mark = &panel->marks[i];
+        if (counts(&chart->lines[mark->line]) && !mark->lost) front[(*count)++] = (CurvePoint){mark->us, mark->error};
+    }
+    if (front != NULL) *count = error_curve_front(front, *count);
+    return front;
+}
+
+bool chart_mark_is_on(const ChartMark *mark, const CurvePoint *front, int count) {
+    for (int k = 0; k < count; k++)
+        if (mark->us == front[k].us && mark->error == front[k].error) return true;
+    return false;
+}
+
 /* The front is that of all solvers, whether they are drawn or not. */
 static bool find_front(Chart *chart, int p) {
     ChartPanel *panel = &chart->panels[p];
-    CurvePoint *front = chart->front[p] = malloc((size_t)panel->count * sizeof *front + 1);
-    int count = 0;
-    if (front == NULL) return false;
-    for (int i = 0; i < panel->count; i++) {
-        const ChartMark *mark = &panel->marks[i];
-        const ChartLine *line = &chart->lines[mark->line];
-        if (is_solver(line) && !mark->lost) front[count++] = (CurvePoint){mark->us, mark->error};
-    }
-    chart->front_count[p] = error_curve_front(front, count);
+    chart->front[p] = chart_front(chart, p, is_solver, &chart->front_count[p]);
+    if (chart->front[p] == NULL) return false;
     for (int i = 0; i < panel->count; i++)
-        for (int k = 0; k < chart->front_count[p]; k++)
-            panel->marks[i].on_front |= panel->marks[i].us == front[k].us && panel->marks[i].error == front[k].error;
+        panel->marks[i].on_front = chart_mark_is_on(&panel->marks[i], chart->front[p], chart->front_count[p]);
     return true;
 }
 

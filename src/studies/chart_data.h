@@ -88,6 +88,13 @@ bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const 
 bool chart_colour(Chart *chart, const ColourChoices *choices, Error *error);
 void chart_free(Chart *chart);
 
+/* The Pareto front of a panel, of the lines that count and have not lost the scene; the caller frees it. NULL if out of
+   memory. */
+CurvePoint *chart_front(const Chart *chart, int p, bool (*counts)(const ChartLine *line), int *count);
+
+/* Whether the mark is a point of the front. */
+bool chart_mark_is_on(const ChartMark *mark, const CurvePoint *front, int count);
+
 /* Whether a program of others takes its steps, by its own clock. */
 bool chart_is_program(const ChartLine *line);
 

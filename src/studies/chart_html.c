@@ -39,11 +39,31 @@ void study_page_left_out(FILE *out, const CsvTable *table, size_t page, size_t r
     if (count > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d %s.</p>\n", count, what);
 }
 
-bool study_page_write(const char *path, void (*put)(FILE *out, const void *html), const void *html, const bool *failed,
-                      Error *error) {
-    size_t size = 0;
-    char *text = file_print(put, html, &size);
-    const bool written = (text != NULL || error_memory(error, path)) && !*failed && file_write(path, text, size, error);
+typedef struct Text {
+    TextWrite *write;
+    void *context;
+    bool whole;
+    Error *error;
+} Text;
+
+static void print_text(FILE *out, const void *context) {
+    Text *text = (Text *)context;
+    text->whole = text->write(text->context, out, text->error);
+}
+
+char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error) {
+    Text printed = {write, context, true, error};
+    char *text = file_print(print_text, &printed, size);
+    if (text != NULL && printed.whole) return text;
+    if (printed.whole) error_memory(error, what);
+    free(text);
+    return NULL;
+}
+
+bool text_write(const char *path, TextWrite *write, void *context, Error *error) {
+    size_t size;
+    char *text = text_print(write, context, &size, path, error);
+    const bool written = text != NULL && file_write(path, text, size, error);
     free(text);
     return written;
 }
@@ -56,8 +76,6 @@ typedef struct ChartHtml {
     const LaunchPage *pages;
     const char *csv; /* path of the chart's table */
     const ChartLook *look;
-    Error *error;
-    bool failed;
 } ChartHtml;
 
 static bool same_point(const LaunchPage *page, const char *scene, const char *method, const char *setting,
@@ -167,28 +185,32 @@ static void put_table(FILE *out, const ChartHtml *html, const char *scene) {
     fputs("</tbody>\n</table>\n</div>\n", out);
 }
 
-static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
-    Chart chart;
+static bool put_drawn(FILE *out, const ChartHtml *html, const Chart *chart, const char *scene, Error *error) {
     ChartPicture picture;
+    if (!chart_picture_make(&picture, chart, scene, html->look, error)) return false;
+    study_page_section(out, scene);
+    fprintf(out, ", %d launch%s</h2>\n", chart->launches, plural_es(chart->launches));
+    put_figure(out, html, &picture, scene);
+    chart_picture_free(&picture);
+    return true;
+}
+
+static bool put_scene(FILE *out, const ChartHtml *html, const ChartRow *first, Error *error) {
+    Chart chart;
     if (chart_scene_untimed(html->chart.rows, html->chart.count, first->scene)) {
         study_page_section(out, first->scene);
         fprintf(out, ", %d launch%s</h2>\n", first->launches, plural_es(first->launches));
         fputs("<p>Without a chart: its times were measured on another processor.</p>\n", out);
-    } else if (chart_gather(&chart, &html->chart, first->scene, html->csv, html->look->highlight, html->error)) {
-        html->failed = !chart_colour(&chart, &html->look->colours, html->error) ||
-                       !chart_picture_make(&picture, &chart, first->scene, html->look, html->error);
-        if (!html->failed) {
-            study_page_section(out, first->scene);
-            fprintf(out, ", %d launch%s</h2>\n", chart.launches, plural_es(chart.launches));
-            put_figure(out, html, &picture, first->scene);
-            chart_picture_free(&picture);
-        }
+    } else {
+        if (!chart_gather(&chart, &html->chart, first->scene, html->csv, html->look->highlight, error)) return false;
+        const bool drawn =
+            chart_colour(&chart, &html->look->colours, error) && put_drawn(out, html, &chart, first->scene, error);
         chart_free(&chart);
-    } else
-        html->failed = true;
-    if (html->failed) return;
+        if (!drawn) return false;
+    }
     put_table(out, html, first->scene);
     fputs("</section>\n", out);
+    return true;
 }
 
 static bool is_first(const ChartHtml *html, int row) {
@@ -197,8 +219,8 @@ static bool is_first(const ChartHtml *html, int row) {
     return first == row;
 }
 
-static void put_chart(FILE *out, const void *context) {
-    ChartHtml *html = (ChartHtml *)context; /* where it fails is noted */
+static bool put_chart(void *context, FILE *out, Error *error) {
+    const ChartHtml *html = context;
     char times[CHART_TIMES_SIZE];
     study_page_begin(out, "Speed and accuracy", chart_css);
     fputs("Each point opens a page that plays the launch that was worst for it, beside the converged run, at the step "
@@ -209,20 +231,21 @@ static void put_chart(FILE *out, const void *context) {
     if (times[0] != '\0') html_print(out, "<p class=\"soft\">%s</p>\n", times);
     study_page_left_out(out, &html->table, offsetof(LaunchPage, page), sizeof(LaunchPage), "points");
     for (int i = 0; i < html->chart.count; i++)
-        if (!html->failed && is_first(html, i)) put_scene(out, html, chart_row(&html->chart, i));
+        if (is_first(html, i) && !put_scene(out, html, chart_row(&html->chart, i), error)) return false;
     house_page_end(out);
+    return true;
 }
 
 bool chart_html_write(const char *folder, const ChartLook *look, Error *error) {
     char csv[CSV_PATH_SIZE], path[CSV_PATH_SIZE];
-    ChartHtml html = {.csv = csv, .look = look, .error = error};
+    ChartHtml html = {.csv = csv, .look = look};
     if (!csv_table_path(csv, folder, &chart_layout, error) ||
         !file_path(path, sizeof path, error, "%s/chart.html", folder) ||
         !csv_table_read(&html.chart, csv, &chart_layout, error))
         return false;
     bool done = csv_table_read_from(&html.table, folder, &launch_page_layout, error);
     html.pages = html.table.rows;
-    done = done && study_page_write(path, put_chart, &html, &html.failed, error);
+    done = done && text_write(path, put_chart, &html, error);
     csv_table_free(&html.table);
     csv_table_free(&html.chart);
     return done;

@@ -99,21 +99,13 @@ static bool is_rival(const ChartLine *line) {
 /* Adds the corners that each line has in the front of such methods. False if out of memory. */
 static bool count_corners(const Chart *chart, int panel, int corners[CHART_MAX_LINES]) {
     const ChartPanel *all = &chart->panels[panel];
-    CurvePoint *front = malloc((size_t)all->count * sizeof *front + 1);
-    int count = 0;
-    if (front == NULL) return false;
-    for (int i = 0; i < all->count; i++)
-        if (is_rival(&chart->lines[all->marks[i].line]) && !all->marks[i].lost)
-            front[count++] = (CurvePoint){all->marks[i].us, all->marks[i].error};
-    count = error_curve_front(front, count);
-    for (int i = 0; i < all->count; i++)
-        for (int k = 0; k < count; k++) {
-            const ChartMark *mark = &all->marks[i];
-            if (is_rival(&chart->lines[mark->line]) && mark->us == front[k].us && mark->error == front[k].error)
-                corners[mark->line]++;
-        }
+    int count;
+    CurvePoint *front = chart_front(chart, panel, is_rival, &count);
+    for (int i = 0; front != NULL && i < all->count; i++)
+        if (is_rival(&chart->lines[all->marks[i].line]))
+            corners[all->marks[i].line] += chart_mark_is_on(&all->marks[i], front, count);
     free(front);
-    return true;
+    return front != NULL;
 }
 
 static bool find_rival(const Chart *chart, int *rival) {

@@ -14,19 +14,10 @@
 #include <stdlib.h>
 
 bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
-    Method parsed;
-    if (!method_parse(&parsed, method, error)) return false;
-    Rollout rollout = {.log = *log};
-    Stepper *stepper = stepper_create(&parsed, launched, error);
-    bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error);
-    stepper_destroy(stepper);
-    *log = rollout.log;
-    rollout.log = (RunLog){0};
-    rollout_free(&rollout);
-    if (ok && log->frames < launched->frames)
-        ok = error_input(error, launched->name, "the run of %s ends at frame %d with a state that is NaN or infinite",
-                         method, log->frames);
-    return ok;
+    if (!rollout_log(log, method, launched, error)) return false;
+    return log->frames >= launched->frames ||
+           error_input(error, launched->name, "the run of %s ends at frame %d with a state that is NaN or infinite",
+                       method, log->frames);
 }
 
 static void closed_loop_measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {

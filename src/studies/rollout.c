@@ -243,3 +243,16 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
     }
     return true;
 }
+
+bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
+    Method parsed;
+    if (!method_parse(&parsed, method, error)) return false;
+    Rollout rollout = {.log = *log};
+    Stepper *stepper = stepper_create(&parsed, launched, error);
+    const bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error);
+    stepper_destroy(stepper);
+    *log = rollout.log;
+    rollout.log = (RunLog){0};
+    rollout_free(&rollout);
+    return ok;
+}

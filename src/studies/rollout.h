@@ -133,3 +133,6 @@ void rollout_free(Rollout *rollout);
    infinite, the run ends early and its log is shorter. False with error set if out of memory. */
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error);
+
+/* Logs a run by the method of this name, which ends early if its state becomes NaN or infinite. */
+bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *error);

@@ -52,17 +52,8 @@ static void launch_piece_end(LaunchPiece *piece) {
 }
 
 static bool scene_pieces_prepare(LaunchPiece *piece, Error *error) {
-    Method method;
-    Rollout rollout = {0};
-    Stepper *stepper =
-        method_parse(&method, "reference", error) ? stepper_create(&method, &piece->launched, error) : NULL;
-    const bool ok = stepper != NULL && rollout_run(&rollout, stepper, &piece->launched, NULL, NULL, error) &&
-                    snapshots_add(&piece->snapshots, &piece->launched, &piece->study->size.frozen, error);
-    piece->converged = rollout.log;
-    rollout.log = (RunLog){0};
-    rollout_free(&rollout);
-    stepper_destroy(stepper);
-    return ok;
+    return rollout_log(&piece->converged, "reference", &piece->launched, error) &&
+           snapshots_add(&piece->snapshots, &piece->launched, &piece->study->size.frozen, error);
 }
 
 static bool score_with(LaunchPiece *piece, Stepper *stepper, LaunchScores *scores, Error *error) {

@@ -32,8 +32,6 @@ typedef struct StabilityHtml {
     CsvTable table; /* of MapPage */
     const MapPage *pages;
     MapPanels *map; /* the current one */
-    Error *error;
-    bool failed;
 } StabilityHtml;
 
 static const MapPage *find_stability_page(const StabilityHtml *html, const MapCell *cell) {
@@ -225,8 +223,8 @@ static void put_key(FILE *out) {
     fputs("<li><b class=\"page\">F</b> with a frame: opens a page</li>\n</ul>\n", out);
 }
 
-static void put_stability(FILE *out, const void *context) {
-    StabilityHtml *html = (StabilityHtml *)context; /* where it fails is noted */
+static bool put_stability(void *context, FILE *out, Error *error) {
+    const StabilityHtml *html = context;
     study_page_begin(out, "Stability", stability_css);
     fprintf(
         out,
@@ -237,11 +235,12 @@ static void put_stability(FILE *out, const void *context) {
     study_page_left_out(out, &html->table, offsetof(MapPage, page), sizeof(MapPage), "cells");
     put_key(out);
     put_borders(out, html);
-    for (int row = 0; row < html->maps.count && !html->failed;) {
-        html->failed = !map_panels_gather(html->map, &html->maps, &row, html->error);
-        if (!html->failed) put_map(out, html);
+    for (int row = 0; row < html->maps.count;) {
+        if (!map_panels_gather(html->map, &html->maps, &row, error)) return false;
+        put_map(out, html);
     }
     house_page_end(out);
+    return true;
 }
 
 static bool read_engines(StabilityHtml *html, const char *folder, Error *error) {
@@ -252,7 +251,7 @@ static bool read_engines(StabilityHtml *html, const char *folder, Error *error) 
 
 bool stability_html_write(const char *folder, Error *error) {
     char path[CSV_PATH_SIZE];
-    StabilityHtml html = {.error = error};
+    StabilityHtml html = {0};
     if (!file_path(path, sizeof path, error, "%s/stability.html", folder) ||
         !csv_table_read_from(&html.maps, folder, &map_layout, error))
         return false;
@@ -262,7 +261,7 @@ bool stability_html_write(const char *folder, Error *error) {
     html.pages = html.table.rows;
     html.map = malloc(sizeof *html.map);
     if (done && html.map == NULL) done = error_memory(error, path);
-    done = done && study_page_write(path, put_stability, &html, &html.failed, error);
+    done = done && text_write(path, put_stability, &html, error);
     free(html.map);
     csv_table_free(&html.engines);
     csv_table_free(&html.borders);

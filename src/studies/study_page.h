@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of the pages of studies. */
+/* The parts of the pages of studies, and texts that are complete in memory before they become files. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -19,6 +19,10 @@ void study_page_region(FILE *out, const char *style, const char *label, const ch
 /* How many rows have no page; page: at this place in each row of the table. */
 void study_page_left_out(FILE *out, const CsvTable *table, size_t page, size_t row_size, const char *what);
 
-/* failed: set by `put`, with the error. */
-bool study_page_write(const char *path, void (*put)(FILE *out, const void *html), const void *html, const bool *failed,
-                      Error *error);
+typedef bool TextWrite(void *context, FILE *out, Error *error);
+
+/* The text that `write` writes, to be freed. NULL with error set where it fails; `what` is without memory. */
+char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error);
+
+/* Writes it to a file. */
+bool text_write(const char *path, TextWrite *write, void *context, Error *error);

@@ -13,6 +13,7 @@
 #include "studies/statistics.h"
 #include "studies/timing.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -324,6 +325,18 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
     meter_unpin();
     timing_end(&timing);
     return ok;
+}
+
+bool timing_of_launch(const Contender *const *contenders, int count, const Scene *launched, int last_frame,
+                      int repetitions, StepCost (*closed)[PHASES], Error *error) {
+    const TimingOptions options = {.launches = launched,
+                                   .launch_count = 1,
+                                   .repetitions = repetitions,
+                                   .last_frame = last_frame,
+                                   .no_instructions = true};
+    StepCost frozen[TIMING_OF_LAUNCH][PHASES];
+    assert(count <= TIMING_OF_LAUNCH);
+    return timing_measure(contenders, count, &options, &(SnapshotList){0}, closed, frozen, NULL, error);
 }
 
 double step_cost_mean(const StepCost costs[PHASES], bool only_solver) {

@@ -42,6 +42,11 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
                     const SnapshotList *snapshots, StepCost (*closed)[PHASES], StepCost (*frozen)[PHASES],
                     const Progress *progress, Error *error);
 
+/* Fills closed[count][PHASES] of one launch, without instructions. count: at most TIMING_OF_LAUNCH. */
+enum { TIMING_OF_LAUNCH = 2 };
+bool timing_of_launch(const Contender *const *contenders, int count, const Scene *launched, int last_frame,
+                      int repetitions, StepCost (*closed)[PHASES], Error *error);
+
 /* Mean over the steps of all phases: of the whole step, or only of the solver, for methods whose step is nothing else
    (no_contacts in methods/methods.h). NaN without steps. */
 double step_cost_mean(const StepCost costs[PHASES], bool only_solver);

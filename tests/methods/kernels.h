@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every sweep kernel of this processor against the scalar reference implementation. */
 #pragma once
+#include "momentum_scalar.h"
 #include "testing.h"
 
 #include "methods/momentum.h"

@@ -1,0 +1,383 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sweep kernel over the lanes of a vector: eight by AVX2, without fused multiply-add, which rounds once where the
+   scalar reference implementation rounds twice; else four, as other processors and WebAssembly have them.
+
+   The operations of sweeps_scalar.c, with three exceptions that have the same bits for finite numbers: x - y for
+   x + -y, the tangent's components written out, and no change of the velocity of a static body. */
+#include "methods/sweeps.h"
+
+#ifdef TWINBOX_AVX
+#include <immintrin.h>
+
+enum { LANES = 8 };
+#else
+enum { LANES = 4 };
+#endif
+
+typedef float Lanes __attribute__((vector_size(LANES * sizeof(float))));
+typedef int32_t LaneMask __attribute__((vector_size(LANES * sizeof(int32_t))));
+
+/* Four floats that follow each other in memory. */
+typedef float Row __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
+
+/* b where the sign of `by` is negative; a > b ? a : b and a < b ? a : b, also for zeros of either sign. Each is one
+   instruction of AVX, where GCC 12 takes two or three for the general form: a tenth of a sweep's time. */
+#ifdef TWINBOX_AVX
+static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) { return _mm256_blendv_ps(a, b, by); }
+static inline Lanes lanes_max(Lanes a, Lanes b) { return _mm256_max_ps(a, b); }
+static inline Lanes lanes_min(Lanes a, Lanes b) { return _mm256_min_ps(a, b); }
+static inline bool lanes_any_positive(Lanes a) { return _mm256_movemask_ps(a) != 0xff; }
+#else
+static inline Lanes lanes_where(LaneMask mask, Lanes a, Lanes b) {
+    return (Lanes)((mask & (LaneMask)a) | (~mask & (LaneMask)b));
+}
+static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) { return lanes_where((LaneMask)by < 0, b, a); }
+static inline Lanes lanes_max(Lanes a, Lanes b) { return lanes_where(a > b, a, b); }
+static inline Lanes lanes_min(Lanes a, Lanes b) { return lanes_where(a < b, a, b); }
+static inline bool lanes_any_positive(Lanes a) {
+    const LaneMask positive = (LaneMask)a >= 0;
+    return (positive[0] | positive[1] | positive[2] | positive[3]) != 0;
+}
+#endif
+
+/* In each four lanes: those of a (0 to 3) and b (4 to 7) that the numbers name. */
+#ifdef TWINBOX_AVX
+#define LANE_OF(i) ((i) < 4 ? (i) : (i) + 4)
+#define LANES_OF(a, b, i, j, k, l)                                                                                \
+    __builtin_shufflevector(a, b, LANE_OF(i), LANE_OF(j), LANE_OF(k), LANE_OF(l), LANE_OF(i) + 4, LANE_OF(j) + 4, \
+                            LANE_OF(k) + 4, LANE_OF(l) + 4)
+#else
+#define LANES_OF(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
+#endif
+
+/* A transpose of each 4 x 4. */
+static inline void transpose(Lanes out[4], const Lanes in[4]) {
+    const Lanes low01 = LANES_OF(in[0], in[1], 0, 4, 1, 5), high01 = LANES_OF(in[0], in[1], 2, 6, 3, 7);
+    const Lanes low23 = LANES_OF(in[2], in[3], 0, 4, 1, 5), high23 = LANES_OF(in[2], in[3], 2, 6, 3, 7);
+    out[0] = LANES_OF(low01, low23, 0, 1, 4, 5);
+    out[1] = LANES_OF(low01, low23, 2, 3, 6, 7);
+    out[2] = LANES_OF(high01, high23, 0, 1, 4, 5);
+    out[3] = LANES_OF(high01, high23, 2, 3, 6, 7);
+}
+
+static inline Row *row_at(float *base, int32_t offset) { return (Row *)(base + offset); }
+static inline Row row_of(const float *base, int32_t offset) { return *(const Row *)(base + offset); }
+static inline Row row_all(float x) { return (Row){x, x, x, x}; }
+
+/* One row, or with eight lanes this one and the one of four lanes further, which AVX inserts while it loads. */
+#ifdef TWINBOX_AVX
+static inline Lanes lanes_join(Row low, Row high) { return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1); }
+static inline Lanes lanes_load(const float *base, const int32_t *at) {
+    return lanes_join(row_of(base, at[0]), row_of(base, at[4]));
+}
+static inline Lanes lanes_all(const float *factors, const int32_t *number) {
+    return lanes_join(row_all(factors[number[0]]), row_all(factors[number[4]]));
+}
+static inline void lanes_store(float *base, const int32_t *at, Lanes rows) {
+    *row_at(base, at[0]) = ((const Row *)&rows)[0];
+    *row_at(base, at[4]) = ((const Row *)&rows)[1];
+}
+#else
+static inline Lanes lanes_load(const float *base, const int32_t *at) { return row_of(base, at[0]); }
+static inline Lanes lanes_all(const float *factors, const int32_t *number) { return row_all(factors[number[0]]); }
+static inline void lanes_store(float *base, const int32_t *at, Lanes rows) { *row_at(base, at[0]) = rows; }
+#endif
+
+/* `base` is a row of four floats in the first record, `offsets` those of the lanes' rows, in floats; out[k] gets the
+   k-th float of each row. */
+static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets) {
+    Lanes rows[4];
+    for (int i = 0; i < 4; i++) rows[i] = lanes_load(base, offsets + i);
+    transpose(out, rows);
+}
+
+static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]) {
+    Lanes rows[4];
+    transpose(rows, in);
+    for (int i = 0; i < 4; i++) lanes_store(base, offsets + i, rows[i]);
+}
+
+/* As load_rows, of now - (factor * (before - now) + 0). number: that of each lane's factor. */
+static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
+                                     const float *factors, const int32_t *number) {
+    Lanes rows[4];
+    for (int i = 0; i < 4; i++) {
+        const Lanes from = lanes_load(base, now + i), change = lanes_load(base, before + i) - from;
+        rows[i] = from - (lanes_all(factors, number + i) * change + 0.0f);
+    }
+    transpose(out, rows);
+}
+
+/* Replaces the row of two sweeps ago. */
+static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const float *factors) {
+    const Row from = row_of(base, turn->from), change = row_of(base, turn->to) - from;
+    *row_at(base, turn->to) = from - (factors[turn->factor] * change + 0.0f);
+}
+
+/* Velocities of the bodies at one end of the pairs, one pair per lane. */
+typedef struct Side {
+    Lanes x, y, spin, inv_mass, inv_inertia;
+} Side;
+
+/* A quantity with two components. */
+typedef struct LaneVec {
+    Lanes x, y;
+} LaneVec;
+
+static inline Lanes dot(LaneVec a, LaneVec b) { return a.x * b.x + a.y * b.y; }
+static inline Lanes cross(LaneVec a, LaneVec b) { return a.x * b.y - a.y * b.x; }
+static inline LaneVec scaled(Lanes by, LaneVec a) { return (LaneVec){by * a.x, by * a.y}; }
+
+/* Velocity of b's point relative to a's. */
+static inline LaneVec relative_velocity(const Side *a, const Side *b, LaneVec arm_a, LaneVec arm_b) {
+    return (LaneVec){b->x - b->spin * arm_b.y - a->x + a->spin * arm_a.y,
+                     b->y + b->spin * arm_b.x - a->y - a->spin * arm_a.x};
+}
+
+/* Applies impulse to b and its opposite to a. */
+static inline void apply(Side *a, Side *b, LaneVec arm_a, LaneVec arm_b, LaneVec impulse) {
+    a->x -= a->inv_mass * impulse.x;
+    a->y -= a->inv_mass * impulse.y;
+    a->spin -= a->inv_inertia * cross(arm_a, impulse);
+    b->x += b->inv_mass * impulse.x;
+    b->y += b->inv_mass * impulse.y;
+    b->spin += b->inv_inertia * cross(arm_b, impulse);
+}
+
+/* The data that both points of a pair share. */
+typedef struct Surface {
+    LaneVec normal, tangent;
+    Lanes friction;
+} Surface;
+
+/* shared: normal, friction, inverse inertia of a. */
+static inline Surface surface_of(const Lanes shared[4]) {
+    return (Surface){{shared[0], shared[1]}, {shared[1], -shared[0]}, shared[2]};
+}
+
+/* arms: of a and b, x and y; masses: normal, tangent, bias. */
+static inline void solve_normal(Side *a, Side *b, const Surface *surface, const Lanes arms[4], const Lanes masses[4],
+                                Lanes *sum) {
+    const LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]};
+    const Lanes along = dot(relative_velocity(a, b, arm_a, arm_b), surface->normal);
+    const Lanes total = lanes_max(*sum + masses[0] * (masses[2] - along), (Lanes){0});
+    const Lanes normal = total - *sum;
+    *sum = total;
+    apply(a, b, arm_a, arm_b, scaled(normal, surface->normal));
+}
+
+static inline void solve_friction(Side *a, Side *b, const Surface *surface, const Lanes arms[4], const Lanes masses[4],
+                                  Lanes sum_normal, Lanes *sum) {
+    const LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]};
+    const Lanes along = dot(relative_velocity(a, b, arm_a, arm_b), surface->tangent);
+    const Lanes limit = surface->friction * sum_normal;
+    const Lanes total = lanes_max(-limit, lanes_min(*sum - masses[1] * along, limit));
+    const Lanes tangent = total - *sum;
+    *sum = total;
+    apply(a, b, arm_a, arm_b, scaled(tangent, surface->tangent));
+}
+
+static inline void solve_point(Side *a, Side *b, const Surface *surface, const Lanes arms[4], const Lanes masses[4],
+                               Lanes *sum_normal, Lanes *sum_tangent) {
+    solve_normal(a, b, surface, arms, masses, sum_normal);
+    solve_friction(a, b, surface, arms, masses, *sum_normal, sum_tangent);
+}
+
+static inline Side load_side(const Sweeps *sweeps, const int32_t *offsets, Lanes inv_inertia) {
+    Lanes rows[4];
+    load_rows(rows, &sweeps->bodies->x, offsets);
+    return (Side){rows[0], rows[1], rows[2], rows[3], inv_inertia};
+}
+
+static inline void store_side(Sweeps *sweeps, const int32_t *offsets, const Side *side) {
+    const Lanes rows[4] = {side->x, side->y, side->spin, side->inv_mass};
+    store_rows(&sweeps->bodies->x, offsets, rows);
+}
+
+/* Selects the velocities after the second point for pairs that have one, else those before. */
+static inline void keep_where_single(Side *after, const Side *before, Lanes second) {
+    after->x = lanes_choose(before->x, after->x, second);
+    after->y = lanes_choose(before->y, after->y, second);
+    after->spin = lanes_choose(before->spin, after->spin, second);
+}
+
+/* turns, factors: NULL without momentum extrapolation. */
+__attribute__((always_inline)) static inline void solve_pairs(Sweeps *sweeps, const SweepLevel *level,
+                                                              const SweepTurns *turns, int lane, const float *factors) {
+    SweepPair *records = sweeps->pairs;
+    const int32_t *pair = level->pair + lane, *offset_a = level->a + lane, *offset_b = level->b + lane;
+    Lanes sums[4], shared[4], arms1[4], masses1[4], arms2[4], masses2[4];
+    if (turns == NULL)
+        load_rows(sums, &records->sums[0].normal, pair);
+    else
+        load_extrapolated(sums, &sweeps->sums->normal, turns->from + lane, turns->to + lane, factors,
+                          turns->factor + lane);
+    load_rows(shared, &records->normal.x, pair);
+    load_rows(arms1, &records->points[0].arm_a.x, pair);
+    load_rows(masses1, &records->points[0].mass_normal, pair);
+    const Surface surface = surface_of(shared);
+    Side a = load_side(sweeps, offset_a, shared[3]), b = load_side(sweeps, offset_b, masses1[3]);
+
+    solve_point(&a, &b, &surface, arms1, masses1, &sums[0], &sums[1]);
+    const Side single_a = a, single_b = b;
+    load_rows(arms2, &records->points[1].arm_a.x, pair);
+    load_rows(masses2, &records->points[1].mass_normal, pair);
+    solve_point(&a, &b, &surface, arms2, masses2, &sums[2], &sums[3]);
+    if (lanes_any_positive(masses2[3])) {
+        keep_where_single(&a, &single_a, masses2[3]);
+        keep_where_single(&b, &single_b, masses2[3]);
+    }
+
+    store_side(sweeps, offset_a, &a);
+    store_side(sweeps, offset_b, &b);
+    if (turns == NULL)
+        store_rows(&records->sums[0].normal, pair, sums);
+    else
+        store_rows(&sweeps->sums->normal, turns->to + lane, sums);
+}
+
+static void run_levels(Sweeps *sweeps, const SweepSchedule *schedule) {
+    for (int i = 0; i < schedule->level_count; i++)
+        for (int lane = 0; lane < schedule->filled[i]; lane += LANES)
+            solve_pairs(sweeps, &schedule->levels[i], NULL, lane, NULL);
+}
+
+static void run_levels_extrapolating(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
+    for (int i = 0, turn = 0; i < schedule->level_count; i++) {
+        for (; turn < schedule->turns_end[i]; turn++)
+            extrapolate_body(&sweeps->bodies->x, &schedule->body_turns[turn], factors);
+        for (int lane = 0; lane < schedule->filled[i]; lane += LANES)
+            solve_pairs(sweeps, &schedule->levels[i], &schedule->turns[i], lane, factors);
+    }
+}
+
+/* What is measured at the points of pairs: two at most, of the same bodies. */
+typedef struct LanePoint {
+    Lanes arms[4], masses[4]; /* as in solve_normal() */
+    Lanes normal, tangent;    /* the sums */
+} LanePoint;
+
+typedef struct LanePair {
+    Surface surface;
+    Side a, b;
+    LanePoint points[2];
+} LanePair;
+
+/* The pairs whose records have these offsets, as in a level. */
+static inline LanePair load_pair_lanes(const Sweeps *sweeps, const SweepLevel *at) {
+    const SweepPair *records = sweeps->pairs;
+    LanePair pair;
+    Lanes sums[4], shared[4];
+    load_rows(sums, &records->sums[0].normal, at->pair);
+    load_rows(shared, &records->normal.x, at->pair);
+    for (int k = 0; k < 2; k++) {
+        load_rows(pair.points[k].arms, &records->points[k].arm_a.x, at->pair);
+        load_rows(pair.points[k].masses, &records->points[k].mass_normal, at->pair);
+        pair.points[k].normal = sums[2 * k];
+        pair.points[k].tangent = sums[2 * k + 1];
+    }
+    pair.surface = surface_of(shared);
+    pair.a = load_side(sweeps, at->a, shared[3]);
+    pair.b = load_side(sweeps, at->b, pair.points[0].masses[3]);
+    return pair;
+}
+
+/* As in residual.c. */
+static inline LaneVec velocity_there(const LanePair *pair, const Lanes arms[4]) {
+    const Side *a = &pair->a, *b = &pair->b;
+    return (LaneVec){(b->x - b->spin * arms[3]) - (a->x - a->spin * arms[1]),
+                     (b->y + b->spin * arms[2]) - (a->y + a->spin * arms[0])};
+}
+
+/* The operations of squared_of_visit() in residual.c. Anything for a point that is not there. */
+static inline Lanes squared_of_visit(const LanePair *pair, const LanePoint *point) {
+    const LaneVec v = velocity_there(pair, point->arms);
+    const Lanes slip = dot(v, pair->surface.tangent), gap = dot(v, pair->surface.normal) - point->masses[2];
+    const Lanes normal = lanes_min(point->normal / point->masses[0], gap);
+    const Lanes limit = pair->surface.friction * point->normal;
+    const Lanes wanted = lanes_min(point->tangent - point->masses[1] * slip, limit);
+    const Lanes tangent = (point->tangent - lanes_max(-limit, wanted)) / point->masses[1];
+    return normal * normal + tangent * tangent + (0.0f * v.x + 0.0f * v.y); /* NaN for what is not finite */
+}
+
+/* The operations of overshoot_of_point() in residual.c. Anything for a point that is not there. */
+static inline Lanes overshoot_of_point(const LanePair *pair, const LanePoint *point) {
+    const LaneVec v = velocity_there(pair, point->arms), n = pair->surface.normal, t = pair->surface.tangent;
+    const LaneVec arm_a = {point->arms[0], point->arms[1]}, arm_b = {point->arms[2], point->arms[3]};
+    const Lanes gap = dot(v, n) - point->masses[2], slip = dot(v, t);
+    const Lanes knt = pair->a.inv_inertia * (cross(arm_a, n) * cross(arm_a, t)) +
+                      pair->b.inv_inertia * (cross(arm_b, n) * cross(arm_b, t));
+    const Lanes share = pair->surface.friction * (point->masses[0] * knt);
+    const Lanes held = 0.0f - point->normal; /* < 0 */
+    const Lanes dragged = lanes_max(point->tangent, -point->tangent);
+    const Lanes room = pair->surface.friction * point->normal - SWEEP_AT_LIMIT * dragged;
+    /* + 0, as -0 is not below 0 */
+    const Lanes slides = lanes_choose(gap, room, held) + 0.0f;
+    const Lanes against = lanes_choose(-slip, point->tangent, held) + 0.0f;
+    const Lanes overshoot = lanes_choose(share, -share, against);
+    return lanes_max(lanes_choose((Lanes){0}, overshoot, slides), (Lanes){0});
+}
+
+/* Some pairs in a row, those behind the last as the first of them. */
+static inline SweepLevel pairs_from(const Sweeps *sweeps, int first) {
+    SweepLevel at;
+    for (int lane = 0; lane < LANES; lane++) {
+        const int i = first + lane < sweeps->pair_count ? first + lane : first;
+        at.pair[lane] = i * PAIR_FLOATS;
+        at.a[lane] = sweep_body_at(sweeps->ends[i].a) * BODY_FLOATS;
+        at.b[lane] = sweep_body_at(sweeps->ends[i].b) * BODY_FLOATS;
+    }
+    return at;
+}
+
+static inline void store_from(const Sweeps *sweeps, int first, Lanes values, float *to) {
+    for (int lane = 0; lane < LANES && first + lane < sweeps->pair_count; lane++) to[first + lane] = values[lane];
+}
+
+void sweeps_residuals_in_lanes(const Sweeps *sweeps, float *squared) {
+    for (int first = 0; first < sweeps->pair_count; first += LANES) {
+        const SweepLevel at = pairs_from(sweeps, first);
+        const LanePair pair = load_pair_lanes(sweeps, &at);
+        const Lanes second = squared_of_visit(&pair, &pair.points[1]);
+        const Lanes sum =
+            squared_of_visit(&pair, &pair.points[0]) + lanes_choose((Lanes){0}, second, pair.points[1].masses[3]);
+        store_from(sweeps, first, sum, squared);
+    }
+}
+
+static inline bool any_may_overshoot(const Sweeps *sweeps, int first) {
+    bool may = false;
+    for (int i = first; i < first + LANES && i < sweeps->pair_count; i++)
+        may |= sweep_pair_may_overshoot(&sweeps->pairs[i]);
+    return may;
+}
+
+void sweeps_overshoots_in_lanes(const Sweeps *sweeps, float *overshoot) {
+    for (int first = 0; first < sweeps->pair_count; first += LANES) {
+        Lanes most = {0};
+        if (any_may_overshoot(sweeps, first)) {
+            const SweepLevel at = pairs_from(sweeps, first);
+            const LanePair pair = load_pair_lanes(sweeps, &at);
+            const Lanes second = overshoot_of_point(&pair, &pair.points[1]);
+            most = lanes_max(lanes_choose((Lanes){0}, second, pair.points[1].masses[3]),
+                             overshoot_of_point(&pair, &pair.points[0]));
+            most = lanes_choose(most, (Lanes){0}, pair.surface.friction - SWEEP_SLIPPERY);
+        }
+        store_from(sweeps, first, most, overshoot);
+    }
+}
+
+void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
+    if (factors != NULL)
+        run_levels_extrapolating(sweeps, schedule, factors);
+    else
+        run_levels(sweeps, schedule);
+}
+
+bool sweeps_have_lanes(void) {
+#ifdef TWINBOX_AVX
+    return __builtin_cpu_supports("avx2");
+#else
+    return true;
+#endif
+}
