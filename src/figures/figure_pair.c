@@ -53,7 +53,7 @@ static const double side_by_side = 130; /* mm; from this width on, both halves f
 enum { SHOWS_NOTHING, SHOWS_SOMETHING, SHOWS_BOMB, SHOWS_ALL };
 
 static Box box_of(const Trajectory *run, int frame, int body) {
-    size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    size_t i = trajectory_at(run, frame, body);
     return box_make(run->position[i], run->size[body], run->angle[i]);
 }
 

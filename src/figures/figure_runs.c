@@ -64,7 +64,7 @@ static bool draw_moments(Strobe *strobe, Sketch *sketch, Error *error) {
 static bool find_bomb(const Strobe *strobe, const View *view, int frame, Point *at) {
     const Trajectory *run = strobe->run;
     if (!trajectory_has(run, frame, run->bomb)) return false;
-    *at = view_place(view, run->position[(size_t)frame * (size_t)run->bodies + (size_t)run->bomb]);
+    *at = view_place(view, run->position[trajectory_at(run, frame, run->bomb)]);
     return at->x > view->low.x && at->x < view->high.x && at->y > view->low.y && at->y < view->high.y;
 }
 

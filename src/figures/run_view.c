@@ -261,7 +261,7 @@ void run_window_fill(WorldWindow *window, double shape) {
 
 bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window) {
     if (!trajectory_has(run, frame, body)) return false;
-    const Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
+    const Vec2 at = run->position[trajectory_at(run, frame, body)];
     const double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
     return !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
 }

@@ -316,7 +316,7 @@ static void draw_velocities(const Picture *picture, int panel, int run, Moment m
     moment = pose_moment(trajectory, moment);
     for (int body = 0; body < trajectory->bodies; body++) {
         if (trajectory->fixed[body] || !trajectory_has(trajectory, moment.frame, body)) continue;
-        Vec2 v = trajectory->velocity[(size_t)moment.frame * (size_t)trajectory->bodies + (size_t)body];
+        Vec2 v = trajectory->velocity[trajectory_at(trajectory, moment.frame, body)];
         double x = (double)v.x, y = (double)v.y;
         if (!(x * x + y * y > MIN_SPEED * MIN_SPEED)) continue;
         Pose pose = pose_at(trajectory, moment, body);

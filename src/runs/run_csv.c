@@ -394,7 +394,7 @@ static bool has_dynamic(const Trajectory *run, int frame) {
 
 /* A static body is written once, as readers keep it where it is, and where it is alone: each frame has a row. */
 static bool is_shown(const Trajectory *run, int frame, int body, bool alone) {
-    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body, before = i - (size_t)run->bodies;
+    const size_t i = trajectory_at(run, frame, body), before = i - (size_t)run->bodies;
     if (!trajectory_has(run, frame, body)) return false;
     return !run->fixed[body] || alone || frame == 0 || !trajectory_has(run, frame - 1, body) ||
            memcmp(&run->position[i], &run->position[before], sizeof(Vec2)) != 0 ||
@@ -404,7 +404,7 @@ static bool is_shown(const Trajectory *run, int frame, int body, bool alone) {
 }
 
 static void print_row(FILE *out, const Trajectory *run, int frame, int body) {
-    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    const size_t i = trajectory_at(run, frame, body);
     const Vec2 position = run->position[i], velocity = run->velocity[i];
     fprintf(out, "%d,%d,%.9g,%.9g,%.9g", frame, body, (double)position.x, (double)position.y, (double)run->angle[i]);
     if (!run->no_velocities)

@@ -52,7 +52,7 @@ static void put_bodies(JsonWriter *json, const Trajectory *run) {
 
 /* [x, y, angle, vx, vy, omega] */
 static void put_state(JsonWriter *json, const Trajectory *run, int frame, int body) {
-    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    const size_t i = trajectory_at(run, frame, body);
     if (!trajectory_has(run, frame, body)) {
         json_put_text(json, NULL, NULL);
         return;

@@ -24,7 +24,7 @@ static bool run_import_stays(const CsvImport *import, int body) {
 
 static void carry_on(Trajectory *run, int body) {
     for (int frame = 1; frame < run->frames; frame++) {
-        const size_t i = csv_import_place(run, frame, body), before = csv_import_place(run, frame - 1, body);
+        const size_t i = trajectory_at(run, frame, body), before = trajectory_at(run, frame - 1, body);
         if (trajectory_has(run, frame, body)) continue;
         run->position[i] = run->position[before];
         run->angle[i] = run->angle[before];
@@ -207,7 +207,7 @@ static bool check_time(const CsvImport *import, const CsvRow *row, Error *error)
 
 static void set_state(CsvImport *import, const CsvRow *row, int body) {
     Trajectory *run = import->run;
-    const size_t i = csv_import_place(run, row->frame - import->first, body);
+    const size_t i = trajectory_at(run, row->frame - import->first, body);
     const float *state = row->state;
     const bool degrees = import->options->degrees;
     const double unit = acos(-1) / 180;

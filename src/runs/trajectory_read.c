@@ -78,7 +78,7 @@ static bool check_presence(const Trajectory *t, int frame, int body, const char 
 
 /* Finite numbers if the body exists, else NaN. */
 static bool check_pose(const Trajectory *t, int frame, int body, const char *path, Error *error) {
-    size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
+    size_t i = trajectory_at(t, frame, body);
     const float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
                            t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
     const int count = t->no_velocities ? 3 : 6;
@@ -399,7 +399,7 @@ static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *err
 
 static bool never_moves(const Trajectory *t, int body) {
     for (int frame = 0; frame < t->frames; frame++) {
-        size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body, first = (size_t)body;
+        size_t i = trajectory_at(t, frame, body), first = (size_t)body;
         if (!trajectory_has(t, frame, body) || memcmp(&t->position[i], &t->position[first], sizeof(Vec2)) != 0 ||
             memcmp(&t->angle[i], &t->angle[first], sizeof(float)) != 0)
             return false;
