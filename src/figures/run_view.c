@@ -337,10 +337,7 @@ void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low) {
 
 WrappedText wrap_text(double points, double width, const char *format, ...) {
     WrappedText wrapped = {.points = points};
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(wrapped.text, sizeof wrapped.text, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(wrapped.text, sizeof wrapped.text, format);
     wrapped.lines = text_wrap(wrapped.text, sizeof wrapped.text, points, width);
     return wrapped;
 }

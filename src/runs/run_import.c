@@ -52,11 +52,8 @@ static bool check_body(CsvImport *import, int body, Error *error) {
 }
 
 PRINTF_LIKE(2, 3) static void add_note(CsvRunNotes *notes, const char *format, ...) {
-    va_list arguments;
     if (notes->count == CSV_RUN_NOTES_MAX) return;
-    va_start(arguments, format);
-    vsnprintf(notes->lines[notes->count++], CSV_RUN_NOTE_SIZE, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(notes->lines[notes->count++], CSV_RUN_NOTE_SIZE, format);
 }
 
 static void note_static(const CsvImport *import) {
