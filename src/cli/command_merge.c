@@ -54,8 +54,7 @@ static const Command *find_command(const StudyRecord *record, const char *path, 
     for (size_t i = 0; i < sizeof mergeable / sizeof *mergeable; i++) known = known || strcmp(name, mergeable[i]) == 0;
     for (const Command *command = commands; known && command->name != NULL; command++)
         if (strcmp(command->name, name) == 0) return command;
-    error_input(error, path, "'%s' is not a command that has shards", record->command.argv[0]);
-    return NULL;
+    return error_input(error, path, "'%s' is not a command that has shards", record->command.argv[0]), NULL;
 }
 
 /* run.json of an output. */

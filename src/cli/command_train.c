@@ -271,8 +271,7 @@ static const TrainKind *find_kind(const char *name, Error *error) {
     for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++)
         if (strcmp((*kind)->name, name) == 0) return *kind;
     const NameList known = name_kinds(NULL);
-    error_unknown(error, "--kind", name, "a kind", &known);
-    return NULL;
+    return error_unknown(error, "--kind", name, "a kind", &known), NULL;
 }
 
 static bool make_request(const Options *options, TrainRequest *request, Error *error) {

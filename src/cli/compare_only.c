@@ -29,10 +29,7 @@ bool compare_runs(const CompareOptions *options, Error *error) {
 }
 
 /* So that a folder's .npz files are counted as not compared (regression/comparison_words.c). */
-Trajectory *trajectory_read(const char *path, Error *error) {
-    error_input(error, path, "%s", only);
-    return NULL;
-}
+Trajectory *trajectory_read(const char *path, Error *error) { return error_input(error, path, "%s", only), NULL; }
 
 bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
                      TrajectoryParting *parting, Error *error) {

@@ -100,10 +100,7 @@ static bool set_up(Renderer *renderer, const RenderOptions *options, Error *erro
 
 Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {
     Renderer *renderer = calloc(1, sizeof *renderer);
-    if (renderer == NULL) {
-        error_memory(error, "render");
-        return NULL;
-    }
+    if (renderer == NULL) return error_memory(error, "render"), NULL;
     renderer->picture = *picture;
     if (set_up(renderer, options, error)) return renderer;
     renderer_destroy(renderer);
@@ -187,10 +184,7 @@ static bool still_set_up(Still *still, int width, int height, Error *error) {
 
 Still *still_create(int width, int height, Error *error) {
     Still *still = calloc(1, sizeof *still);
-    if (still == NULL) {
-        error_memory(error, "render");
-        return NULL;
-    }
+    if (still == NULL) return error_memory(error, "render"), NULL;
     if (still_set_up(still, width, height, error)) return still;
     still_destroy(still);
     return NULL;
