@@ -91,18 +91,25 @@ typedef struct Result {
     Score scores[MAX_METHODS + 1]; /* of the impulses behind the methods */
 } Result;
 
+/* Of what a method, or a table of impulses, has made of the problem. */
+static bool score_solution(const Result *result, const ContactSolution *solution, Score *score, Error *error) {
+    const ContactProblem *problem = &result->stored->problem;
+    Reference work = {0};
+    const bool ok = reference_residual(&work, problem, solution->impulses, &score->residual, error);
+    if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
+    if (ok) score->criteria = contact_criteria(problem, solution, true);
+    reference_free(&work);
+    return ok;
+}
+
 static bool solve_score(const Result *result, const Method *method, ContactSolution *solution, Score *score,
                         Error *error) {
     const Scene scene = {.iterations = 10, .accumulate_impulses = true};
     const ContactProblem *problem = &result->stored->problem;
     ContactSolver solver;
-    Reference work = {0};
     if (!method_create_solver(method, &scene, &solver, error)) return false;
-    bool ok = solver.kind->solve(solver.state, problem, solution, error) &&
-              reference_residual(&work, problem, solution->impulses, &score->residual, error);
-    if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
-    if (ok) score->criteria = contact_criteria(problem, solution, true);
-    reference_free(&work);
+    const bool ok =
+        solver.kind->solve(solver.state, problem, solution, error) && score_solution(result, solution, score, error);
     solver.kind->destroy(solver.state);
     return ok;
 }
@@ -137,15 +144,10 @@ static bool apply_table(const CsvTable *table, const ContactProblem *problem, Co
 }
 
 static bool score_impulses(const Result *result, ContactSolution *solution, Score *score, Error *error) {
-    const ContactProblem *problem = &result->stored->problem;
     CsvTable table;
-    Reference work = {0};
     if (!csv_table_read(&table, result->impulses, &impulse_layout, error)) return false;
-    const bool ok = apply_table(&table, problem, solution, error) &&
-                    reference_residual(&work, problem, solution->impulses, &score->residual, error);
-    if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
-    if (ok) score->criteria = contact_criteria(problem, solution, true);
-    reference_free(&work);
+    const bool ok = apply_table(&table, &result->stored->problem, solution, error) &&
+                    score_solution(result, solution, score, error);
     csv_table_free(&table);
     return ok;
 }

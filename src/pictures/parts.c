@@ -15,8 +15,7 @@
 
 /* A box of the given width and height in pixels, not rotated, at (0, 0). */
 static Shape styled_box(const Picture *picture, double width, double height, const BodyColors *colors) {
-    Rect panel = picture->layout.panels[0];
-    double side = fmin(width, height), limit = fmin(panel.right - panel.left, panel.bottom - panel.top);
+    double side = fmin(width, height), limit = panel_side(picture);
     double outline = fmin(fmax(OUTLINE * side, MIN_OUTLINE), fmax(MAX_OUTLINE * limit, MIN_OUTLINE));
     return (Shape){.half_width = width / 2,
                    .half_height = height / 2,

@@ -15,11 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void renderer_append(char *text, size_t size, const char *part) {
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "%s%s", used == 0 ? "" : " | ", part);
-}
-
 static void renderer_add(FrameTexts *texts, const char *key, const char *value) {
     texts->entries[texts->count++] = (ImageText){key, value};
 }
@@ -33,11 +28,9 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) 
     texts->count = 0;
     for (int i = 0; i < picture->count; i++) {
         const Trajectory *run = picture->runs[i];
-        char hash[20];
-        int shown = picture_run_frame(picture, i, moment.frame);
-        snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, shown));
-        renderer_append(texts->methods, sizeof texts->methods, run->method);
-        renderer_append(texts->states, sizeof texts->states, hash);
+        const int shown = picture_run_frame(picture, i, moment.frame);
+        text_join(texts->methods, sizeof texts->methods, " | ", "%s", run->method);
+        text_join(texts->states, sizeof texts->states, " | ", "%016" PRIx64, trajectory_frame_hash(run, shown));
     }
     snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
     frame_part_text(texts->part, sizeof texts->part, moment);
