@@ -23,8 +23,7 @@ static const char *const times_names[] = {"equal", "first", NULL};
 
 static const Option option_table[] = {{"--times", 0, "KIND",
                                        "Times measured on processors of different models: equal, which refuses them "
-                                       "(default), or first, which leaves empty "
-                                       "those of other models than the first",
+                                       "(default), or first, which leaves empty those of other models than the first",
                                        OPTION_ENUM(Options, times, times_names)},
                                       {0}};
 

@@ -73,8 +73,7 @@ static const Option pair_net_options[] = {
     {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(TrainPairNetOptions, training.seed), .standard = "1"},
     {"--from", 0, "NET.npz",
      "Continue from the weights of this network, such as one cut short by Ctrl-C. If NET.npz of -o has a smaller "
-     "held-out "
-     "error than the result, it is kept (exit status 1)",
+     "held-out error than the result, it is kept (exit status 1)",
      OPTION_PATH(TrainPairNetOptions, from)},
     {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
      OPTION_TEXT(TrainPairNetOptions, training.hidden)},
