@@ -36,7 +36,7 @@ typedef struct Error {
 
 #define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
 
-/* In such a function: prints what it was given into text[size]. Its source includes stdarg.h and stdio.h. */
+/* In such a function: prints what it was given into text[size], with va_list and vsnprintf(). */
 #define PRINT_ARGUMENTS(text, size, format)            \
     do {                                               \
         va_list arguments_;                            \
