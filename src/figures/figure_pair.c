@@ -121,10 +121,7 @@ static bool figure_pair_choose(const FigureSpec *spec, Collision *collision, Err
     int frames[FIGURE_MOMENTS_MAX], count, first = 1, end = run->frames;
     if (spec->time_count > 1)
         return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
-    for (int i = 0; i < 2; i++)
-        if (spec->bodies[i] >= run->bodies)
-            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
-                               run->bodies);
+    if (!run_check_bodies(spec, error)) return false;
     if (spec->time_count > 0) {
         if (!run_frames(spec, 1, 1, frames, &count, error)) return false;
         first = frames[0] + 1, end = first + 1;

@@ -231,6 +231,14 @@ bool run_check_worlds(const FigureSpec *spec, Error *error) {
     return true;
 }
 
+bool run_check_bodies(const FigureSpec *spec, Error *error) {
+    for (int i = 0; i < spec->body_count; i++)
+        if (spec->bodies[i] >= spec->runs[0]->bodies)
+            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
+                               spec->runs[0]->bodies);
+    return true;
+}
+
 static WorldWindow window_of_view(const CameraView *view) {
     return (WorldWindow){view->x - view->width / 2, view->y - view->height / 2, view->width, view->height};
 }
