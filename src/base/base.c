@@ -91,29 +91,20 @@ void trace_listen(TraceListener *listener) { heard_by = listener; }
 
 void trace_line(const char *format, ...) {
     char line[1001];
-    va_list arguments;
     if (heard_by == NULL) return;
-    va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(line, sizeof line, format);
     heard_by(line);
 }
 
 void text_add(char *text, size_t size, const char *format, ...) {
     size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(text + used, size - used, format);
 }
 
 void text_join(char *text, size_t size, const char *between, const char *format, ...) {
-    va_list arguments;
     if (text[0] != '\0') text_add(text, size, "%s", between);
     const size_t used = strlen(text);
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(text + used, size - used, format);
 }
 
 /* A character as it is shown. */

@@ -36,6 +36,15 @@ typedef struct Error {
 
 #define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
 
+/* In such a function: prints what it was given into text[size], with va_list and vsnprintf(). */
+#define PRINT_ARGUMENTS(text, size, format)            \
+    do {                                               \
+        va_list arguments_;                            \
+        va_start(arguments_, format);                  \
+        vsnprintf((text), (size), format, arguments_); \
+        va_end(arguments_);                            \
+    } while (0)
+
 /* Bad usage or input. The message becomes "where: error: text"; where names a file, `file:line:column` or an option.
    The text may have further lines (an excerpt of the file with a caret). */
 bool error_input(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);

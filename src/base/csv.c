@@ -9,21 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-PRINTF_LIKE(5, 0)
-static bool set_error(const char *path, int line, int column, Error *error, const char *format, va_list arguments) {
+bool csv_fail(const char *path, int line, int column, Error *error, const char *format, ...) {
     char where[1280], what[512];
     const int used = snprintf(where, sizeof where, "%.1200s:%d", path, line);
     if (column > 0) snprintf(where + used, sizeof where - (size_t)used, ":%d", column);
-    vsnprintf(what, sizeof what, format, arguments);
+    PRINT_ARGUMENTS(what, sizeof what, format);
     return error_input(error, where, "%s", what);
-}
-
-bool csv_fail(const char *path, int line, int column, Error *error, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set_error(path, line, column, error, format, arguments);
-    va_end(arguments);
-    return false;
 }
 
 /* UTF-8: the bytes after a character's first do not count. */
@@ -158,11 +149,9 @@ static const CsvField *field_at(const Csv *csv, int row, int field) {
 const char *csv_text(const Csv *csv, int row, int field) { return field_at(csv, row, field)->text; }
 
 bool csv_error(const Csv *csv, int row, int field, Error *error, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set_error(csv->path, row + 1, field_at(csv, row, field)->column, error, format, arguments);
-    va_end(arguments);
-    return false;
+    char what[512];
+    PRINT_ARGUMENTS(what, sizeof what, format);
+    return csv_fail(csv->path, row + 1, field_at(csv, row, field)->column, error, "%s", what);
 }
 
 CsvShown csv_show(const char *text) {

@@ -349,10 +349,7 @@ void csv_table_free(CsvTable *table) {
 
 bool csv_table_error(const CsvTable *table, int row, int column, Error *error, const char *format, ...) {
     char what[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(what, sizeof what, format);
     const int field = table->fields[column];
     return csv_error(&table->csv, row + 1, field < 0 ? 0 : field, error, "%s", what);
 }

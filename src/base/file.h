@@ -5,6 +5,7 @@
 
 #include <limits.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <sys/types.h>
 
 /* Reading and writing whole files. */
@@ -151,6 +152,9 @@ bool standard_output_is_reserved(void);
 
 /* The descriptor of the file "-". */
 int standard_output(void);
+
+/* Whether standard output is the file of this status: /dev/stdout may be a regular file. */
+bool standard_output_is(const struct stat *status);
 
 /* Files that get their name when they are whole. Before, they have none where the file system can do that; otherwise, and
    for the moment in which one replaces a file, the name is `.twinbox-MACHINE-PID-....tmp` and the file is locked by flock():

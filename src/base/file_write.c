@@ -114,7 +114,7 @@ static bool file_write_replace(int at, const char *path, const Contents *content
     return place_new(at, path, contents, wait, temporary_rename) && (!wait || sync_folder(at, path));
 }
 
-static bool is_standard_output(const struct stat *status) {
+bool standard_output_is(const struct stat *status) {
     struct stat output;
     return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
 }
@@ -130,7 +130,7 @@ static bool file_write_put(const char *path, const Contents *contents, bool wait
     if (lstat(path, &status) != 0) return errno == ENOENT && file_write_replace(AT_FDCWD, path, contents, wait);
     bool is_link = S_ISLNK(status.st_mode);
     if (is_link && stat(path, &status) != 0) return false;
-    if (is_standard_output(&status)) return write_into(dup(STDOUT_FILENO), contents);
+    if (standard_output_is(&status)) return write_into(dup(STDOUT_FILENO), contents);
     if (!S_ISREG(status.st_mode)) return write_into(open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC), contents);
     if (!is_link) return file_write_replace(AT_FDCWD, path, contents, wait);
     char target[PATH_MAX];
@@ -187,7 +187,7 @@ bool file_sync(const char *path, Error *error) {
 static bool draft_place(const char *path, char place[PATH_MAX]) {
     struct stat status;
     if (path_is_standard(path) ||
-        (stat(path, &status) == 0 && (!S_ISREG(status.st_mode) || is_standard_output(&status))))
+        (stat(path, &status) == 0 && (!S_ISREG(status.st_mode) || standard_output_is(&status))))
         return snprintf(place, PATH_MAX, "%s/draft", temporary_files_folder()) < PATH_MAX;
     return realpath(path, place) != NULL || snprintf(place, PATH_MAX, "%s", path) < PATH_MAX;
 }

@@ -54,10 +54,7 @@ static bool json_load(JsonMemory *memory, const char *text, size_t size, json_t 
 
 bool json_read_error(const JsonReader *reader, Error *error, const char *format, ...) {
     char text[1024], where[PATH_MAX];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(text, sizeof text, format);
     snprintf(where, sizeof where, "%s:%d:%d", reader->path, reader->value_line, reader->value_column);
     return error_input(error, where, "%s", text);
 }

@@ -298,10 +298,7 @@ void process_kill(Process *process) {
 
 static bool talk_failed(Talk *talk, const char *format, ...) PRINTF_LIKE(2, 3);
 static bool talk_failed(Talk *talk, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(talk->why, sizeof talk->why, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(talk->why, sizeof talk->why, format);
     return false;
 }
 

@@ -77,10 +77,7 @@ void npy_write_head(NpyHead *head, char text[NPY_HEAD_MAX]) {
 }
 
 PRINTF_LIKE(2, 3) static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(reason, NPY_REASON_SIZE, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(reason, NPY_REASON_SIZE, format);
     return false;
 }
 

@@ -135,15 +135,9 @@ static bool is_convertible(const NpyHead *head, NpzType type, int rank) {
 
 static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {
     const StoredArray *array = npz_find(file, name);
-    if (array == NULL) {
-        error_input(error, file->path, "has no array '%s'", name);
-        return NULL;
-    }
+    if (array == NULL) return error_input(error, file->path, "has no array '%s'", name), NULL;
     const NpyHead *head = &array->head;
-    if (head->is_foreign) {
-        error_input(error, file->path, "'%s' is %s", name, array->reason);
-        return NULL;
-    }
+    if (head->is_foreign) return error_input(error, file->path, "'%s' is %s", name, array->reason), NULL;
     if (is_stored_as(head, type, rank) || (file->converts && is_convertible(head, type, rank))) return array;
     error_input(error, file->path, "array '%s' is %s of %d dimensions%s%s; expected %s of %d", name,
                 npy_type_name(head->type), head->rank, head->big_endian ? ", big-endian" : "",
@@ -178,10 +172,7 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
     uint64_t size = array->head.data_size;
     if (!spend(file, size, error)) return NULL;
     char *data = malloc(size > 0 ? size : 1);
-    if (data == NULL) {
-        error_memory(error, file->path);
-        return NULL;
-    }
+    if (data == NULL) return error_memory(error, file->path), NULL;
     const bool done =
         npz_archive_read(file->archive, array - file->arrays, array->name, array->head.head_size, data, size, error);
     if (done && array->head.big_endian) npy_swap(&array->head, data);

@@ -303,10 +303,7 @@ static void column_free(Column *column) {
 
 NpzStream *npz_stream_create(const char *path, int most, Error *error) {
     NpzStream *stream = calloc(1, sizeof *stream + (size_t)most * sizeof *stream->columns + strlen(path) + 1);
-    if (stream == NULL) {
-        error_memory(error, path);
-        return NULL;
-    }
+    if (stream == NULL) return error_memory(error, path), NULL;
     stream->most = most;
     stream->zip.path = strcpy((char *)&stream->columns[most], path);
     stream->zip.draft = file_draft(path, error);

@@ -120,10 +120,7 @@ static Excerpt excerpt_line(const Source *source, size_t start, int column) {
 
 bool source_error(const Source *source, Place place, Error *error, const char *format, ...) {
     char what[512], where[1280], number[16];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(what, sizeof what, format);
 
     size_t start = find_place(source, &place);
     Excerpt excerpt = excerpt_line(source, start, place.column);
@@ -157,10 +154,7 @@ YamlShown yaml_show(const YamlTree *tree, int node) {
 
 bool yaml_error(const YamlTree *tree, int node, Error *error, const char *format, ...) {
     char what[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(what, sizeof what, format);
     return source_error(&tree->source, tree->nodes[node].place, error, "%s", what);
 }
 
@@ -169,10 +163,7 @@ bool yaml_error_at(const YamlTree *tree, int node, size_t byte, Error *error, co
     char what[512];
     const char *text = yaml_text(tree, node);
     Place place = tree->nodes[node].place;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(what, sizeof what, format);
     const size_t at = source_offset(&tree->source, place);
     if (byte <= tree->source.size - at && memcmp(tree->source.text + at, text, byte) == 0)
         for (size_t i = 0; i < byte; i += character_length(&tree->source, at + i)) place.column++;

@@ -11,6 +11,7 @@
 #include "scenes/scenes.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 enum { LIMITS = 3, FAILURE_SIZE = 160 };
@@ -54,10 +55,7 @@ void judged_run_free(JudgedRun *judged) {
 }
 
 PRINTF_LIKE(2, 3) static void fail(CheckedRun *checked, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(checked->failures[checked->failed++], FAILURE_SIZE, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(checked->failures[checked->failed++], FAILURE_SIZE, format);
 }
 
 /* NaN is no limit. */

@@ -14,8 +14,7 @@ typedef struct Options {
 
 static const Option option_table[] = {
     {"--expected", 0, "DIR",
-     "The folder to change (default: the one that the report names, which must be "
-     "below the current directory)",
+     "The folder to change (default: the one that the report names, which must be below the current directory)",
      OPTION_TEXT(Options, expected)},
     {"--only", 0, "GLOB", "Only files whose names match, such as 'stack_*' (default: all that failed)",
      OPTION_TEXT(Options, only)},
@@ -31,12 +30,10 @@ static const CommandSpec spec = {
     .help =
         "Accept the changes that a report of twinbox compare (--report REPORT) shows: actual files replace the "
         "expected files that failed, and new files are added. Nothing is changed if a selected file has changed since "
-        "the "
-        "report was written, or if expected files have no actual one and neither --partial nor --remove tells what "
-        "becomes of them. Of several accepted pictures, that in the report is "
-        "replaced. "
-        "Run it in the folder in which compare ran; a folder outside of it changes only with --expected. Exit status "
-        "1: failures that the report does not show remain.\v"
+        "the report was written, or if expected files have no actual one and neither --partial nor --remove tells "
+        "what becomes of them. Of several accepted pictures, that in the report is replaced. Run it in the folder in "
+        "which compare ran; a folder outside of it changes only with --expected. Exit status 1: failures that the "
+        "report does not show remain.\v"
         "Example: twinbox render stack --method engine -o expected --frames 30:40\n"
         "         twinbox render stack --method momentum -o actual --frames 30:40\n"
         "         twinbox compare expected actual --report out/report\n"

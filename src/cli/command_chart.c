@@ -210,8 +210,7 @@ static const Option option_table[] = {
      OPTION_METHOD(Options, study.methods)},
     {"--launches", 0, "N|FILE.csv",
      "Launches to score on: N held-out launches of the scene's family (default: 40, fewer above 110 bodies), or a "
-     "table with any of the "
-     "columns x,rotation,spin,mass,frame",
+     "table with any of the columns x,rotation,spin,mass,frame",
      OPTION_READ(read_launches, Options, study.launches)},
     {"--bomb-x", 0, "A:B:STEP", "Launches to score on: x from A to B in steps of STEP, m",
      OPTION_RANGE(Options, study.launches.bomb_x)},

@@ -81,8 +81,7 @@ static const Option option_table[] = {
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
     {"--report", 0, "DIR",
      "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs; of "
-     "two "
-     "runs, run.html",
+     "two runs, run.html",
      OPTION_TEXT(CompareOptions, report)},
     {"--report-size", 0, "MB",
      "Most that the pictures in the report may take, and as much for its pages of runs (default: 64)",

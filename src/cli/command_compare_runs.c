@@ -93,8 +93,7 @@ static void print_cause(FILE *out, const TrajectoryParting *parting) {
         if (parting->no_impulses) {
             fprintf(out,
                     "cause: not the contacts\n  all states of frame %d are equal, and body %d has no contact in step "
-                    "%d: it was "
-                    "moved differently\n",
+                    "%d: it was moved differently\n",
                     frame - 1, parting->first.body, frame);
             return;
         }
@@ -107,8 +106,7 @@ static void print_cause(FILE *out, const TrajectoryParting *parting) {
     case PART_UNKNOWN:
         fprintf(out,
                 "cause: unknown, as a run has no impulses: the solver, its warm start or another kind of step\n  all "
-                "states of "
-                "frame %d are equal; body %d has %d contact%s in step %d\n",
+                "states of frame %d are equal; body %d has %d contact%s in step %d\n",
                 frame - 1, parting->first.body, contacts->count_a, plural(contacts->count_a), frame);
         return;
     }

@@ -23,8 +23,7 @@ static const char *const times_names[] = {"equal", "first", NULL};
 
 static const Option option_table[] = {{"--times", 0, "KIND",
                                        "Times measured on processors of different models: equal, which refuses them "
-                                       "(default), or first, which leaves empty "
-                                       "those of other models than the first",
+                                       "(default), or first, which leaves empty those of other models than the first",
                                        OPTION_ENUM(Options, times, times_names)},
                                       {0}};
 
@@ -54,8 +53,7 @@ static const Command *find_command(const StudyRecord *record, const char *path, 
     for (size_t i = 0; i < sizeof mergeable / sizeof *mergeable; i++) known = known || strcmp(name, mergeable[i]) == 0;
     for (const Command *command = commands; known && command->name != NULL; command++)
         if (strcmp(command->name, name) == 0) return command;
-    error_input(error, path, "'%s' is not a command that has shards", record->command.argv[0]);
-    return NULL;
+    return error_input(error, path, "'%s' is not a command that has shards", record->command.argv[0]), NULL;
 }
 
 /* run.json of an output. */

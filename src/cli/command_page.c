@@ -113,10 +113,8 @@ static const char *find_scene(const Options *options, Error *error) {
     const char *scene = NULL;
     for (int i = 0; i < options->input_count; i++) {
         if (file_name_ends_with(options->inputs[i], ".npz")) continue;
-        if (scene != NULL) {
-            error_input(error, "--live", "needs one scene (got %s and %s)", scene, options->inputs[i]);
-            return NULL;
-        }
+        if (scene != NULL)
+            return error_input(error, "--live", "needs one scene (got %s and %s)", scene, options->inputs[i]), NULL;
         scene = options->inputs[i];
     }
     if (scene == NULL) error_input(error, "--live", "needs a scene (.yaml)");

@@ -61,16 +61,15 @@ static const CommandSpec spec = {
     .inputs = {1, 1, "input"},
     .help =
         "Solve the contact problem of one step with each method, or score impulses from elsewhere: the bodies with "
-        "their velocities before any impulse, "
-        "and the contacts. The step is one of a scene (--frame), or was written by -o before. Methods are scored "
-        "against the converged solution: RMS error of the "
-        "bodies' velocities (m/s, spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of "
-        "the change made by the contacts), and the residual of the method's impulses: the largest change of a "
-        "contact's velocity by one more sweep (m/s; a method without impulses counts as impulses of 0). Then the laws "
-        "of contact, each 0 where it is kept: Signorini (largest gap velocity times impulse, J), the friction cone "
-        "(largest distance of an impulse from it, N s), dissipation (largest energy that friction failed to take, J); "
-        "nan: the method has no impulses. Last, to compare with the method reference: the deepest penetration that the "
-        "step leads to (m), and the kinetic energy that contacts add (J; negative: take).\v"
+        "their velocities before any impulse, and the contacts. The step is one of a scene (--frame), or was written "
+        "by -o before. Methods are scored against the converged solution: RMS error of the bodies' velocities (m/s, "
+        "spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of the change made by the "
+        "contacts), and the residual of the method's impulses: the largest change of a contact's velocity by one more "
+        "sweep (m/s; a method without impulses counts as impulses of 0). Then the laws of contact, each 0 where it is "
+        "kept: Signorini (largest gap velocity times impulse, J), the friction cone (largest distance of an impulse "
+        "from it, N s), dissipation (largest energy that friction failed to take, J); nan: the method has no "
+        "impulses. Last, to compare with the method reference: the deepest penetration that the step leads to (m), "
+        "and the kinetic energy that contacts add (J; negative: take).\v"
         "Example: twinbox solve stack --frame 41 -m engine:k=10 -m engine:k=100\n"
         "         twinbox solve stack --frame 41 -o impact.npz\n"
         "         twinbox solve impact.npz --method momentum:k=20\n"
@@ -91,18 +90,25 @@ typedef struct Result {
     Score scores[MAX_METHODS + 1]; /* of the impulses behind the methods */
 } Result;
 
+/* Of what a method, or a table of impulses, has made of the problem. */
+static bool score_solution(const Result *result, const ContactSolution *solution, Score *score, Error *error) {
+    const ContactProblem *problem = &result->stored->problem;
+    Reference work = {0};
+    const bool ok = reference_residual(&work, problem, solution->impulses, &score->residual, error);
+    if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
+    if (ok) score->criteria = contact_criteria(problem, solution, true);
+    reference_free(&work);
+    return ok;
+}
+
 static bool solve_score(const Result *result, const Method *method, ContactSolution *solution, Score *score,
                         Error *error) {
     const Scene scene = {.iterations = 10, .accumulate_impulses = true};
     const ContactProblem *problem = &result->stored->problem;
     ContactSolver solver;
-    Reference work = {0};
     if (!method_create_solver(method, &scene, &solver, error)) return false;
-    bool ok = solver.kind->solve(solver.state, problem, solution, error) &&
-              reference_residual(&work, problem, solution->impulses, &score->residual, error);
-    if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
-    if (ok) score->criteria = contact_criteria(problem, solution, true);
-    reference_free(&work);
+    const bool ok =
+        solver.kind->solve(solver.state, problem, solution, error) && score_solution(result, solution, score, error);
     solver.kind->destroy(solver.state);
     return ok;
 }
@@ -137,15 +143,10 @@ static bool apply_table(const CsvTable *table, const ContactProblem *problem, Co
 }
 
 static bool score_impulses(const Result *result, ContactSolution *solution, Score *score, Error *error) {
-    const ContactProblem *problem = &result->stored->problem;
     CsvTable table;
-    Reference work = {0};
     if (!csv_table_read(&table, result->impulses, &impulse_layout, error)) return false;
-    const bool ok = apply_table(&table, problem, solution, error) &&
-                    reference_residual(&work, problem, solution->impulses, &score->residual, error);
-    if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
-    if (ok) score->criteria = contact_criteria(problem, solution, true);
-    reference_free(&work);
+    const bool ok = apply_table(&table, &result->stored->problem, solution, error) &&
+                    score_solution(result, solution, score, error);
     csv_table_free(&table);
     return ok;
 }

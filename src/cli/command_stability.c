@@ -164,8 +164,7 @@ static const Option option_table[] = {
      OPTION_METHOD(Options, study.methods)},
     {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
      "Vary a parameter of SCENE, by default between its bounds, or what every scene has: iterations, dt, friction, "
-     "bomb_x, bomb_y, "
-     "bomb_mass, bomb_speed; with STEP at every such value, up to 128; two of them also give their map",
+     "bomb_x, bomb_y, bomb_mass, bomb_speed; with STEP at every such value, up to 128; two of them also give their map",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
      OPTION_TEXTS(Options, study.names, study.name_count), .names = study_names},
@@ -187,17 +186,15 @@ static const CommandSpec spec = {
     .input = {.value = "[SCENE]", OPTION_PATH(Options, scene)},
     .inputs = {0, 1, "scene"},
     .help =
-        "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, ...): "
-        "every border between holding and failing, and how it fails there. Over two parameters: maps. A run holds if "
-        "it settles, moves or creeps; where a bomb or a moving body strikes, if as many boxes fall as in the converged "
-        "run: none, "
-        "fewer than half, or more. Takes up to twenty minutes on two cores. An interrupted run continues where it "
-        "stopped.\n"
+        "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, "
+        "...): every border between holding and failing, and how it fails there. Over two parameters: maps. A run "
+        "holds if it settles, moves or creeps; where a bomb or a moving body strikes, if as many boxes fall as in the "
+        "converged run: none, fewer than half, or more. Takes up to twenty minutes on two cores. An interrupted run "
+        "continues where it stopped.\n"
         "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "
-        "of every "
-        "method and about ten more for each border, a map 100, each as long as the scene's frames.\n"
-        "With --pages, the first failing value of each border and up to 8 failing cells of each method in each map get "
-        "a page, which shows at most nine seconds of the run beside the first method that holds there; all pages "
+        "of every method and about ten more for each border, a map 100, each as long as the scene's frames.\n"
+        "With --pages, the first failing value of each border and up to 8 failing cells of each method in each map "
+        "get a page, which shows at most nine seconds of the run beside the first method that holds there; all pages "
         "together take at most 256 MB.\v"
         "Example: twinbox stability -o out/stability\n"
         "         twinbox new wall.yaml --like wall\n"
@@ -283,8 +280,7 @@ static bool check_options(const Options *options, Error *error) {
     if (options->vary_count == 0)
         return error_input(error, options->scene,
                            "--vary NAME is needed: a parameter of the scene, or iterations, dt, friction, bomb_x, "
-                           "bomb_y, bomb_mass or "
-                           "bomb_speed");
+                           "bomb_y, bomb_mass or bomb_speed");
     return options->study.name_count == 0 ||
            error_input(error, "--study", "is for the studies without SCENE; '%s' is given", options->scene);
 }

@@ -73,8 +73,7 @@ static const Option pair_net_options[] = {
     {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(TrainPairNetOptions, training.seed), .standard = "1"},
     {"--from", 0, "NET.npz",
      "Continue from the weights of this network, such as one cut short by Ctrl-C. If NET.npz of -o has a smaller "
-     "held-out "
-     "error than the result, it is kept (exit status 1)",
+     "held-out error than the result, it is kept (exit status 1)",
      OPTION_PATH(TrainPairNetOptions, from)},
     {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
      OPTION_TEXT(TrainPairNetOptions, training.hidden)},
@@ -271,8 +270,7 @@ static const TrainKind *find_kind(const char *name, Error *error) {
     for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++)
         if (strcmp((*kind)->name, name) == 0) return *kind;
     const NameList known = name_kinds(NULL);
-    error_unknown(error, "--kind", name, "a kind", &known);
-    return NULL;
+    return error_unknown(error, "--kind", name, "a kind", &known), NULL;
 }
 
 static bool make_request(const Options *options, TrainRequest *request, Error *error) {

@@ -26,8 +26,7 @@ bool camera_option_read(const Option *option, const char *text, void *value, Err
     return camera_view_is_usable(view) ||
            error_input(
                error, option->name,
-               "'%s': the size must be from 0.001 to less than 100000 m, the centre nearer than 100000 m to the "
-               "origin",
+               "'%s': the size must be from 0.001 to less than 100000 m, the centre nearer than 100000 m to the origin",
                text);
 }
 

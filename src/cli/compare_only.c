@@ -29,16 +29,7 @@ bool compare_runs(const CompareOptions *options, Error *error) {
 }
 
 /* So that a folder's .npz files are counted as not compared (regression/comparison_words.c). */
-Trajectory *trajectory_read(const char *path, Error *error) {
-    error_input(error, path, "%s", only);
-    return NULL;
-}
-
-bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
-                     TrajectoryParting *parting, Error *error) {
-    (void)a, (void)b, (void)tolerance, (void)parting;
-    return error_input(error, "compare", "%s", only);
-}
+Trajectory *trajectory_read(const char *path, Error *error) { return error_input(error, path, "%s", only), NULL; }
 
 /* Without runs, reports have no pages of them. */
 bool player_write(const Trajectory *const *runs, int count, const PlayerOptions *options, const char *path,

@@ -14,10 +14,14 @@
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 RenderOptions draw_panels_defaults(const char *directory) {
@@ -154,4 +158,120 @@ bool render_check_again(const char *path, Error *error) {
 bool render_store_runs(void *context, Error *error) {
     const RunsPlace *place = context;
     return panels_store(place->panels, place->directory, error);
+}
+
+/* Files in the folder of a sequence that could be mistaken for a part of it. */
+
+enum { SHOWN_MAX = 5, TEXT_SIZE = 1024 };
+
+/* The number of a frame's file, or -1. */
+static int frame_of(const char *name) {
+    int index = -1;
+    char own[SINK_NAME_SIZE];
+    if (sscanf(name, "frame_%9d.png", &index) != 1 || index < 0) return -1;
+    sink_frame_name(own, index);
+    return strcmp(name, own) == 0 ? index : -1;
+}
+
+static bool is_of_sequence(const char *name, const RenderResult *result, const Panels *panels) {
+    const int frame = frame_of(name);
+    if (frame >= 0) return frame >= result->first && frame <= result->last;
+    for (int i = 0; i < panels->count; i++) {
+        char own[TRAJECTORY_FILE_NAME_SIZE];
+        trajectory_file_name((const Trajectory *const *)panels->runs, i, own);
+        if (strcmp(name, own) == 0) return true;
+    }
+    return false;
+}
+
+/* False with an error if the system fails. */
+static bool look_up(const char *path, struct stat *status, Error *error) {
+    *status = (struct stat){.st_ino = 0};
+    return stat(path, status) == 0 || errno == ENOENT || errno == ENOTDIR || errno == ELOOP || errno == EACCES ||
+           error_system(error, path, "cannot be read: %s", strerror(errno));
+}
+
+static bool is_input(const char *directory, const char *name, const Panels *panels, Error *error) {
+    char path[PATH_MAX];
+    struct stat file, input;
+    if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path || !look_up(path, &file, error))
+        return false;
+    for (int i = 0; i < panels->count; i++) {
+        if (!look_up(panels->inputs[i], &input, error)) return false;
+        if (input.st_ino != 0 && input.st_dev == file.st_dev && input.st_ino == file.st_ino) return true;
+    }
+    return false;
+}
+
+static bool foreign_add(FolderList *names, const char *name, Error *error) {
+    char *copy = strdup(name);
+    if (copy != NULL &&
+        array_reserve((void **)&names->names, &names->capacity, names->count + 1, sizeof *names->names)) {
+        names->names[names->count++] = copy;
+        return true;
+    }
+    free(copy);
+    return error_memory(error, "render");
+}
+
+static bool collect_entry(FolderList *names, const char *directory, const char *name, const RenderResult *result,
+                          const Panels *panels, Error *error) {
+    if (name[0] == '.' || (!file_name_ends_with(name, ".png") && !file_name_ends_with(name, ".npz")) ||
+        is_of_sequence(name, result, panels) || is_input(directory, name, panels, error))
+        return true;
+    return error->kind == ERROR_NONE && foreign_add(names, name, error);
+}
+
+static bool foreign_collect(FolderList *names, const char *directory, const RenderResult *result, const Panels *panels,
+                            Error *error) {
+    DIR *folder = opendir(directory);
+    if (folder == NULL) return folder_error(directory, error);
+    const struct dirent *entry;
+    bool ok = true;
+    do {
+        errno = 0; /* readdir() returns NULL at the end and on failure */
+        entry = readdir(folder);
+        if (entry != NULL)
+            ok = collect_entry(names, directory, entry->d_name, result, panels, error);
+        else if (errno != 0)
+            ok = error_system(error, directory, "cannot be read: %s", strerror(errno));
+    } while (ok && entry != NULL);
+    closedir(folder);
+    return ok;
+}
+
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+/* Frames that follow each other are named by the first and the last. */
+static size_t end_of_range(const FolderList *names, size_t first) {
+    size_t last = first;
+    const int frame = frame_of(names->names[first]);
+    while (frame >= 0 && last + 1 < names->count && frame_of(names->names[last + 1]) == frame + (int)(last + 1 - first))
+        last++;
+    return last;
+}
+
+static void foreign_describe(const FolderList *names, char text[TEXT_SIZE]) {
+    size_t i = 0;
+    for (int shown = 0; shown < SHOWN_MAX && i < names->count; shown++) {
+        const size_t last = end_of_range(names, i);
+        text_add(text, TEXT_SIZE, "%s%.100s", shown > 0 ? ", " : "", names->names[i]);
+        if (last > i) text_add(text, TEXT_SIZE, "%s%s", last > i + 1 ? " ... " : ", ", names->names[last]);
+        i = last + 1;
+    }
+    if (i < names->count) text_add(text, TEXT_SIZE, " and %zu more", names->count - i);
+}
+
+bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error) {
+    FolderList names = {0};
+    char text[TEXT_SIZE] = "";
+    const bool ok = foreign_collect(&names, directory, result, panels, error);
+    if (ok && names.count > 0) {
+        qsort(names.names, names.count, sizeof *names.names, by_name);
+        foreign_describe(&names, text);
+        note_print("%s also has %zu file%s that %s not of this sequence: %s", directory, names.count,
+                   plural((int)names.count), names.count > 1 ? "are" : "is", text);
+    }
+    folder_list_free(&names);
+    return ok;
 }

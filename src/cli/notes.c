@@ -26,10 +26,8 @@ static void print_line(const char *kind, const char *line, VisibleLines lines) {
     fprintf(stderr, "twinbox: %s%s\n", kind, shown);
 }
 
-PRINTF_LIKE(2, 0) static void print(const char *kind, const char *format, va_list arguments) {
-    char text[2048];
-    vsnprintf(text, sizeof text, format, arguments);
-    print_line(kind, text, strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE);
+static VisibleLines lines_of(const char *format) {
+    return strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE;
 }
 
 /* What is done again and again, such as reading one network for each of many runs, is printed once. */
@@ -57,19 +55,17 @@ void note_set_level(NoteLevel level) {
 NoteLevel note_level(void) { return chosen; }
 
 void note_print(const char *format, ...) {
-    va_list arguments;
+    char text[2048];
     if (chosen == NOTES_QUIET) return;
-    va_start(arguments, format);
-    print("note: ", format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(text, sizeof text, format);
+    print_line("note: ", text, lines_of(format));
 }
 
 void note_verbose(const char *format, ...) {
-    va_list arguments;
+    char text[2048];
     if (chosen != NOTES_VERBOSE) return;
-    va_start(arguments, format);
-    print("", format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(text, sizeof text, format);
+    print_line("", text, lines_of(format));
 }
 
 static void print_word(const char *word) {

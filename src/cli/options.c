@@ -102,8 +102,7 @@ static int find_name(const Option *option, const char *text, size_t length, Erro
         name_list_add(&known, option->names[i]);
     }
     snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name), text);
-    error_unknown(error, option->name, name, "a valid value", &known);
-    return -1;
+    return error_unknown(error, option->name, name, "a valid value", &known), -1;
 }
 
 bool option_enum(const Option *option, const char *text, void *value, Error *error) {

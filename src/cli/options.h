@@ -73,18 +73,15 @@ struct Option {
 #define OPTION_SET(T, member)                                                                                       \
     "--set", 0, "NAME=VALUE",                                                                                       \
         "Value of a parameter of the scene, or of what every scene has: iterations, dt, friction, bomb_x, bomb_y, " \
-        "bomb_mass, "                                                                                               \
-        "bomb_speed (may be repeated)",                                                                             \
+        "bomb_mass, bomb_speed (may be repeated)",                                                                  \
         OPTION_READ(option_set, T, member)
 
 /* The members of a ColourChoices (pictures/colours.h). */
-#define OPTION_COLOUR(T, member)                                                                                   \
-    "--colour", 0, "NAME=RRGGBB",                                                                                  \
-        "Colour of a method or of one run, such as planck=2a9d8f (may be repeated). By default a method has one "  \
-        "colour "                                                                                                  \
-        "in all pictures; its further settings in a picture, in alphabetical order, have shades of it; any other " \
-        "name "                                                                                                    \
-        "has a spare colour, which the name chooses",                                                              \
+#define OPTION_COLOUR(T, member)                                                                                  \
+    "--colour", 0, "NAME=RRGGBB",                                                                                 \
+        "Colour of a method or of one run, such as planck=2a9d8f (may be repeated). By default a method has one " \
+        "colour in all pictures; its further settings in a picture, in alphabetical order, have shades of it; "   \
+        "any other name has a spare colour, which the name chooses",                                              \
         OPTION_TEXTS(T, member.texts, member.count)
 
 OptionRead option_text, option_path, option_flag, option_seed, option_range, option_int, option_float, option_double,

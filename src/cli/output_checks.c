@@ -24,19 +24,13 @@ static bool try_folder(const char *folder, const char *path, Error *error) {
     return true;
 }
 
-/* /dev/stdout may be a regular file. */
-static bool is_standard_output(const struct stat *status) {
-    struct stat output;
-    return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
-}
-
 bool output_check_file(const char *path, const char *ending, Error *error) {
     struct stat status;
     char folder[PATH_MAX];
     if (path_is_standard(path)) return true;
     const bool there = stat(path, &status) == 0;
     if (there && S_ISDIR(status.st_mode)) return error_input(error, path, "is a folder; expected the name of a file");
-    if (there && (!S_ISREG(status.st_mode) || is_standard_output(&status))) return true;
+    if (there && (!S_ISREG(status.st_mode) || standard_output_is(&status))) return true;
     if (ending != NULL && !file_name_ends_with(path, ending))
         return error_input(error, path, "the name must end in %s", ending);
     return file_path(folder, sizeof folder, error, "%.*s", (int)file_folder_length(path), path) &&
@@ -61,7 +55,7 @@ bool output_check_npz(const char *path, const char *kind, Error *error) {
     char found[KIND_SIZE];
     if (!output_check_file(path, ".npz", error)) return false;
     if (path_is_standard(path) || stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0 ||
-        is_standard_output(&status))
+        standard_output_is(&status))
         return true;
     if (!find_kind(path, found, error)) return false;
     if (strcmp(found, kind != NULL ? kind : "run") == 0) return true;

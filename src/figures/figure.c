@@ -17,12 +17,6 @@ static const FigureKind *const kinds[] = {&figure_strip,  &figure_annotated, &fi
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
 
-/* Truncated at its end. */
-static void figure_append(char title[SKETCH_TEXT_SIZE], const char *before, const char *part) {
-    const size_t used = strlen(title);
-    snprintf(title + used, SKETCH_TEXT_SIZE - used, "%s%s", before, part);
-}
-
 static bool check_contacts(const FigureKind *kind, const FigureSpec *spec, Error *error) {
     for (int i = 0; kind->needs_contacts && i < spec->run_count; i++)
         if (spec->runs[i]->no_contacts)
@@ -32,10 +26,9 @@ static bool check_contacts(const FigureKind *kind, const FigureSpec *spec, Error
 
 bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
     if (!check_contacts(kind, spec, error) || !kind->draw(sketch, spec, error)) return false;
-    figure_append(sketch->title, "", kind->name);
-    figure_append(sketch->title, " of ", spec->runs[0]->scene);
+    snprintf(sketch->title, sizeof sketch->title, "%s of %s", kind->name, spec->runs[0]->scene);
     for (int i = 0; i < spec->run_count; i++)
-        figure_append(sketch->title, i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
+        text_add(sketch->title, sizeof sketch->title, "%s%s", i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
     return true;
 }
 

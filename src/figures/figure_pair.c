@@ -53,7 +53,7 @@ static const double side_by_side = 130; /* mm; from this width on, both halves f
 enum { SHOWS_NOTHING, SHOWS_SOMETHING, SHOWS_BOMB, SHOWS_ALL };
 
 static Box box_of(const Trajectory *run, int frame, int body) {
-    size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    size_t i = trajectory_at(run, frame, body);
     return box_make(run->position[i], run->size[body], run->angle[i]);
 }
 
@@ -121,10 +121,7 @@ static bool figure_pair_choose(const FigureSpec *spec, Collision *collision, Err
     int frames[FIGURE_MOMENTS_MAX], count, first = 1, end = run->frames;
     if (spec->time_count > 1)
         return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
-    for (int i = 0; i < 2; i++)
-        if (spec->bodies[i] >= run->bodies)
-            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
-                               run->bodies);
+    if (!run_check_bodies(spec, error)) return false;
     if (spec->time_count > 0) {
         if (!run_frames(spec, 1, 1, frames, &count, error)) return false;
         first = frames[0] + 1, end = first + 1;

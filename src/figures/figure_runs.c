@@ -64,7 +64,7 @@ static bool draw_moments(Strobe *strobe, Sketch *sketch, Error *error) {
 static bool find_bomb(const Strobe *strobe, const View *view, int frame, Point *at) {
     const Trajectory *run = strobe->run;
     if (!trajectory_has(run, frame, run->bomb)) return false;
-    *at = view_place(view, run->position[(size_t)frame * (size_t)run->bodies + (size_t)run->bomb]);
+    *at = view_place(view, run->position[trajectory_at(run, frame, run->bomb)]);
     return at->x > view->low.x && at->x < view->high.x && at->y > view->low.y && at->y < view->high.y;
 }
 
@@ -246,14 +246,6 @@ static double strip_height(const Strip *strip) {
     return strip->top + strip->foot + room_of_notes(strip, 0, runs) + runs * row_pitch(strip) - strip_gap;
 }
 
-static bool check_bodies(const FigureSpec *spec, Error *error) {
-    for (int i = 0; i < spec->body_count; i++)
-        if (spec->bodies[i] >= spec->runs[0]->bodies)
-            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
-                               spec->runs[0]->bodies);
-    return true;
-}
-
 /* Where the bodies in question are in the first run, at these moments, with a body's room around them. */
 static WorldWindow window_of_bodies(const Strip *strip) {
     const FigureSpec *spec = strip->spec;
@@ -428,7 +420,8 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
 
 static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
-    bool done = run_colours(spec, strip.colours, error) && run_check_worlds(spec, error) && check_bodies(spec, error) &&
+    bool done = run_colours(spec, strip.colours, error) && run_check_worlds(spec, error) &&
+                run_check_bodies(spec, error) &&
                 run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error) && strip_lay_out(&strip, error);
     if (done) sketch_begin(sketch, spec->width, strip_height(&strip));
     for (int row = 0; done && row < spec->run_count; row++)

@@ -54,8 +54,9 @@ void draw_leader(Sketch *sketch, const Segment *leader, const PageBox *label, co
    frames[FIGURE_MOMENTS_MAX]. ERROR_INPUT for times outside a run. `after`: number of frames that must follow. */
 bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int *count, Error *error);
 
-/* ERROR_INPUT for runs with different worlds or time steps. */
+/* ERROR_INPUT for runs with different worlds or time steps; and for bodies that the first run does not have. */
 bool run_check_worlds(const FigureSpec *spec, Error *error);
+bool run_check_bodies(const FigureSpec *spec, Error *error);
 
 /* A part of the world, m. */
 typedef struct WorldWindow {

@@ -231,6 +231,14 @@ bool run_check_worlds(const FigureSpec *spec, Error *error) {
     return true;
 }
 
+bool run_check_bodies(const FigureSpec *spec, Error *error) {
+    for (int i = 0; i < spec->body_count; i++)
+        if (spec->bodies[i] >= spec->runs[0]->bodies)
+            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
+                               spec->runs[0]->bodies);
+    return true;
+}
+
 static WorldWindow window_of_view(const CameraView *view) {
     return (WorldWindow){view->x - view->width / 2, view->y - view->height / 2, view->width, view->height};
 }
@@ -261,7 +269,7 @@ void run_window_fill(WorldWindow *window, double shape) {
 
 bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window) {
     if (!trajectory_has(run, frame, body)) return false;
-    const Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
+    const Vec2 at = run->position[trajectory_at(run, frame, body)];
     const double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
     return !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
 }
@@ -337,10 +345,7 @@ void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low) {
 
 WrappedText wrap_text(double points, double width, const char *format, ...) {
     WrappedText wrapped = {.points = points};
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(wrapped.text, sizeof wrapped.text, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(wrapped.text, sizeof wrapped.text, format);
     wrapped.lines = text_wrap(wrapped.text, sizeof wrapped.text, points, width);
     return wrapped;
 }

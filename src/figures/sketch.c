@@ -254,10 +254,7 @@ static size_t add_text(Sketch *sketch, const char *text) {
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) {
     if (!is_near_page(at)) return;
     char text[SKETCH_TEXT_SIZE];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    PRINT_ARGUMENTS(text, sizeof text, format);
     SketchMark mark = {LAYER_TEXTS, MARK_TEXT, .at = at, .style = *style};
     mark.text = add_text(sketch, text);
     if (!sketch->failed) add_mark(sketch, &mark);

@@ -348,6 +348,5 @@ char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *si
     free(pdf.offsets);
     if (whole) return data;
     free(data);
-    error_memory(error, "figure");
-    return NULL;
+    return error_memory(error, "figure"), NULL;
 }

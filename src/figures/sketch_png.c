@@ -189,8 +189,7 @@ char *picture_as_png(const Image *image, double dpi, bool drawn, size_t *size, E
     if (file != NULL) whole = fclose(file) == 0 && whole;
     if (whole) return data;
     free(data);
-    error_memory(error, "figure");
-    return NULL;
+    return error_memory(error, "figure"), NULL;
 }
 
 /* A sketch as pixels. Lines become polygons: a bar per segment and a disc per corner. */

@@ -185,10 +185,7 @@ static bool write_document(FILE *file, const Sketch *sketch, const SketchOutput 
 char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error) {
     char *data = NULL;
     FILE *file = memory_stream(&data, size);
-    if (file == NULL) {
-        error_memory(error, "figure");
-        return NULL;
-    }
+    if (file == NULL) return error_memory(error, "figure"), NULL;
     bool whole = write_document(file, sketch, output, error);
     whole = whole && (!ferror(file) || error_memory(error, "figure"));
     if (fclose(file) == 0 && whole) return data;

@@ -55,7 +55,7 @@ static void target_bomb(View *views, const Trajectory *run, int frames, const Vi
     View target = *whole;
     for (int frame = 0; frame < frames; frame++) {
         if (frame < run->frames && trajectory_has(run, frame, run->bomb)) {
-            Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)run->bomb];
+            Vec2 at = run->position[trajectory_at(run, frame, run->bomb)];
             if (fabs((double)at.x) < EXTENT_FARTHEST && fabs((double)at.y) < EXTENT_FARTHEST)
                 target = close_view(whole, (double)at.x, (double)at.y, size, height);
         }
@@ -67,7 +67,7 @@ static void target_divergence(View *views, const Trajectory *run, int frames, co
                               int width, int height) {
     int first = events->divergence - (int)rint(LEAD_TIME / (double)run->dt);
     int last = events->divergence + (int)rint(HOLD_TIME / (double)run->dt);
-    Vec2 at = run->position[(size_t)events->divergence * (size_t)run->bodies + (size_t)events->body];
+    Vec2 at = run->position[trajectory_at(run, events->divergence, events->body)];
     double size = min_size(run, events->body, width, height);
     for (int frame = 0; frame < frames; frame++)
         views[frame] =

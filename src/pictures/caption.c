@@ -106,8 +106,7 @@ void caption_method(const Picture *picture, int run, char name[CAPTION_TEXT_SIZE
 
 /* The last part, the method's description, is the one that gets cut short. */
 static void caption_join(char *text, size_t size, const char *part) {
-    size_t used = strlen(text);
-    if (part != NULL && part[0] != '\0') snprintf(text + used, size - used, "%s%s", used > 0 ? "; " : "", part);
+    if (part != NULL && part[0] != '\0') text_join(text, size, "; ", "%s", part);
 }
 
 void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size) {

@@ -15,8 +15,7 @@
 
 /* A box of the given width and height in pixels, not rotated, at (0, 0). */
 static Shape styled_box(const Picture *picture, double width, double height, const BodyColors *colors) {
-    Rect panel = picture->layout.panels[0];
-    double side = fmin(width, height), limit = fmin(panel.right - panel.left, panel.bottom - panel.top);
+    double side = fmin(width, height), limit = panel_side(picture);
     double outline = fmin(fmax(OUTLINE * side, MIN_OUTLINE), fmax(MAX_OUTLINE * limit, MIN_OUTLINE));
     return (Shape){.half_width = width / 2,
                    .half_height = height / 2,
@@ -316,7 +315,7 @@ static void draw_velocities(const Picture *picture, int panel, int run, Moment m
     moment = pose_moment(trajectory, moment);
     for (int body = 0; body < trajectory->bodies; body++) {
         if (trajectory->fixed[body] || !trajectory_has(trajectory, moment.frame, body)) continue;
-        Vec2 v = trajectory->velocity[(size_t)moment.frame * (size_t)trajectory->bodies + (size_t)body];
+        Vec2 v = trajectory->velocity[trajectory_at(trajectory, moment.frame, body)];
         double x = (double)v.x, y = (double)v.y;
         if (!(x * x + y * y > MIN_SPEED * MIN_SPEED)) continue;
         Pose pose = pose_at(trajectory, moment, body);

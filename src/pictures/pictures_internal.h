@@ -23,7 +23,7 @@ static inline Moment pose_moment(const Trajectory *run, Moment moment) {
 }
 
 static inline Pose pose_stored(const Trajectory *run, int frame, int body) {
-    size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    size_t i = trajectory_at(run, frame, body);
     return (Pose){(double)run->position[i].x, (double)run->position[i].y, (double)run->angle[i]};
 }
 

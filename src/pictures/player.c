@@ -124,10 +124,7 @@ static void put_theme(JsonWriter *json, const char *key, const Theme *theme) {
 }
 
 static void put_mark(JsonWriter *json, const char *key, int frame, int body) {
-    if (frame < 0) {
-        json_put_text(json, key, NULL);
-        return;
-    }
+    if (json_put_absent(json, key, frame < 0)) return;
     json_begin_object(json, key, JSON_ONE_LINE);
     json_put_int(json, "frame", frame);
     json_put_int(json, "body", body);
@@ -166,10 +163,7 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
 }
 
 static void put_verdict(JsonWriter *json, const Player *player, const Trajectory *run) {
-    if (run->verdict[0] == '\0') {
-        json_put_text(json, "verdict", NULL);
-        return;
-    }
+    if (json_put_absent(json, "verdict", run->verdict[0] == '\0')) return;
     json_begin_object(json, "verdict", JSON_ONE_LINE);
     json_put_text(json, "text", run->verdict);
     json_put_int(json, "frame", player_stored(&player->frames, run->verdict_frame));

@@ -119,13 +119,3 @@ Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *o
 /* Draws the next moment of a sequence into the image of the previous call. Only rows that differ are painted and
    read back; *changed has a flag per row. The first call draws all. */
 bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error);
-
-/* For frame rates in lowest terms: of two numbers that are not negative and not both 0. */
-static inline int64_t greatest_divisor(int64_t a, int64_t b) {
-    while (b != 0) {
-        const int64_t rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a;
-}

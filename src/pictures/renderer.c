@@ -15,11 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void renderer_append(char *text, size_t size, const char *part) {
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "%s%s", used == 0 ? "" : " | ", part);
-}
-
 static void renderer_add(FrameTexts *texts, const char *key, const char *value) {
     texts->entries[texts->count++] = (ImageText){key, value};
 }
@@ -33,11 +28,9 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) 
     texts->count = 0;
     for (int i = 0; i < picture->count; i++) {
         const Trajectory *run = picture->runs[i];
-        char hash[20];
-        int shown = picture_run_frame(picture, i, moment.frame);
-        snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, shown));
-        renderer_append(texts->methods, sizeof texts->methods, run->method);
-        renderer_append(texts->states, sizeof texts->states, hash);
+        const int shown = picture_run_frame(picture, i, moment.frame);
+        text_join(texts->methods, sizeof texts->methods, " | ", "%s", run->method);
+        text_join(texts->states, sizeof texts->states, " | ", "%016" PRIx64, trajectory_frame_hash(run, shown));
     }
     snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
     frame_part_text(texts->part, sizeof texts->part, moment);
@@ -100,10 +93,7 @@ static bool set_up(Renderer *renderer, const RenderOptions *options, Error *erro
 
 Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {
     Renderer *renderer = calloc(1, sizeof *renderer);
-    if (renderer == NULL) {
-        error_memory(error, "render");
-        return NULL;
-    }
+    if (renderer == NULL) return error_memory(error, "render"), NULL;
     renderer->picture = *picture;
     if (set_up(renderer, options, error)) return renderer;
     renderer_destroy(renderer);
@@ -187,10 +177,7 @@ static bool still_set_up(Still *still, int width, int height, Error *error) {
 
 Still *still_create(int width, int height, Error *error) {
     Still *still = calloc(1, sizeof *still);
-    if (still == NULL) {
-        error_memory(error, "render");
-        return NULL;
-    }
+    if (still == NULL) return error_memory(error, "render"), NULL;
     if (still_set_up(still, width, height, error)) return still;
     still_destroy(still);
     return NULL;

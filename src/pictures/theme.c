@@ -144,15 +144,18 @@ static void add_text(Row *row, const char *text) {
     row->x = font_add(row->drawing, row->font, text, row->x, row->baseline, row->picture->theme->ink_soft);
 }
 
-static void end_entry(Row *row) { row->x += row->font->pixels * 2; }
+/* The text of an entry, and the space behind it. */
+static void end_entry(Row *row, const char *text) {
+    add_text(row, text);
+    row->x += row->font->pixels * 2;
+}
 
 static void add_outline(Row *row) {
     char text[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
     row->x = body_draw_swatch(row->picture, 0, true, row->x, row->baseline, row->font->pixels, row->drawing);
     row->x += row->font->pixels / 2;
     caption_method(row->picture, 0, text, note);
-    add_text(row, text);
-    end_entry(row);
+    end_entry(row, text);
 }
 
 /* One rectangle per pixel column. */
@@ -177,7 +180,7 @@ static void add_colors(Row *row) {
         snprintf(text, sizeof text, " %g%s", power, i + 1 < decades ? " " : unit);
         add_text(row, text);
     }
-    end_entry(row);
+    end_entry(row, "");
 }
 
 static void add_trail(Row *row) {
@@ -192,8 +195,7 @@ static void add_trail(Row *row) {
     }
     row->x += width + row->font->pixels / 2;
     snprintf(text, sizeof text, "path of the last %g s", TRAIL_DURATION);
-    add_text(row, text);
-    end_entry(row);
+    end_entry(row, text);
 }
 
 static void add_approach(Row *row) {
@@ -205,8 +207,7 @@ static void add_approach(Row *row) {
     row->x += width + row->font->pixels / 2;
     snprintf(text, sizeof text, "path of the bomb, from %.3g s until it strikes",
              bomb_first_frame(run) * (double)run->dt);
-    add_text(row, text);
-    end_entry(row);
+    end_entry(row, text);
 }
 
 static void add_dot(Row *row) {
@@ -214,8 +215,7 @@ static void add_dot(Row *row) {
     stroke_dot(row->drawing, (Point){row->x + radius, row->middle}, radius, row->picture->theme->panel,
                row->picture->theme->impulse, &row->clip);
     row->x += (int)ceil(2 * radius) + row->font->pixels / 2;
-    add_text(row, "contact");
-    end_entry(row);
+    end_entry(row, "contact");
 }
 
 static void add_arrow(Row *row, double pixels, uint32_t color, double value, const char *unit) {
@@ -227,8 +227,7 @@ static void add_arrow(Row *row, double pixels, uint32_t color, double value, con
                  &style, &row->clip);
     row->x += (int)ceil(pixels) + row->font->pixels / 2;
     snprintf(text, sizeof text, "%g %s", value, unit);
-    add_text(row, text);
-    end_entry(row);
+    end_entry(row, text);
 }
 
 static void add_impulse(Row *row) {
@@ -243,17 +242,13 @@ static void add_velocity(Row *row) {
               "m/s");
 }
 
-static void add_heads(Row *row) {
-    add_text(row, ARROW_NOTE);
-    end_entry(row);
-}
+static void add_heads(Row *row) { end_entry(row, ARROW_NOTE); }
 
 static void add_labels(Row *row) {
     static const char *const words[] = {
         [LOOK_NUMBERS] = "number of the body", [LOOK_MASSES] = "mass, kg", [LOOK_NAMES] = "name"};
     add_text(row, "in boxes that are large enough: ");
-    add_text(row, words[row->picture->look.labels]);
-    end_entry(row);
+    end_entry(row, words[row->picture->look.labels]);
 }
 
 static void begin_row(Row *row) {

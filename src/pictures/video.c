@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
+#include "base/numbers.h"
 #include "pictures/render.h"
 #include "pictures/render_internal.h"
 #include "pixels/png.h"
@@ -113,10 +114,8 @@ bool video_check_programs(Error *error) {
 
 static Image *read_frame(const VideoOptions *options, int index, Error *error) {
     char path[PATH_MAX];
-    if (!sink_frame_path(path, sizeof path, options->directory, index)) {
-        error_input(error, options->directory, "the name is too long");
-        return NULL;
-    }
+    if (!sink_frame_path(path, sizeof path, options->directory, index))
+        return error_input(error, options->directory, "the name is too long"), NULL;
     return image_read_png(path, error);
 }
 

@@ -215,10 +215,7 @@ static bool setup_gl(Canvas *canvas, Error *error) {
 
 Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error) {
     Canvas *canvas = calloc(1, sizeof *canvas);
-    if (canvas == NULL) {
-        error_memory(error, "render");
-        return NULL;
-    }
+    if (canvas == NULL) return error_memory(error, "render"), NULL;
     canvas->gl = gl;
     canvas->width = width;
     canvas->height = height;

@@ -162,10 +162,7 @@ Idat *idat_create(int width, int height, Error *error) {
     const size_t pixels = 4 * (size_t)width, edges = (size_t)width + 1 + WORD_BYTES;
     Idat *idat =
         calloc(1, sizeof *idat + (size_t)height * sizeof *idat->rows + 2 * pixels + edges + max_row_bytes(width));
-    if (idat == NULL) {
-        error_memory(error, "image");
-        return NULL;
-    }
+    if (idat == NULL) return error_memory(error, "image"), NULL;
     idat->width = width, idat->height = height;
     idat->differences = (uint32_t *)(idat->rows + height);
     idat->blank = (uint8_t *)idat->differences + pixels;

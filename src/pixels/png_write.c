@@ -26,10 +26,7 @@ struct PngEncoder {
 
 PngEncoder *png_encoder_create(int width, int height, PngEffort effort, Error *error) {
     PngEncoder *encoder = calloc(1, sizeof *encoder);
-    if (encoder == NULL) {
-        error_memory(error, "image");
-        return NULL;
-    }
+    if (encoder == NULL) return error_memory(error, "image"), NULL;
     *encoder = (PngEncoder){.width = width, .height = height};
     if (effort == PNG_SMALL || (encoder->idat = idat_create(width, height, error)) != NULL) return encoder;
     png_encoder_destroy(encoder);

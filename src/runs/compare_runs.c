@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Where two trajectories differ. */
+/* Where two trajectories differ, and why they part. */
 #include "base/base.h"
 #include "runs/trajectory.h"
 
@@ -151,3 +151,93 @@ bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int 
 }
 
 bool contacts_differ(const ContactDifference *d) { return d->only_a + d->only_b + d->moved + d->changed > 0; }
+
+static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, const PoseTolerance *tolerance) {
+    const double turn = 2 * acos(-1);
+    if (trajectory_same_state(a, b, frame, body)) return false;
+    if (!tolerance->given) return true;
+    StateDifference by = trajectory_state_difference(a, b, frame, body);
+    return !by.in_a || !by.in_b || by.distance > tolerance->distance ||
+           fabs(remainder(by.angle, turn)) > tolerance->angle;
+}
+
+static void count_frames(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                         TrajectoryParting *parting) {
+    static const PoseTolerance exact = {0};
+    for (int frame = 0; frame < parting->frames; frame++) {
+        bool equal = true, within = true;
+        for (int body = 0; body < a->bodies && within; body++) {
+            equal = equal && !apart(a, b, frame, body, &exact);
+            within = equal || !apart(a, b, frame, body, tolerance);
+        }
+        parting->equal += equal;
+        parting->within += within && !equal;
+    }
+}
+
+/* The first frame from `frame` on in which a body differs. */
+static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int frame, int frames,
+                              const PoseTolerance *tolerance) {
+    PartedBody parted = {.frame = -1, .body = -1};
+    for (; parted.frame < 0 && frame < frames; frame++)
+        for (int body = 0; body < a->bodies; body++) {
+            if (!apart(a, b, frame, body, tolerance) || parted.bodies++ > 0) continue;
+            parted.frame = frame;
+            parted.body = body;
+            parted.by = trajectory_state_difference(a, b, frame, body);
+        }
+    return parted;
+}
+
+/* The first step up to `last` with a contact that differs. */
+static bool find_step(const Trajectory *a, const Trajectory *b, int last, TrajectoryParting *parting, Error *error) {
+    parting->step = -1;
+    for (int step = 1; parting->step < 0 && step <= last; step++) {
+        if (!contact_difference(a, b, step, -1, &parting->contacts, error)) return false;
+        if (contacts_differ(&parting->contacts)) parting->step = step;
+    }
+    return true;
+}
+
+/* True if every body that differs has just been added. The previous frames are equal, so one run suffices. */
+static bool only_launched(const Trajectory *a, const Trajectory *b, int frame) {
+    for (int body = 0; body < a->bodies; body++)
+        if (trajectory_has(a, frame - 1, body) && !trajectory_same_state(a, b, frame, body)) return false;
+    return true;
+}
+
+static PartCause find_cause(const Trajectory *a, const Trajectory *b, const TrajectoryParting *parting) {
+    int frame = parting->first.frame;
+    const ContactDifference *contacts = &parting->contacts;
+    if (frame < 0) return PART_NONE;
+    if (frame == 0) return PART_START;
+    if (only_launched(a, b, frame)) return PART_LAUNCH;
+    if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
+    if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
+    if (parting->step < 0) return parting->no_impulses && parting->contacts.count_a > 0 ? PART_UNKNOWN : PART_ELSEWHERE;
+    return contacts->only_a + contacts->only_b + contacts->moved > 0 ? PART_CONTACTS : PART_SOLVER;
+}
+
+bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                     TrajectoryParting *parting, Error *error) {
+    int frames = a->frames < b->frames ? a->frames : b->frames;
+    *parting = (TrajectoryParting){
+        .frames = frames, .poses_only = !trajectory_both_move(a, b), .no_impulses = a->no_impulses || b->no_impulses};
+    parting->first = find_parted(a, b, 0, frames, &(PoseTolerance){0});
+    parting->beyond = parting->first;
+    count_frames(a, b, tolerance, parting);
+    if (tolerance->given && parting->first.frame >= 0)
+        parting->beyond = find_parted(a, b, parting->first.frame, frames, tolerance);
+    int last = parting->first.frame >= 0 ? parting->first.frame : frames - 1;
+    bool contacts = !a->no_contacts && !b->no_contacts;
+    parting->step = -1;
+    if (contacts && !find_step(a, b, last, parting, error)) return false;
+    /* Contacts of the body, which the cause depends on. */
+    if (contacts && parting->no_impulses && parting->step < 0 && parting->first.frame > 0 &&
+        !contact_difference(a, b, parting->first.frame, parting->first.body, &parting->contacts, error))
+        return false;
+    parting->cause = find_cause(a, b, parting);
+    const PartedBody *beyond = &parting->beyond;
+    return beyond->frame < 1 || !contacts ||
+           contact_difference(a, b, beyond->frame, beyond->body, &parting->beyond_contacts, error);
+}

@@ -44,7 +44,7 @@ bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, f
 int trajectory_bodies(const Trajectory *run, int frame, Body *bodies, int *numbers) {
     int count = 0;
     for (int i = 0; i < run->bodies; i++) {
-        const size_t at = (size_t)frame * (size_t)run->bodies + (size_t)i;
+        const size_t at = trajectory_at(run, frame, i);
         if (!trajectory_has(run, frame, i)) continue;
         const float mass = run->fixed[i] ? 0 : 1;
         bodies[count] = (Body){.position = run->position[at],

@@ -70,8 +70,7 @@ static bool divergence_measure(void *context, int frame, const World *world, Err
     double largest = 0;
     for (int i = 0; i < world_body_count(world); i++)
         largest =
-            fmax(largest, vec2_distance(bodies[i].position,
-                                        unshifted->position[(size_t)frame * (size_t)unshifted->bodies + (size_t)i]));
+            fmax(largest, vec2_distance(bodies[i].position, unshifted->position[trajectory_at(unshifted, frame, i)]));
     watch->chaos->distance[frame] = largest;
     return progress_stage(&watch->stage, frame, unshifted->frames) ||
            error_interrupted(error, unshifted->scene, "stopped after step %d of %d", frame, unshifted->frames - 1);

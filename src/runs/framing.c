@@ -11,10 +11,6 @@
 
 const Extent extent_empty = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
 
-static size_t index_of(const Trajectory *run, int frame, int body) {
-    return (size_t)frame * (size_t)run->bodies + (size_t)body;
-}
-
 bool extent_is_empty(const Extent *extent) { return !(extent->left <= extent->right && extent->bottom <= extent->top); }
 
 double extent_side(const Extent *extent) { return fmax(extent->right - extent->left, extent->top - extent->bottom); }
@@ -25,7 +21,7 @@ static Extent extent_widened(const Extent *extent, double by) {
 }
 
 void extent_include(Extent *extent, const Trajectory *run, int frame, int body) {
-    size_t i = index_of(run, frame, body);
+    size_t i = trajectory_at(run, frame, body);
     double x = run->position[i].x, y = run->position[i].y, angle = run->angle[i];
     double c = fabs(cos(angle)), s = fabs(sin(angle));
     double half_x = run->size[body].x / 2.0, half_y = run->size[body].y / 2.0;
@@ -45,7 +41,7 @@ static void clip_to_slab(double at, double direction, double half, double *first
 
 /* The distance straight down from a point to a body; infinite if it is not below. */
 static double distance_down(const Trajectory *run, int frame, int body, double x, double y) {
-    size_t i = index_of(run, frame, body);
+    size_t i = trajectory_at(run, frame, body);
     double dx = x - (double)run->position[i].x, dy = y - (double)run->position[i].y, angle = (double)run->angle[i];
     double c = cos(angle), s = sin(angle), first = 0, last = HUGE_VAL;
     clip_to_slab(c * dx + s * dy, -s, run->size[body].x / 2.0, &first, &last);
@@ -55,7 +51,7 @@ static double distance_down(const Trajectory *run, int frame, int body, double x
 
 /* Widens it down to the first static body straight below the body's centre, if there is one. */
 static void extent_include_ground(Extent *extent, const Trajectory *run, int frame, int body) {
-    const Vec2 at = run->position[index_of(run, frame, body)];
+    const Vec2 at = run->position[trajectory_at(run, frame, body)];
     double down = HUGE_VAL;
     for (int other = 0; other < run->bodies; other++)
         if (run->fixed[other]) down = fmin(down, distance_down(run, frame, other, (double)at.x, (double)at.y));
@@ -64,7 +60,7 @@ static void extent_include_ground(Extent *extent, const Trajectory *run, int fra
 
 /* Whether the body's centre is inside; false for a body without a pose. */
 static bool extent_holds(const Extent *extent, const Trajectory *run, int frame, int body) {
-    const Vec2 at = run->position[index_of(run, frame, body)];
+    const Vec2 at = run->position[trajectory_at(run, frame, body)];
     return (double)at.x >= extent->left && (double)at.x <= extent->right && (double)at.y >= extent->bottom &&
            (double)at.y <= extent->top;
 }
@@ -164,8 +160,8 @@ static Extent room_to_fall(const Trajectory *run, const Extent *standing, int im
     const double height = standing->top - standing->bottom;
     Extent room = *standing;
     if (first >= last) return room;
-    const Vec2 from = run->position[index_of(run, first, run->bomb)],
-               to = run->position[index_of(run, last, run->bomb)];
+    const Vec2 from = run->position[trajectory_at(run, first, run->bomb)],
+               to = run->position[trajectory_at(run, last, run->bomb)];
     const double along = (double)to.x - (double)from.x;
     const bool sideways = fabs(along) > fabs((double)to.y - (double)from.y);
     if (!sideways || along > 0) room.right += sideways ? height : height / 2;

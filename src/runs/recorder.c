@@ -33,15 +33,19 @@ static bool check_length(const Scene *scene, Error *error) {
                        scene->frames, bodies, SIMULATE_MAX_STATES);
 }
 
-Recorder *recorder_create(const Scene *scene, const Method *method, Error *error) {
+static Recorder *create_parts(const Scene *scene, const Method *method, int parts, int frames, Error *error) {
     if (!check_length(scene, error)) return NULL;
     Recorder *recorder = calloc(1, sizeof *recorder);
     if (recorder == NULL) return error_memory(error, scene->name), NULL;
-    recorder->capacity = scene->frames + 1;
-    recorder->parts[0] = trajectory_of_scene(scene, method, recorder->capacity, error);
-    if (recorder->parts[0] != NULL) return recorder;
-    recorder_destroy(recorder);
-    return NULL;
+    recorder->capacity = frames;
+    for (int i = 0; i < parts; i++)
+        if ((recorder->parts[i] = trajectory_of_scene(scene, method, frames, error)) == NULL)
+            return recorder_destroy(recorder), NULL;
+    return recorder;
+}
+
+Recorder *recorder_create(const Scene *scene, const Method *method, Error *error) {
+    return create_parts(scene, method, 1, scene->frames + 1, error);
 }
 
 static bool write_part(void *context, void *item, Error *error) {
@@ -71,18 +75,13 @@ static int part_frames(const Scene *scene) {
 
 Recorder *recorder_create_to(const Scene *scene, const Method *method, const RecorderOutput *outputs, int count,
                              bool no_contacts, Error *error) {
-    if (!check_length(scene, error)) return NULL;
-    Recorder *recorder = calloc(1, sizeof *recorder);
-    bool done = recorder != NULL || error_memory(error, scene->name);
-    if (done) recorder->capacity = part_frames(scene);
-    for (int i = 0; done && i < 2; i++) {
-        recorder->parts[i] = trajectory_of_scene(scene, method, recorder->capacity, error);
-        done = recorder->parts[i] != NULL;
-        if (!done) break;
+    Recorder *recorder = create_parts(scene, method, 2, part_frames(scene), error);
+    if (recorder == NULL) return NULL;
+    for (int i = 0; i < 2; i++) {
         recorder->parts[i]->no_contacts |= no_contacts;
         trajectory_restart_contacts(recorder->parts[i]);
     }
-    if (done && open_outputs(recorder, outputs, count, scene->frames + 1, error)) return recorder;
+    if (open_outputs(recorder, outputs, count, scene->frames + 1, error)) return recorder;
     recorder_destroy(recorder);
     return NULL;
 }

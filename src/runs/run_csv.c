@@ -1,350 +1,373 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Makes a run of the rows of a CSV file, which run_import.c reads. */
+/* A run as text, in CSV: its head (comments with sizes and names) and its rows, read and written. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
-#include "base/npz.h"
 #include "engine/engine.h"
 #include "runs/runs_internal.h"
 #include "runs/trajectory.h"
-#include "runs/verdict.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A body that is declared static, or has one row at the start of a run that declares none, stays where it is. */
-static bool run_csv_stays(const CsvImport *import, int body) {
-    const Trajectory *run = import->run;
-    if (import->head.states_static) return import->head.bodies[body].fixed;
-    return run->frames > 1 && import->row_counts[body] == 1 && trajectory_has(run, 0, body);
-}
+enum { CSV_HEAD_LINE_SIZE = 256, NUMBERS_MAX = 4, BODIES_MAX = 1000000 };
+/* m */
+#define SIZE_LEAST 1e-6
+#define SIZE_MOST 1e6
 
-static void carry_on(Trajectory *run, int body) {
-    for (int frame = 1; frame < run->frames; frame++) {
-        const size_t i = csv_import_place(run, frame, body), before = csv_import_place(run, frame - 1, body);
-        if (trajectory_has(run, frame, body)) continue;
-        run->position[i] = run->position[before];
-        run->angle[i] = run->angle[before];
-        run->velocity[i] = run->velocity[before];
-        run->angular_velocity[i] = run->angular_velocity[before];
-    }
-}
+typedef struct SizeRow {
+    int body, fixed;
+    float width, height;
+} SizeRow;
 
-/* A body may come and go once. */
-static bool check_body(CsvImport *import, int body, Error *error) {
-    const Trajectory *run = import->run;
-    const int64_t number = import->head.bodies[body].number;
-    int last = -1;
-    for (int frame = 0; frame < run->frames; frame++) {
-        if (!trajectory_has(run, frame, body)) continue;
-        const int gap = last + 1, before = last;
-        last = frame;
-        if (before < 0 || gap == frame) continue;
-        const int line = csv_rows_find(&import->rows, import->first + frame, number);
-        return csv_fail(import->path, line, 0, error,
-                        "body %" PRId64 " is in frame %" PRId64 " and in frame %" PRId64 ", but not in frame %" PRId64,
-                        number, import->first + before, import->first + frame, import->first + gap);
-    }
+static const CsvColumn size_columns[] = {
+    {"body", CSV_INTEGER, .offset = offsetof(SizeRow, body), .maximum = INT32_MAX - 1, .key = true},
+    {"width", CSV_FLOAT, .offset = offsetof(SizeRow, width), .minimum = SIZE_LEAST, .maximum = SIZE_MOST},
+    {"height", CSV_FLOAT, .offset = offsetof(SizeRow, height), .minimum = SIZE_LEAST, .maximum = SIZE_MOST},
+    {"static", CSV_INTEGER, .offset = offsetof(SizeRow, fixed), .maximum = 1},
+};
+static const CsvLayout size_layout =
+    CSV_LAYOUT("sizes", size_columns, SizeRow, .min_rows = 1, .max_rows = BODIES_MAX, .header = CSV_SUBSET);
+
+static bool is_size(float side) { return (double)side >= SIZE_LEAST && (double)side <= SIZE_MOST; }
+
+static bool add_body(CsvHead *head, const char *path, CsvBody body, Error *error) {
+    void *bodies = head->bodies;
+    if (!array_reserve(&bodies, &head->capacity, head->count + 1, sizeof *head->bodies))
+        return error_memory(error, path);
+    head->bodies = bodies;
+    head->bodies[head->count++] = body;
     return true;
 }
 
-PRINTF_LIKE(2, 3) static void add_note(CsvRunNotes *notes, const char *format, ...) {
-    va_list arguments;
-    if (notes->count == CSV_RUN_NOTES_MAX) return;
-    va_start(arguments, format);
-    vsnprintf(notes->lines[notes->count++], CSV_RUN_NOTE_SIZE, format, arguments);
-    va_end(arguments);
+static bool read_sizes(CsvHead *head, const char *path, Error *error) {
+    CsvTable table;
+    if (!csv_table_read(&table, path, &size_layout, error)) return false;
+    bool ok = true;
+    for (int i = 0; ok && i < 3; i++)
+        if (table.fields[i] < 0)
+            ok = csv_error(&table.csv, 0, 0, error, "the column '%s' is missing; expected body,width,height",
+                           size_columns[i].name);
+    head->states_static = ok && table.fields[3] >= 0;
+    for (int i = 0; ok && i < table.count; i++) {
+        const SizeRow *row = (const SizeRow *)table.rows + i;
+        ok = add_body(head, path, (CsvBody){row->body, vec2(row->width, row->height), row->fixed != 0}, error);
+    }
+    csv_table_free(&table);
+    return ok;
 }
 
-static void note_static(const CsvImport *import) {
-    const Trajectory *run = import->run;
-    char list[96] = "";
+/* "1,2.5": `least` to `most` numbers; returns how many, 0 if the text is something else. */
+static int take_numbers(char *text, int least, int most, float numbers[NUMBERS_MAX]) {
     int count = 0;
-    for (int body = 0; body < run->bodies; body++) {
-        if (!run->fixed[body]) continue;
-        if (count++ < 8) text_join(list, sizeof list, ", ", "%" PRId64, import->head.bodies[body].number);
+    for (char *next = text; next != NULL && count < most; count++) {
+        char *field = next + strspn(next, " "), *comma = strchr(field, ',');
+        next = comma != NULL ? comma + 1 : NULL;
+        if (comma != NULL) *comma = '\0';
+        if (!parse_float(field, &numbers[count])) return 0;
+        if (next == NULL) return count + 1 >= least ? count + 1 : 0;
     }
-    if (import->head.states_static) return;
-    if (count == 0)
-        add_note(import->notes, "no body is static: each of them moves");
-    else
-        add_note(import->notes, "%d static: %s%s never move%s", count, list, count > 8 ? ", ..." : "",
-                 count == 1 ? "s" : "");
+    return 0;
 }
 
-/* Completes the bodies once all rows are read: sizes, which are static, poses of static bodies in frames without their row.
-   False with error set if a body is missing between two of its frames. */
-static bool finish_bodies(CsvImport *import, Error *error) {
-    Trajectory *run = import->run;
-    for (int body = 0; body < run->bodies; body++) {
-        run->size[body] = import->head.bodies[body].size;
-        run->fixed[body] = import->head.bodies[body].fixed;
-        if (run_csv_stays(import, body))
-            carry_on(run, body);
-        else if (!check_body(import, body, error))
-            return false;
-    }
-    if (!import->head.states_static) trajectory_guess_fixed(run);
-    note_static(import);
+/* Cuts the last field off if it is "static" or "dynamic". */
+static void take_kind(CsvHead *head, char *text, CsvBody *body) {
+    char *last = strrchr(text, ',');
+    const char *word = last != NULL ? last + 1 + strspn(last + 1, " ") : "";
+    body->fixed = strcmp(word, "static") == 0;
+    if (!body->fixed && strcmp(word, "dynamic") != 0) return;
+    head->states_static = true;
+    *last = '\0';
+}
+
+/* "0,100,20" or "0,100,20,static" */
+static bool take_size(CsvHead *head, const char *path, char *text, Error *error, bool *right) {
+    CsvBody body = {0};
+    float size[NUMBERS_MAX] = {0};
+    take_kind(head, text, &body);
+    char *comma = strchr(text, ',');
+    *right = comma != NULL;
+    if (comma == NULL) return true;
+    *comma = '\0';
+    *right = parse_int(text, 0, INT32_MAX - 1, &body.number) && take_numbers(comma + 1, 2, 2, size) == 2 &&
+             is_size(size[0]) && is_size(size[1]);
+    body.size = vec2(size[0], size[1]);
+    return !*right || add_body(head, path, body, error);
+}
+
+static bool take_name(char name[TRAJECTORY_NAME_SIZE], const char *text) {
+    for (const char *c = text; *c != '\0'; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f) return false;
+    return snprintf(name, TRAJECTORY_NAME_SIZE, "%s", text) < TRAJECTORY_NAME_SIZE;
+}
+
+static bool take_hash(const char *text, uint64_t *hash) {
+    char *end;
+    *hash = strtoull(text, &end, 16);
+    return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && *end == '\0';
+}
+
+static bool take_camera(CsvHead *head, char *text) {
+    float numbers[NUMBERS_MAX];
+    if (take_numbers(text, 4, 4, numbers) != 4) return false;
+    head->camera[0] = vec2(numbers[0], numbers[1]);
+    head->camera[1] = vec2(numbers[2], numbers[3]);
     return true;
 }
 
-/* Reads a run from CSV in two passes: the first finds how many frames there are, the second fills them. */
+/* What a key states; in the order of the keys. */
+enum { KEY_SCENE, KEY_METHOD, KEY_SCENE_HASH, KEY_ITERATIONS, KEY_DT, KEY_BOMB, KEY_CAMERA, KEY_SIZE, KEYS };
+static const struct {
+    const char *name, *form;
+} keys[KEYS] = {
+    {"scene", "a name of at most 127 bytes"},
+    {"method", "a name of at most 127 bytes"},
+    {"scene_hash", "16 hexadecimal digits"},
+    {"iterations", "a whole number from 1"},
+    {"dt", "a time in seconds such as 0.01 or 1/60"},
+    {"bomb", "the number of a body"},
+    {"camera", "X,Y,WIDTH,HEIGHT"},
+    {"size", "BODY,WIDTH,HEIGHT from 1e-06 to 1e+06 m, perhaps with static or dynamic"},
+};
 
-static const size_t MAX_SIZE = (size_t)1 << 30;
-static const double TIME_TOLERANCE = 0.01;  /* of a step */
-static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole number is that number */
-
-/* A run may end in NaN, from which no body comes back: it is read up to there. */
-static bool find_end(CsvImport *import, const CsvRow *row, int body, Error *error) {
-    int64_t *end = &import->ends[body];
-    if (row->not_finite && row->frame < *end) *end = row->frame;
-    if (*end < import->end) import->end = *end, import->ended = body;
-    return row->not_finite || row->frame <= *end ||
-           csv_fail(import->path, row->line, 0, error,
-                    "body %" PRId64 " is finite in frame %" PRId64 ", but not in frame %" PRId64, row->body, row->frame,
-                    *end);
-}
-
-static bool count_rows(CsvImport *import, Error *error) {
-    const CsvHead *head = &import->head;
-    CsvRow row;
-    import->first = INT64_MAX;
-    import->last = -1;
-    import->count = 0;
-    memset(import->row_counts, 0, head->count * sizeof *import->row_counts);
-    csv_rows_rewind(&import->rows);
-    while (csv_rows_next(&import->rows, &row, error)) {
-        const int body = csv_head_body(head, row.body);
-        if (body < 0) return csv_fail(import->path, row.line, 0, error, "body %" PRId64 " has no size", row.body);
-        if (!find_end(import, &row, body, error)) return false;
-        if (row.frame >= import->end) continue;
-        import->row_counts[body]++;
-        import->count++;
-        if (row.frame < import->first) import->first = row.frame, import->first_time = row.time;
-        if (row.frame > import->last) import->last = row.frame, import->last_time = row.time;
-    }
-    return error->kind == ERROR_NONE;
-}
-
-/* The first pass; if the run ends in NaN once more, as rows of its last frame were counted before that was known. */
-static bool survey(CsvImport *import, Error *error) {
-    const CsvHead *head = &import->head;
-    if (!count_rows(import, error) || (import->end < INT64_MAX && !count_rows(import, error))) return false;
-    if (import->count == 0 && import->end < INT64_MAX)
-        return error_input(error, import->path, "body %" PRId64 ": a number of its first frame is NaN or infinite",
-                           head->bodies[import->ended].number);
-    if (import->count == 0) return error_input(error, import->path, "has no rows");
-    for (size_t i = 0; i < head->count; i++)
-        if (import->row_counts[i] == 0 && import->end == INT64_MAX)
-            return error_input(error, import->path, "body %" PRId64 " has a size but no row", head->bodies[i].number);
-    return true;
-}
-
-/* A frame number far away would make a huge run of few rows. */
-static bool check_last(CsvImport *import, Error *error) {
-    CsvRow row;
-    if (import->last - import->first < import->count) return true;
-    csv_rows_rewind(&import->rows);
-    while (csv_rows_next(&import->rows, &row, error) && row.frame != import->last) continue;
-    return csv_fail(import->path, row.line, 0, error,
-                    "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
-                    " rows are too few for the frames between",
-                    import->last, import->first, import->count);
-}
-
-/* Frames that have one body each, of many: what such a run takes must be in proportion to its text, as in .npz files. */
-static bool check_size(const CsvImport *import, Error *error) {
-    const uint64_t frames = (uint64_t)(import->last - import->first) + 1, bodies = import->head.count;
-    const uint64_t pose = 2 * sizeof(Vec2) + 2 * sizeof(float), budget = npz_budget(import->size);
-    return frames * bodies <= budget / pose ||
-           error_input(error, import->path,
-                       "%" PRIu64 " frames of %" PRIu64 " bodies take %" PRIu64 " bytes; expected at most %" PRIu64
-                       " (%d MiB and %d times the size of the file); leave out the bodies that are seldom there",
-                       frames, bodies, frames * bodies * pose, budget, (int)(NPZ_ALWAYS >> 20), (int)NPZ_RATIO);
-}
-
-static bool has_times(const CsvImport *import) { return import->rows.field[COL_TIME] >= 0; }
-
-static bool choose_step(CsvImport *import, float *dt, Error *error) {
-    const float stated = import->head.dt, given = import->options->dt;
-    const int64_t steps = import->last - import->first;
-    if (given > 0 || stated > 0) {
-        *dt = given > 0 ? given : stated;
-        if (given > 0 && stated > 0 && given != stated)
-            add_note(import->notes, "dt is %g s, as given; the file states %g s", (double)given, (double)stated);
-        return true;
-    }
-    if (!has_times(import) || steps == 0)
-        return error_input(
-            error, import->path,
-            "the time step is missing: give --dt S, a line '# dt: S' above the header, or a column time%s",
-            has_times(import) ? " with more than one frame" : "");
-    double step = (import->last_time - import->first_time) / (double)steps;
-    if (!(step > 0)) return error_input(error, import->path, "the times do not rise");
-    const double rate = rint(1 / step);
-    if (fabs(rate * step - 1) < WHOLE_TOLERANCE) {
-        step = 1 / rate;
-        add_note(import->notes, "dt is 1/%.0f s, from the column time", rate);
-    } else
-        add_note(import->notes, "dt is %.9g s, from the column time", step);
-    *dt = (float)step;
-    return true;
-}
-
-/* Times are checked only where they set the step. */
-static bool check_time(const CsvImport *import, const CsvRow *row, Error *error) {
-    if (!has_times(import) || import->options->dt > 0 || import->head.dt > 0) return true;
-    const double dt = (double)import->run->dt, due = import->first_time + dt * (double)(row->frame - import->first);
-    return fabs(row->time - due) <= TIME_TOLERANCE * dt ||
-           csv_fail(import->path, row->line, 0, error,
-                    "time %g s does not fit to equal steps: frame %" PRId64 " is due at %g s", row->time, row->frame,
-                    due);
-}
-
-static void set_state(CsvImport *import, const CsvRow *row, int body) {
-    Trajectory *run = import->run;
-    const size_t i = csv_import_place(run, row->frame - import->first, body);
-    const float *state = row->state;
-    const bool degrees = import->options->degrees;
-    const double unit = acos(-1) / 180;
-    run->position[i] = vec2(state[0], state[1]);
-    run->angle[i] = degrees ? (float)((double)state[2] * unit) : state[2];
-    if (run->no_velocities) return;
-    run->velocity[i] = vec2(state[3], state[4]);
-    run->angular_velocity[i] = degrees ? (float)((double)state[5] * unit) : state[5];
-}
-
-/* The second pass. */
-static bool run_csv_fill(CsvImport *import, Error *error) {
-    Trajectory *run = import->run;
-    CsvRow row;
-    csv_rows_rewind(&import->rows);
-    while (csv_rows_next(&import->rows, &row, error)) {
-        const int body = csv_head_body(&import->head, row.body);
-        if (row.frame >= import->end) continue;
-        if (trajectory_has(run, (int)(row.frame - import->first), body)) {
-            const int line = row.line, before = csv_rows_find(&import->rows, row.frame, row.body);
-            return csv_fail(import->path, line, 0, error,
-                            "body %" PRId64 " is twice in frame %" PRId64 ": also in line %d", row.body, row.frame,
-                            before);
-        }
-        if (!check_time(import, &row, error)) return false;
-        set_state(import, &row, body);
-    }
-    return error->kind == ERROR_NONE;
-}
-
-static bool has_rows(const Trajectory *run, int frame) {
-    for (int body = 0; body < run->bodies; body++)
-        if (trajectory_has(run, frame, body)) return true;
-    return false;
-}
-
-static bool check_frames(CsvImport *import, Error *error) {
-    const Trajectory *run = import->run;
-    for (int frame = 0; frame < run->frames; frame++) {
-        CsvRow row;
-        int next = frame;
-        if (has_rows(run, frame)) continue;
-        while (!has_rows(run, next)) next++;
-        csv_rows_rewind(&import->rows);
-        while (csv_rows_next(&import->rows, &row, error) && row.frame != import->first + next) continue;
-        return csv_fail(import->path, row.line, 0, error,
-                        "frame %" PRId64 " comes here, but frame %" PRId64 " has no rows", row.frame,
-                        import->first + frame);
+static bool take_value(CsvHead *head, const char *path, int key, char *text, Error *error, bool *right) {
+    switch (key) {
+    case KEY_SCENE: *right = take_name(head->scene, text); break;
+    case KEY_METHOD: *right = take_name(head->method, text); break;
+    case KEY_SCENE_HASH: *right = take_hash(text, &head->scene_hash); break;
+    case KEY_ITERATIONS: *right = parse_int(text, 1, INT32_MAX, &head->iterations); break;
+    case KEY_DT: *right = parse_float(text, &head->dt) && head->dt > 0; break;
+    case KEY_BOMB: *right = parse_int(text, 0, INT32_MAX - 1, &head->bomb); break;
+    case KEY_CAMERA: *right = take_camera(head, text); break;
+    default: return take_size(head, path, text, error, right);
     }
     return true;
 }
 
-static bool finish_head(CsvImport *import, Error *error) {
-    Trajectory *run = import->run;
-    const CsvHead *head = &import->head;
-    const char *name = import->options->name;
-    snprintf(run->scene, sizeof run->scene, "%s", head->scene[0] != '\0' ? head->scene : name);
-    snprintf(run->method, sizeof run->method, "%s", head->method[0] != '\0' ? head->method : name);
-    run->scene_hash = head->scene_hash;
-    run->iterations = (int)head->iterations;
-    run->bomb = head->bomb < 0 ? -1 : csv_head_body(head, head->bomb);
-    run->camera_center = head->camera[0];
-    run->camera_size = head->camera[1];
-    return head->bomb < 0 || run->bomb >= 0 ||
-           error_input(error, import->path, "the bomb is body %" PRId64 ", which has no size", head->bomb);
+/* "key: value"; comments of another form mean nothing. */
+static bool take_comment(CsvHead *head, const char *path, int line, char *text, Error *error) {
+    const char *known[KEYS];
+    char *colon = strchr(text, ':');
+    if (colon == NULL || strcspn(text, " \t") < (size_t)(colon - text)) return true;
+    *colon = '\0';
+    char *value = colon + 1 + strspn(colon + 1, " \t");
+    for (int key = 0; key < KEYS; key++) {
+        bool right = true;
+        known[key] = keys[key].name;
+        if (strcmp(text, keys[key].name) != 0) continue;
+        if (!take_value(head, path, key, value, error, &right)) return false;
+        return right || csv_fail(path, line, 0, error, "%s: expected %s", keys[key].name, keys[key].form);
+    }
+    const char *near = nearest_word(text, known, KEYS);
+    return near == NULL || csv_fail(path, line, 0, error, "'# %s:': did you mean '# %s:'?", csv_show(text).text, near);
 }
 
-static void note_numbers(const CsvImport *import) {
-    const CsvHead *head = &import->head;
-    const int64_t least = head->bodies[0].number, most = head->bodies[head->count - 1].number;
-    CsvRunNotes *notes = import->notes;
-    if (import->first != 0) add_note(notes, "frame %" PRId64 " of the file becomes frame 0", import->first);
-    if (least != 0 || most >= (int64_t)head->count)
-        add_note(notes, "bodies %" PRId64 " to %" PRId64 " of the file become bodies 0 to %zu", least, most,
-                 head->count - 1);
-    if (head->scene[0] == '\0') add_note(notes, "the scene is called '%s'", import->run->scene);
-    if (head->method[0] == '\0') add_note(notes, "the method is called '%s'", import->run->method);
-    if (import->run->no_velocities) add_note(notes, "velocities are unknown: there are no columns vx, vy and omega");
-    if (import->rows.ignored[0] != '\0') add_note(notes, "unknown columns are left out: %s", import->rows.ignored);
-    add_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
+static int compare_bodies(const void *left, const void *right) {
+    const CsvBody *a = left, *b = right;
+    return (a->number > b->number) - (a->number < b->number);
 }
 
-static void note_end(const CsvImport *import) {
-    const int64_t number = import->head.bodies[import->ended].number;
-    if (import->end == INT64_MAX) return;
-    add_note(import->notes, "the run ends before frame %" PRId64 ", in which body %" PRId64 " is NaN or infinite",
-             import->end, number);
-    trajectory_judge(import->run, verdict_name(VERDICT_NON_FINITE), import->run->frames - 1, import->ended);
+static bool sort_bodies(CsvHead *head, const char *path, Error *error) {
+    if (head->count > 0) qsort(head->bodies, head->count, sizeof *head->bodies, compare_bodies);
+    for (size_t i = 1; i < head->count; i++)
+        if (head->bodies[i].number == head->bodies[i - 1].number)
+            return error_input(error, path, "body %" PRId64 " has two sizes", head->bodies[i].number);
+    return head->count > 0 ||
+           error_input(error, path,
+                       "the sizes of the bodies are missing: give --sizes FILE.csv with body,width,height, or "
+                       "lines '# size: BODY,WIDTH,HEIGHT' above the header");
 }
 
-static bool make_run(CsvImport *import, Error *error) {
-    float dt = 0;
-    if (!survey(import, error) || !check_last(import, error) || !check_size(import, error) ||
-        !choose_step(import, &dt, error))
+bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error) {
+    *head = (CsvHead){.bomb = -1};
+    if (strncmp(*text, "\xef\xbb\xbf", 3) == 0) *text += 3;
+    const char first = (*text)[strspn(*text, " \t\r\n")];
+    if (first == '{' || first == '[')
+        return error_input(error, path,
+                           "is JSON, and only CSV can be imported; 'twinbox export RUN.npz -o RUN.csv' writes it");
+    for (*line = 1; **text == '#'; ++*line) {
+        char comment[CSV_HEAD_LINE_SIZE];
+        const char *begin = *text + 1 + strspn(*text + 1, " \t");
+        size_t length = strcspn(begin, "\n"), used = length;
+        *text = begin + length + (begin[length] == '\n');
+        while (used > 0 && strchr(" \t\r", begin[used - 1]) != NULL) used--;
+        if (used >= CSV_HEAD_LINE_SIZE) return csv_fail(path, *line, 0, error, "a comment longer than 255 bytes");
+        memcpy(comment, begin, used);
+        comment[used] = '\0';
+        if (!take_comment(head, path, *line, comment, error)) return false;
+    }
+    if (sizes != NULL && head->count > 0)
+        return error_input(error, sizes, "the comments of %s also have sizes; give one of the two", path);
+    return (sizes == NULL || read_sizes(head, sizes, error)) && sort_bodies(head, path, error);
+}
+
+int csv_head_body(const CsvHead *head, int64_t number) {
+    const CsvBody key = {.number = number};
+    const CsvBody *found = bsearch(&key, head->bodies, head->count, sizeof *head->bodies, compare_bodies);
+    return found != NULL ? (int)(found - head->bodies) : -1;
+}
+
+enum { CSV_ROWS_LINE_SIZE = 1024, FIELDS_MAX = 64, INDEX_MAX = INT32_MAX - 1 };
+
+static const char *const names[COL_COUNT] = {"frame", "body", "x", "y", "angle", "vx", "vy", "omega", "time"};
+
+/* A line, cut into fields in place. */
+typedef struct Fields {
+    int count;
+    char *text[FIELDS_MAX];
+    int column[FIELDS_MAX]; /* in the line, from 1 */
+    char line[CSV_ROWS_LINE_SIZE];
+} Fields;
+
+static char *trim(char *text) {
+    text += strspn(text, " \t");
+    size_t length = strlen(text);
+    while (length > 0 && strchr(" \t", text[length - 1]) != NULL) text[--length] = '\0';
+    return text;
+}
+
+/* Takes the next line. */
+static bool run_csv_split(CsvRows *rows, Fields *fields, Error *error) {
+    size_t length = strcspn(rows->at, "\n"), used = length;
+    fields->count = 0;
+    if (used > 0 && rows->at[used - 1] == '\r') used--;
+    if (used == 0) return csv_fail(rows->path, rows->line, 0, error, "the line is empty");
+    if (used >= CSV_ROWS_LINE_SIZE)
+        return csv_fail(rows->path, rows->line, 0, error, "longer than %d bytes", CSV_ROWS_LINE_SIZE - 1);
+    memcpy(fields->line, rows->at, used);
+    fields->line[used] = '\0';
+    rows->at += length + (rows->at[length] == '\n');
+    for (char *next = fields->line; next != NULL;) {
+        char *field = next, *comma = strchr(field, ',');
+        if (fields->count == FIELDS_MAX)
+            return csv_fail(rows->path, rows->line, 0, error, "more than %d fields", FIELDS_MAX);
+        next = comma != NULL ? comma + 1 : NULL;
+        if (comma != NULL) *comma = '\0';
+        fields->column[fields->count] = (int)(field - fields->line) + 1;
+        fields->text[fields->count++] = trim(field);
+    }
+    return true;
+}
+
+static bool is_absent(const CsvRows *rows, int column) { return rows->field[column] < 0; }
+
+/* The column that an unknown name probably means, among those that the file lacks; NULL: none. */
+static const char *run_csv_meant(const CsvRows *rows, const char *name) {
+    const char *missing[COL_COUNT];
+    int count = 0;
+    for (int i = 0; i < COL_COUNT; i++)
+        if (is_absent(rows, i)) missing[count++] = names[i];
+    return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;
+}
+
+static bool run_csv_place(CsvRows *rows, const Fields *fields, Error *error) {
+    for (int i = 0; i < COL_COUNT; i++) rows->field[i] = -1;
+    for (int i = 0; i < fields->count; i++) {
+        int column = 0;
+        while (column < COL_COUNT && strcmp(names[column], fields->text[i]) != 0) column++;
+        if (column == COL_COUNT) continue;
+        if (!is_absent(rows, column))
+            return csv_fail(rows->path, rows->line, fields->column[i], error, "the column '%s' appears twice",
+                            names[column]);
+        rows->field[column] = i;
+    }
+    return true;
+}
+
+/* Names that mean nothing are kept for a note, unless one looks like a name that is missing. */
+static bool check_others(CsvRows *rows, const Fields *fields, Error *error) {
+    for (int i = 0; i < fields->count; i++) {
+        bool known = false;
+        for (int column = 0; column < COL_COUNT; column++) known = known || rows->field[column] == i;
+        if (known) continue;
+        const char *right = run_csv_meant(rows, fields->text[i]);
+        const CsvShown shown = csv_show(fields->text[i]);
+        if (right != NULL)
+            return csv_fail(rows->path, rows->line, fields->column[i], error,
+                            "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text, right);
+        text_join(rows->ignored, sizeof rows->ignored, ", ", "%s", shown.text);
+    }
+    return true;
+}
+
+bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, Error *error) {
+    Fields fields;
+    *rows = (CsvRows){.path = path, .at = text, .line = line};
+    if (*text == '\0') return csv_fail(rows->path, line, 0, error, "there is no header 'frame,body,x,y,angle'");
+    if (!run_csv_split(rows, &fields, error) || !run_csv_place(rows, &fields, error) ||
+        !check_others(rows, &fields, error))
         return false;
-    import->run = trajectory_create((int)(import->last - import->first + 1), (int)import->head.count, error);
-    if (import->run == NULL) return false;
-    import->run->dt = dt;
-    import->run->no_contacts = true;
-    import->run->no_velocities = import->rows.field[COL_VX] < 0;
-    if (!run_csv_fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
-        !finish_head(import, error))
-        return false;
-    note_numbers(import);
-    note_end(import);
-    return trajectory_check(import->run, import->path, error);
+    for (int i = COL_FRAME; i <= COL_ANGLE; i++)
+        if (is_absent(rows, i))
+            return csv_fail(rows->path, line, 0, error, "the column '%s' is missing; expected frame,body,x,y,angle",
+                            names[i]);
+    for (int i = COL_VX; i <= COL_OMEGA; i++)
+        if (is_absent(rows, i) != is_absent(rows, COL_VX))
+            return csv_fail(rows->path, line, 0, error, "give all of vx, vy and omega, or none of them");
+    rows->width = fields.count;
+    rows->first = rows->at;
+    rows->first_line = rows->line = line + 1;
+    return true;
 }
 
-static bool read_text(CsvImport *import, const char *text, Error *error) {
-    int line;
-    if (!csv_head_read(&import->head, import->path, &text, &line, import->options->sizes, error) ||
-        !csv_rows_begin(&import->rows, import->path, text, line, error))
-        return false;
-    import->row_counts = calloc(import->head.count, sizeof *import->row_counts);
-    import->ends = malloc(import->head.count * sizeof *import->ends);
-    if (import->row_counts == NULL || import->ends == NULL) return error_memory(error, import->path);
-    for (size_t i = 0; i < import->head.count; i++) import->ends[i] = INT64_MAX;
-    return make_run(import, error);
+void csv_rows_rewind(CsvRows *rows) {
+    rows->at = rows->first;
+    rows->line = rows->first_line;
 }
 
-Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error) {
-    CsvImport import = {.path = path, .options = options, .notes = notes, .end = INT64_MAX};
-    notes->count = 0;
-    const bool input = strcmp(path, "-") == 0;
-    if (input) import.path = path = "standard input";
-    char *text =
-        input ? file_read_input(MAX_SIZE, &import.size, error) : file_read(path, MAX_SIZE, &import.size, error);
-    bool done = text != NULL && (import.size > 0 || error_input(error, path, "the file is empty")) &&
-                (strlen(text) == import.size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
-                read_text(&import, text, error);
-    free(text);
-    free(import.row_counts);
-    free(import.ends);
-    free(import.head.bodies);
-    if (done) return import.run;
-    trajectory_destroy(import.run);
-    return NULL;
+static bool fail_field(const CsvRows *rows, const Fields *fields, int column, Error *error, const char *what) {
+    const int field = rows->field[column];
+    return csv_fail(rows->path, rows->line, fields->column[field], error, "%s: '%s' %s", names[column],
+                    csv_show(fields->text[field]).text, what);
+}
+
+static bool take_index(const CsvRows *rows, const Fields *fields, int column, int64_t *index, Error *error) {
+    return parse_int(fields->text[rows->field[column]], 0, INDEX_MAX, index) ||
+           fail_field(rows, fields, column, error, "is not a whole number from 0 to 2147483646");
+}
+
+/* "nan", "-inf", or more than a float32 holds. */
+static bool is_beyond(const char *text) {
+    char *end;
+    const double value = strtod(text, &end);
+    return end != text && *end == '\0' && (isnan(value) || fabs(value) > (double)FLT_MAX);
+}
+
+static bool take_state(const CsvRows *rows, const Fields *fields, CsvRow *row, Error *error) {
+    for (int column = COL_X; column <= COL_OMEGA; column++) {
+        const char *text = is_absent(rows, column) ? "0" : fields->text[rows->field[column]];
+        if (parse_float(text, &row->state[column - COL_X])) continue;
+        if (!is_beyond(text)) return fail_field(rows, fields, column, error, "is not a finite number");
+        row->not_finite = true;
+    }
+    return is_absent(rows, COL_TIME) || parse_double(fields->text[rows->field[COL_TIME]], &row->time) ||
+           fail_field(rows, fields, COL_TIME, error, "is not a finite number");
+}
+
+bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
+    Fields fields;
+    *row = (CsvRow){.line = rows->line};
+    if (*rows->at == '\0' || !run_csv_split(rows, &fields, error)) return false;
+    if (fields.count != rows->width)
+        return csv_fail(rows->path, rows->line, 0, error, "%d fields, but the header has %d", fields.count,
+                        rows->width);
+    if (!take_index(rows, &fields, COL_FRAME, &row->frame, error) ||
+        !take_index(rows, &fields, COL_BODY, &row->body, error) || !take_state(rows, &fields, row, error))
+        return false;
+    rows->line++;
+    return true;
+}
+
+int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body) {
+    CsvRow row;
+    Error ignored = {0};
+    csv_rows_rewind(rows);
+    while (csv_rows_next(rows, &row, &ignored))
+        if (row.frame == frame && row.body == body) return row.line;
+    return 0;
 }
 
 /* Nine digits keep every bit of a float32. */
@@ -371,7 +394,7 @@ static bool has_dynamic(const Trajectory *run, int frame) {
 
 /* A static body is written once, as readers keep it where it is, and where it is alone: each frame has a row. */
 static bool is_shown(const Trajectory *run, int frame, int body, bool alone) {
-    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body, before = i - (size_t)run->bodies;
+    const size_t i = trajectory_at(run, frame, body), before = i - (size_t)run->bodies;
     if (!trajectory_has(run, frame, body)) return false;
     return !run->fixed[body] || alone || frame == 0 || !trajectory_has(run, frame - 1, body) ||
            memcmp(&run->position[i], &run->position[before], sizeof(Vec2)) != 0 ||
@@ -381,7 +404,7 @@ static bool is_shown(const Trajectory *run, int frame, int body, bool alone) {
 }
 
 static void print_row(FILE *out, const Trajectory *run, int frame, int body) {
-    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    const size_t i = trajectory_at(run, frame, body);
     const Vec2 position = run->position[i], velocity = run->velocity[i];
     fprintf(out, "%d,%d,%.9g,%.9g,%.9g", frame, body, (double)position.x, (double)position.y, (double)run->angle[i]);
     if (!run->no_velocities)

@@ -52,11 +52,8 @@ static void put_bodies(JsonWriter *json, const Trajectory *run) {
 
 /* [x, y, angle, vx, vy, omega] */
 static void put_state(JsonWriter *json, const Trajectory *run, int frame, int body) {
-    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
-    if (!trajectory_has(run, frame, body)) {
-        json_put_text(json, NULL, NULL);
-        return;
-    }
+    const size_t i = trajectory_at(run, frame, body);
+    if (json_put_absent(json, NULL, !trajectory_has(run, frame, body))) return;
     json_begin_array(json, NULL, JSON_ONE_LINE);
     put_float(json, NULL, run->position[i].x);
     put_float(json, NULL, run->position[i].y);

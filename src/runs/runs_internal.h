@@ -161,11 +161,6 @@ typedef struct CsvImport {
     Trajectory *run;
 } CsvImport;
 
-/* Index of the state of a body in a frame of the run. */
-static inline size_t csv_import_place(const Trajectory *run, int64_t frame, int body) {
-    return (size_t)frame * (size_t)run->bodies + (size_t)body;
-}
-
 /* The checks of a watch for one step. They run before the watch stores the step's positions as the last ones. */
 
 /* Stores the verdict if it is worse than the worst so far. Returns whether it is. */

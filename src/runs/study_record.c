@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
+#include "base/numbers.h"
 #include "runs/pieces.h"
 
 #include <assert.h>
@@ -171,15 +172,6 @@ bool shard_parse(Shard *shard, const char *text, Error *error) {
     return true;
 }
 
-static int64_t greatest_common_divisor(int64_t a, int64_t b) {
-    while (b != 0) {
-        const int64_t rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a;
-}
-
 /* Pieces are put in an order that a step coprime to their number gives, and this order is cut into shards. The step is near
    the golden section, which no regular pattern of long and short pieces meets again and again. */
 int shard_of(int64_t piece, int64_t pieces, int shards) {
@@ -187,7 +179,7 @@ int shard_of(int64_t piece, int64_t pieces, int shards) {
     if (shards <= 1 || pieces <= 1) return 1;
     int64_t step = (int64_t)((double)pieces * golden);
     if (step < 1) step = 1;
-    while (greatest_common_divisor(step, pieces) != 1) step++;
+    while (greatest_divisor(step, pieces) != 1) step++;
     const int64_t place = piece * step % pieces; /* within 64 bits: PIECES_MAX */
     return (int)(place * shards / pieces) + 1;
 }

@@ -82,7 +82,7 @@ void trajectory_judge(Trajectory *t, const char *words, int frame, int body) {
 }
 
 bool trajectory_has(const Trajectory *t, int frame, int body) {
-    Vec2 position = t->position[(size_t)frame * (size_t)t->bodies + (size_t)body];
+    Vec2 position = t->position[trajectory_at(t, frame, body)];
     return isfinite(position.x) && isfinite(position.y);
 }
 
@@ -129,7 +129,7 @@ uint64_t trajectory_frame_hash(const Trajectory *t, int frame) {
     uint64_t hash = FNV1A64_START;
     for (int body = 0; body < t->bodies; body++) {
         if (t->fixed[body] || !trajectory_has(t, frame, body)) continue;
-        size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
+        size_t i = trajectory_at(t, frame, body);
         float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
                          t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
         hash = hash_fnv1a64(hash, state, sizeof state);
@@ -263,10 +263,6 @@ uint64_t trajectory_hash(const Trajectory *run) {
     return trajectory_add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
 }
 
-static size_t pose(const Trajectory *t, int frame, int body) {
-    return (size_t)frame * (size_t)t->bodies + (size_t)body;
-}
-
 bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
 
 static bool same_velocity(const Trajectory *a, size_t i, const Trajectory *b, size_t k) {
@@ -277,7 +273,7 @@ static bool same_velocity(const Trajectory *a, size_t i, const Trajectory *b, si
 bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
     bool in_a = trajectory_has(a, frame, body), in_b = trajectory_has(b, frame, body);
     if (!in_a || !in_b) return in_a == in_b;
-    size_t i = pose(a, frame, body), k = pose(b, frame, body);
+    size_t i = trajectory_at(a, frame, body), k = trajectory_at(b, frame, body);
     return memcmp(&a->position[i], &b->position[k], sizeof(Vec2)) == 0 &&
            memcmp(&a->angle[i], &b->angle[k], sizeof(float)) == 0 &&
            (!trajectory_both_move(a, b) || same_velocity(a, i, b, k));
@@ -286,7 +282,7 @@ bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, 
 StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
     StateDifference d = {.in_a = trajectory_has(a, frame, body), .in_b = trajectory_has(b, frame, body)};
     if (!d.in_a || !d.in_b) return d;
-    size_t i = pose(a, frame, body), k = pose(b, frame, body);
+    size_t i = trajectory_at(a, frame, body), k = trajectory_at(b, frame, body);
     d.distance = vec2_distance(a->position[i], b->position[k]);
     d.angle = fabs((double)a->angle[i] - b->angle[k]);
     if (!trajectory_both_move(a, b)) return d;

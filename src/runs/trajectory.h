@@ -64,6 +64,11 @@ void trajectory_destroy(Trajectory *trajectory);
 /* Sets the verdict; longer words are cut. It is no part of hashes and comparisons. */
 void trajectory_judge(Trajectory *trajectory, const char *words, int frame, int body);
 
+/* The index of a body's state in a frame: of position, angle, velocity, angular_velocity. */
+static inline size_t trajectory_at(const Trajectory *trajectory, int64_t frame, int body) {
+    return (size_t)frame * (size_t)trajectory->bodies + (size_t)body;
+}
+
 /* True if the body exists in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads runs from .npz, of whatever program, checks what must hold for them, and finds where two differ. */
+/* Reads runs from .npz, of whatever program, and checks what must hold for them. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "engine/engine.h"
@@ -78,7 +78,7 @@ static bool check_presence(const Trajectory *t, int frame, int body, const char 
 
 /* Finite numbers if the body exists, else NaN. */
 static bool check_pose(const Trajectory *t, int frame, int body, const char *path, Error *error) {
-    size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
+    size_t i = trajectory_at(t, frame, body);
     const float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
                            t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
     const int count = t->no_velocities ? 3 : 6;
@@ -116,98 +116,6 @@ bool trajectory_check(const Trajectory *t, const char *path, Error *error) {
     }
     return true;
 }
-
-static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, const PoseTolerance *tolerance) {
-    const double turn = 2 * acos(-1);
-    if (trajectory_same_state(a, b, frame, body)) return false;
-    if (!tolerance->given) return true;
-    StateDifference by = trajectory_state_difference(a, b, frame, body);
-    return !by.in_a || !by.in_b || by.distance > tolerance->distance ||
-           fabs(remainder(by.angle, turn)) > tolerance->angle;
-}
-
-static void count_frames(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
-                         TrajectoryParting *parting) {
-    static const PoseTolerance exact = {0};
-    for (int frame = 0; frame < parting->frames; frame++) {
-        bool equal = true, within = true;
-        for (int body = 0; body < a->bodies && within; body++) {
-            equal = equal && !apart(a, b, frame, body, &exact);
-            within = equal || !apart(a, b, frame, body, tolerance);
-        }
-        parting->equal += equal;
-        parting->within += within && !equal;
-    }
-}
-
-/* The first frame from `frame` on in which a body differs. */
-static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int frame, int frames,
-                              const PoseTolerance *tolerance) {
-    PartedBody parted = {.frame = -1, .body = -1};
-    for (; parted.frame < 0 && frame < frames; frame++)
-        for (int body = 0; body < a->bodies; body++) {
-            if (!apart(a, b, frame, body, tolerance) || parted.bodies++ > 0) continue;
-            parted.frame = frame;
-            parted.body = body;
-            parted.by = trajectory_state_difference(a, b, frame, body);
-        }
-    return parted;
-}
-
-/* The first step up to `last` with a contact that differs. */
-static bool find_step(const Trajectory *a, const Trajectory *b, int last, TrajectoryParting *parting, Error *error) {
-    parting->step = -1;
-    for (int step = 1; parting->step < 0 && step <= last; step++) {
-        if (!contact_difference(a, b, step, -1, &parting->contacts, error)) return false;
-        if (contacts_differ(&parting->contacts)) parting->step = step;
-    }
-    return true;
-}
-
-/* True if every body that differs has just been added. The previous frames are equal, so one run suffices. */
-static bool only_launched(const Trajectory *a, const Trajectory *b, int frame) {
-    for (int body = 0; body < a->bodies; body++)
-        if (trajectory_has(a, frame - 1, body) && !trajectory_same_state(a, b, frame, body)) return false;
-    return true;
-}
-
-static PartCause find_cause(const Trajectory *a, const Trajectory *b, const TrajectoryParting *parting) {
-    int frame = parting->first.frame;
-    const ContactDifference *contacts = &parting->contacts;
-    if (frame < 0) return PART_NONE;
-    if (frame == 0) return PART_START;
-    if (only_launched(a, b, frame)) return PART_LAUNCH;
-    if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
-    if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
-    if (parting->step < 0) return parting->no_impulses && parting->contacts.count_a > 0 ? PART_UNKNOWN : PART_ELSEWHERE;
-    return contacts->only_a + contacts->only_b + contacts->moved > 0 ? PART_CONTACTS : PART_SOLVER;
-}
-
-bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
-                     TrajectoryParting *parting, Error *error) {
-    int frames = a->frames < b->frames ? a->frames : b->frames;
-    *parting = (TrajectoryParting){
-        .frames = frames, .poses_only = !trajectory_both_move(a, b), .no_impulses = a->no_impulses || b->no_impulses};
-    parting->first = find_parted(a, b, 0, frames, &(PoseTolerance){0});
-    parting->beyond = parting->first;
-    count_frames(a, b, tolerance, parting);
-    if (tolerance->given && parting->first.frame >= 0)
-        parting->beyond = find_parted(a, b, parting->first.frame, frames, tolerance);
-    int last = parting->first.frame >= 0 ? parting->first.frame : frames - 1;
-    bool contacts = !a->no_contacts && !b->no_contacts;
-    parting->step = -1;
-    if (contacts && !find_step(a, b, last, parting, error)) return false;
-    /* Contacts of the body, which the cause depends on. */
-    if (contacts && parting->no_impulses && parting->step < 0 && parting->first.frame > 0 &&
-        !contact_difference(a, b, parting->first.frame, parting->first.body, &parting->contacts, error))
-        return false;
-    parting->cause = find_cause(a, b, parting);
-    const PartedBody *beyond = &parting->beyond;
-    return beyond->frame < 1 || !contacts ||
-           contact_difference(a, b, beyond->frame, beyond->body, &parting->beyond_contacts, error);
-}
-
-/* Reads trajectories from untrusted files. */
 
 static const char *const group_words[RUN_ARRAY_GROUPS] = {[GROUP_VELOCITIES] = "the two",
                                                           [GROUP_CONTACTS] = "the six contact arrays",
@@ -399,7 +307,7 @@ static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *err
 
 static bool never_moves(const Trajectory *t, int body) {
     for (int frame = 0; frame < t->frames; frame++) {
-        size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body, first = (size_t)body;
+        size_t i = trajectory_at(t, frame, body), first = (size_t)body;
         if (!trajectory_has(t, frame, body) || memcmp(&t->position[i], &t->position[first], sizeof(Vec2)) != 0 ||
             memcmp(&t->angle[i], &t->angle[first], sizeof(float)) != 0)
             return false;

@@ -183,7 +183,7 @@ static void print_states(FILE *out, const Trajectory *t, int first) {
     for (int frame = 0; frame < t->frames; frame++) {
         for (int body = 0; body < t->bodies; body++) {
             if (t->fixed[body] || !trajectory_has(t, frame, body)) continue;
-            size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
+            size_t i = trajectory_at(t, frame, body);
             fprintf(out, "%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", first + frame, body, (double)t->position[i].x,
                     (double)t->position[i].y, (double)t->angle[i], (double)t->velocity[i].x, (double)t->velocity[i].y,
                     (double)t->angular_velocity[i]);

@@ -12,10 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t verdict_stored_place(const Trajectory *run, int frame, int body) {
-    return (size_t)frame * (size_t)run->bodies + (size_t)body;
-}
-
 /* How many bodies a frame has: the first ones, as a watch expects. */
 static bool count_bodies(const Trajectory *run, int frame, int *count, Error *error) {
     *count = 0;
@@ -33,8 +29,8 @@ static void set_velocity(const Trajectory *run, int frame, int i, Body *body) {
     const float rate = 1 / run->dt, turn = 6.2831853f; /* some engines keep angles within one */
     const bool known = frame > 0 && trajectory_has(run, frame - 1, i);
     const int from = known ? frame - 1 : frame, to = from + 1;
-    const size_t now = verdict_stored_place(run, frame, i), before = verdict_stored_place(run, from, i),
-                 after = verdict_stored_place(run, to, i);
+    const size_t now = trajectory_at(run, frame, i), before = trajectory_at(run, from, i),
+                 after = trajectory_at(run, to, i);
     body->velocity = run->velocity[now];
     body->angular_velocity = run->angular_velocity[now];
     if (!run->no_velocities) return;
@@ -44,8 +40,8 @@ static void set_velocity(const Trajectory *run, int frame, int i, Body *body) {
 }
 
 static void set_body(const Trajectory *run, int frame, int i, Body *body) {
-    body->position = run->position[verdict_stored_place(run, frame, i)];
-    body->angle = run->angle[verdict_stored_place(run, frame, i)];
+    body->position = run->position[trajectory_at(run, frame, i)];
+    body->angle = run->angle[trajectory_at(run, frame, i)];
     set_velocity(run, frame, i, body);
 }
 
