@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* ADMM: the kernels have the same bits, the friction is Coulomb's, no unit matters. test_rivals.c and test_laws.c have
    what all rivals must keep. */
-#include "consistent.h"
 #include "kernels.h"
 #include "random_problem.h"
 
@@ -117,17 +116,6 @@ TEST(the_unit_of_mass_changes_no_bit) {
     free_solution(&scaled);
     world_destroy(world);
     world_destroy(heavy);
-}
-
-/* Coulomb's friction, not its convex relaxation, which would lift it by mu times its slip: 4.5 m/s. */
-TEST(what_slides_stays_on_the_ground) {
-    World *world = make_sliding_box();
-    ContactSolver solver = make_solver(&solver_admm, "k=400");
-    run(world, &solver, 1);
-    assert_near(world_bodies(world)[1].velocity.y, 0, 1e-4);
-    assert_near(world_bodies(world)[1].velocity.x, 9 - 0.5f * 10 * world_dt, 1e-4);
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* Where sweeps carry nothing: 10,000 times the mass on a box. */

@@ -75,26 +75,4 @@ TEST(settings_out_of_range_are_refused) {
     scene_destroy(scene);
 }
 
-/* The bounds that files and charts rely on. */
-TEST(bounds_are_these) {
-    static const struct {
-        const char *method, *key;
-        double least, most;
-    } bounds[] = {{"engine", "k", 1, SWEEPS_MAX},
-                  {"momentum", "k", 1, SWEEPS_MAX},
-                  {"interior", "near", 1e-9, 1e6},
-                  {"avbd", "k", 1, 10000},
-                  {"avbd", "alpha", 0, 1},
-                  {"avbd", "gamma", 0, 1},
-                  {"soft-step", "substeps", 1, 1000},
-                  {"soft-step", "hertz", 0.01, 1e4},
-                  {"playback", "launches", 1, 10000}};
-    for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
-        const SettingSpec *spec = method_describe(bounds[i].method)->settings;
-        while (strcmp(spec->key, bounds[i].key) != 0) spec++;
-        assert_near(spec->least, bounds[i].least, 1e-6 * bounds[i].least);
-        assert_near(spec->most, bounds[i].most, 1e-6 * bounds[i].most);
-    }
-}
-
 RUN_TESTS(NULL, NULL)

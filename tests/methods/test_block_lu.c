@@ -114,18 +114,6 @@ TEST(rows_hold_whatever_the_condition) {
     block_lu_free(&lu);
 }
 
-/* A star, whose hub must come last: any other order fills in. */
-TEST(the_hub_of_a_star_is_eliminated_last) {
-    enum { RAYS = 30 };
-    BlockLu lu = {0};
-    BlockEdge edges[RAYS];
-    for (int i = 0; i < RAYS; i++) edges[i] = (BlockEdge){0, i + 1};
-    assert_true(block_lu_analyse(&lu, RAYS + 1, edges, RAYS));
-    assert_int_equal(lu.below, RAYS);
-    assert_true(lu.position[0] >= RAYS - 1);
-    block_lu_free(&lu);
-}
-
 TEST(an_empty_matrix_is_no_error) {
     BlockLu lu = {0};
     assert_true(block_lu_analyse(&lu, 0, NULL, 0));

@@ -88,22 +88,6 @@ TEST(penetration_is_where_the_step_leads) {
     assert_true(criteria_of(&ball, 60, -3, true).penetration == 0);
 }
 
-/* Lengths stay, masses grow by s: impulses and energies grow by s, too. */
-TEST(units_of_mass_change_impulses_and_energies) {
-    Ball ball = {0}, heavy = {0};
-    const ContactCriteria found = criteria_of(&ball, 2, -3, true);
-    criteria_of(&heavy, 2, -3, true);
-    heavy.bodies[1].inv_mass /= 1024;
-    heavy.bodies[1].inv_inertia /= 1024;
-    heavy.impulse = (ContactImpulse){2 * 1024, -3 * 1024};
-    const ContactCriteria scaled = contact_criteria(&heavy.problem, &heavy.solution, true);
-    assert_near(scaled.signorini, 1024 * found.signorini, 1e-9);
-    assert_near(scaled.cone, 1024 * found.cone, 1e-9);
-    assert_near(scaled.dissipation, 1024 * found.dissipation, 1e-9);
-    assert_near(scaled.energy, 1024 * found.energy, 1e-9);
-    assert_true(scaled.penetration == found.penetration);
-}
-
 TEST(without_impulses_only_motion_is_judged) {
     Ball ball = {0};
     criteria_of(&ball, 6, -3, true);

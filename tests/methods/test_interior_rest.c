@@ -3,31 +3,6 @@
 #include "kernels.h"
 #include "reference_worlds.h"
 
-/* Twenty boxes, and 1000:1 on one: momentum with 20 sweeps loses both. */
-TEST(tall_and_heavy_stacks_stand) {
-    World *tall = make_world(), *heavy = make_world();
-    add_ground(tall, 0.2f);
-    for (int i = 0; i < 20; i++)
-        add_body(tall, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
-    add_ground(heavy, 0.2f);
-    for (int i = 0; i < 2; i++)
-        add_body(heavy, &(BodyDef){.size = {1, 1},
-                                   .mass = i == 0 ? 1.0f : 1000.0f,
-                                   .friction = 0.2f,
-                                   .position = {0, 0.5f + (float)i}});
-    ContactSolver solver = make_solver(&solver_interior, "");
-    run(tall, &solver, 1200);
-    run(heavy, &solver, 1200);
-    /* Each contact may close to the slop of 0.01 m. */
-    assert_near(world_bodies(tall)[20].position.y, 19.5f, 0.2f);
-    assert_near(world_bodies(tall)[20].position.x, 0, 0.02f);
-    assert_near(world_bodies(heavy)[2].position.y, 1.5f, 0.02f);
-    assert_near(world_bodies(heavy)[2].position.x, 0, 0.001f);
-    free_solver(&solver);
-    world_destroy(tall);
-    world_destroy(heavy);
-}
-
 /* The largest distance by which a body moves in the next steps, m. */
 static double moved(World *world, const ContactSolver *solver, int steps) {
     Body before[32];
@@ -77,23 +52,6 @@ TEST(a_pyramid_far_from_the_origin_comes_to_rest) {
             fastest = fmaxf(fastest, fabsf(world_bodies(world)[i].velocity.x));
     }
     if (!(fastest < 1e-5f)) fail_msg("%g m/s", (double)fastest);
-    free_solver(&solver);
-    world_destroy(world);
-}
-
-/* Stacks that do not touch do not depend on each other: eight of 20 stand as one does. */
-TEST(many_stacks_stand_as_one_does) {
-    World *world = make_world();
-    add_ground(world, 0.2f);
-    for (int k = 0; k < 8; k++)
-        for (int i = 0; i < 20; i++) add_box(world, 1, 0.2f, vec2(5 * (float)(k - 4), 0.5f + (float)i));
-    ContactSolver solver = make_solver(&solver_interior, "");
-    run(world, &solver, 900);
-    for (int k = 0; k < 8; k++) {
-        const Body *top = &world_bodies(world)[20 * (k + 1)];
-        assert_near(top->position.x, 5 * (float)(k - 4), 0.05f);
-        assert_near(top->position.y, 19.5f, 0.2f);
-    }
     free_solver(&solver);
     world_destroy(world);
 }

@@ -289,18 +289,4 @@ TEST(rocking_gains_no_energy) {
     }
 }
 
-TEST(a_tolerance_is_a_share) {
-    Scene *scene = scene_named("stack");
-    const char *const wrong[] = {"engine:keep=-0.1", "soft-step:keep=2", "interior:keep=nan", "momentum:keep=on"};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        const Method method = method_named(wrong[i]);
-        error = (Error){0};
-        assert_refused(stepper_create(&method, scene, &error), "keep: error: must be ");
-    }
-    Method method;
-    error = (Error){0};
-    assert_refused(method_parse(&method, "avbd:keep=0.05", &error), "keep");
-    scene_destroy(scene);
-}
-
 RUN_TESTS(NULL, NULL)

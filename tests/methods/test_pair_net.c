@@ -184,20 +184,6 @@ TEST(every_pair_gets_its_own_prediction) {
     network_destroy(kept);
 }
 
-/* A network knows how it was trained to see a pair. */
-TEST(a_raw_network_sees_positions) {
-    Network *network = make_pair_network(PAIR_RAW, TARGET_PAIR, PAIR_CHANGES);
-    /* The change of a's velocity is b's position, that of b's a's. */
-    network->weights[0][0 * 12 + 2] = network->weights[0][1 * 12 + 3] = 1;
-    network->weights[0][3 * 12 + 0] = network->weights[0][4 * 12 + 1] = 1;
-    BodyVelocity v[3];
-    solve(write_pair_network(network), bodies, v);
-    assert_near(v[0].linear.x, 1 + 0.25, 1e-6);
-    assert_near(v[0].linear.y, 2 + 1, 1e-6);
-    assert_near(v[1].linear.x, 0, 1e-6);
-    assert_near(v[1].linear.y, -1, 1e-6);
-}
-
 /* Of view contact, after the warm start: the first input is then what that left of the approach. */
 TEST(a_network_by_contact_sees_the_moment_after_the_warm_start) {
     Network *network = make_pair_network(PAIR_CONTACT, TARGET_PAIR, PAIR_CHANGES);

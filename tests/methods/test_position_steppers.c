@@ -181,26 +181,6 @@ static uint64_t state_hash(const World *world) {
     return hash_fnv1a64(FNV1A64_START, world_bodies(world), (size_t)world_body_count(world) * sizeof(Body));
 }
 
-/* What a stepper keeps of one world must not reach another. */
-TEST(a_used_stepper_steps_as_a_new_one) {
-    BodyDef bodies[11];
-    const Scene scene = stack_of_ten(bodies);
-    for (int m = 0; m < METHOD_COUNT; m++) {
-        Stepper *stepper = stepper_by(&scene, methods[m]);
-        uint64_t hashes[2];
-        for (int i = 0; i < 2; i++) {
-            World *world = world_of(&scene);
-            take_steps(stepper, world, &scene, 1, 50);
-            hashes[i] = state_hash(world);
-            world_destroy(world);
-        }
-        World *world = run(&scene, methods[m], 50);
-        assert_true(hashes[0] == hashes[1] && hashes[0] == state_hash(world));
-        stepper_destroy(stepper);
-        world_destroy(world);
-    }
-}
-
 /* Worlds that the stepper has not stepped last, though it has seen their past or future: an earlier copy, and one whose
    run begins in the state that the last one ended with. */
 TEST(other_worlds_step_without_memory) {

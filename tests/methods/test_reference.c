@@ -67,23 +67,6 @@ TEST(a_box_on_a_slope_sticks_below_the_friction_angle) {
     }
 }
 
-/* Two boxes meet head on in the air: they go on as one, with the mean of their momenta, and keep falling. */
-TEST(boxes_that_crash_go_on_together) {
-    World *world = make_world();
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 3, .position = {0, 10}, .velocity = {4, 0}});
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .position = {0.995f, 10}, .velocity = {-2, 0}});
-    Reference reference = {0};
-    solve_next(world, &reference);
-    for (int i = 0; i < 2; i++) {
-        assert_near(reference.velocities[i].x, (3 * 4 - 1 * 2) / 4.0, 1e-6);
-        assert_near(reference.velocities[i].y, -g * (double)world_dt, 1e-6);
-        assert_near(reference.velocities[i].spin, 0, 1e-6);
-    }
-    assert_near(reference.impulses[0].normal + reference.impulses[1].normal, 3 * (4 - 2.5), 1e-6);
-    reference_free(&reference);
-    world_destroy(world);
-}
-
 /* 1000 kg on 1 kg on the ground: what slows the sweeps (10 of them leave half the weight) does not matter here. */
 TEST(a_light_box_carries_a_heavy_one) {
     World *world = make_heavy_on_light(1000, 0.5f, 1.5f);

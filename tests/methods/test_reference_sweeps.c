@@ -185,25 +185,4 @@ TEST(the_residual_is_what_a_plain_sweep_changes) {
     world_destroy(world);
 }
 
-/* Every impulse of the reference pushes, stays in the cone and leaves no contact closing faster than its bias. */
-TEST(the_reference_keeps_the_law_of_contact) {
-    World *world = make_heap(10);
-    Reference reference = {0};
-    const ContactProblem *problem = solve_next(world, &reference);
-    Plain plain;
-    memcpy(plain.velocities, reference.velocities, (size_t)problem->body_count * sizeof *reference.velocities);
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        double normal = reference.impulses[i].normal, tangent = reference.impulses[i].tangent;
-        double limit = (double)contact->friction * normal, x = (double)contact->normal.x, y = (double)contact->normal.y;
-        double opening = slip(&plain, contact, x, y) - (double)contact->bias, sliding = slip(&plain, contact, y, -x);
-        assert_true(normal >= 0 && fabs(tangent) <= limit + 1e-12);
-        assert_true(opening > -1e-9 && (normal == 0 || opening < 1e-9));
-        if (sliding > 1e-9) assert_near(tangent, -limit, 1e-12);
-        if (sliding < -1e-9) assert_near(tangent, limit, 1e-12);
-    }
-    reference_free(&reference);
-    world_destroy(world);
-}
-
 RUN_TESTS(NULL, NULL)

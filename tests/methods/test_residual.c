@@ -112,18 +112,6 @@ TEST(random_problems_have_the_residual_of_the_definition) {
     }
 }
 
-/* Sweeps bring it down, and a network that is asked afterwards sees it. */
-TEST(sweeps_reduce_the_residual) {
-    Boxes boxes;
-    Sweeps sweeps = {0};
-    make_boxes(&boxes, -3, -4);
-    assert_true(sweeps_begin(&sweeps, sweeps_best_kernel(), &boxes.problem, true));
-    assert_true(residual_reaches(&sweeps, 4, 3));
-    assert_true(sweeps_run(&sweeps, 100));
-    assert_false(residual_reaches(&sweeps, 4, 1e-3f));
-    sweeps_free(&sweeps);
-}
-
 /* Between 0.9999 and 1.0001 of this. */
 static void assert_with_friction(const ContactProblem *problem, double residual) {
     Sweeps sweeps = {0};

@@ -71,37 +71,4 @@ TEST(nothing_that_moves_is_no_error) {
     assert_int_equal(found.counted, 0);
 }
 
-/* The engine's error in a stack that has just landed falls with its sweeps, and grows with what is added to it. */
-TEST(more_sweeps_rank_better_and_a_perturbed_solution_worse) {
-    World *world = make_world();
-    add_ground(world, 0.2f);
-    for (int i = 0; i < 5; i++) add_box(world, 1, 0.2f, vec2(0, 0.49f + (float)i));
-    ContactSolver engine = make_engine("k=3");
-    run(world, &engine, 1);
-    const ContactProblem *landed = world_problem(world);
-    Reference solved = {0};
-    Error failure = {0};
-    assert_ok(reference_solve(&solved, landed, NULL, &failure), failure);
-    BodyVelocity velocities[6];
-    ContactImpulse impulses[32];
-    ContactSolution solution = {velocities, impulses, 0, {0}};
-    double last = INFINITY;
-    for (int sweeps = 1; sweeps <= 256; sweeps *= 4) {
-        sequential_impulses_solve(landed, &(SequentialOptions){.accumulate = true, .warm = true}, sweeps, &solution);
-        double now = solution_error(landed, velocities, solved.velocities).rms;
-        assert_true(now < last);
-        last = now;
-    }
-    for (int i = 0; i < 5; i++) {
-        velocities[3].linear.x += 0.1f;
-        double now = solution_error(landed, velocities, solved.velocities).rms;
-        assert_true(now > last);
-        last = now;
-    }
-    assert_near(last, 0.5 / sqrt(5), 2e-3);
-    reference_free(&solved);
-    free_solver(&engine);
-    world_destroy(world);
-}
-
 RUN_TESTS(NULL, NULL)
