@@ -93,10 +93,6 @@ TEST(the_band_begins_with_the_shift) {
 TEST(what_cannot_be_shown_is_refused) {
     Trajectory *runs[] = {run_make("engine", 11), run_make("engine", 11)};
     FigureSpec spec = spec_of(runs, 2);
-    expect_kind_refused("divergence", &spec, "b.npz: error: never diverges from a.npz");
-    runs[1]->size[1] = vec2(3, 3);
-    expect_kind_refused("divergence", &spec, "b.npz: error: cannot be shown beside a.npz");
-    runs[1]->size[1] = runs[0]->size[1];
     spec.scene = STACK;
     expect_kind_refused("divergence", &spec, "that run does not state its scene_hash");
     runs[0]->scene_hash = 1;

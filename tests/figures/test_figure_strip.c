@@ -147,22 +147,4 @@ TEST(names_are_never_cut) {
     assert_true(beside > 0 && above > 0);
 }
 
-TEST(what_cannot_be_shown_is_refused) {
-    Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 11)};
-    FigureSpec spec = spec_of(runs, 2);
-    spec.time_count = 1;
-    spec.times[0] = 0.3;
-    expect_kind_refused("strip", &spec, "b.npz: error: has no moment at 0.3 s; its moments are 0 to 0.16666");
-    spec.times[0] = -1;
-    expect_kind_refused("strip", &spec, "a.npz: error: has no moment at -1 s");
-    spec.time_count = 0, spec.moments = 60;
-    expect_kind_refused("strip", &spec, "60 moments of 2 runs leave");
-    spec.moments = 1;
-    runs[1]->size[2] = vec2(3, 3);
-    expect_kind_refused("strip", &spec, "b.npz: error: cannot be shown beside a.npz:");
-    assert_refused(figure_kind("stripe", &error), "'stripe' is not a kind of figure; did you mean 'strip'?");
-    trajectory_destroy(runs[0]);
-    trajectory_destroy(runs[1]);
-}
-
 RUN_TESTS(NULL, NULL)

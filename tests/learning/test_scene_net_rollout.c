@@ -5,30 +5,8 @@
 
 #include "methods/residuals.h"
 
-#include <omp.h>
 
 enum { LAUNCHES = 6 };
-
-static void assert_same_samples(const SceneNetSamples *a, const SceneNetSamples *b) {
-    assert_int_equal(a->count, b->count);
-    for (int i = 0; i < a->count; i++) {
-        assert_int_equal(a->items[i].launch, b->items[i].launch);
-        assert_int_equal(a->items[i].since, b->items[i].since);
-        assert_equal_problems(&a->items[i].problem, &b->items[i].problem);
-    }
-}
-
-TEST(same_bits_for_any_number_of_threads) {
-    SceneNetSamples samples[2] = {{0}};
-    const int threads = omp_get_max_threads();
-    for (int i = 0; i < 2; i++) {
-        omp_set_num_threads(1 + i);
-        record_impacts(&samples[i], LAUNCHES, 0);
-    }
-    omp_set_num_threads(threads);
-    assert_same_samples(&samples[0], &samples[1]);
-    for (int i = 0; i < 2; i++) scene_net_samples_free(&samples[i]);
-}
 
 TEST(samples_are_appended_in_the_order_of_launch_and_step) {
     SceneNetSamples samples = {0};

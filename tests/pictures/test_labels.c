@@ -167,12 +167,4 @@ TEST_WITH(unknown_masses_are_refused, make, destroy) {
     assert_error(error, ERROR_INPUT, "masses cannot be shown: run 1 (engine) does not have them");
 }
 
-TEST_WITH(names_that_no_body_has_are_refused, make, destroy) {
-    Picture picture;
-    const RenderOptions options = {.width = 1280, .height = 720, .look = {.labels = LOOK_NAMES}};
-    assert_ok(picture_plan(&picture, panels, 2, 1280, 720, &error), error);
-    assert_false(picture_apply_options(&picture, &options, &error));
-    assert_error(error, ERROR_INPUT, "names cannot be shown: no body of run 1 (engine) has one");
-}
-
 RUN_TESTS(NULL, NULL)

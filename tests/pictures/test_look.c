@@ -16,31 +16,6 @@ static Picture picture_with_look(int count, const RenderLook *look) {
     return picture;
 }
 
-TEST_WITH(a_look_that_the_runs_do_not_have_is_refused, make, destroy) {
-    static const struct {
-        RenderLook look;
-        int count;
-        const char *text;
-    } wrong[] = {
-        {{.compare = LOOK_OVERLAY}, 1, "'overlay' compares runs, but there is only one"},
-        {{.compare = LOOK_DIFFERENCE}, 1, "'difference' compares runs"},
-        {{.show = LOOK_GHOSTS}, 1, "'ghosts' compares"},
-        {{.show = LOOK_DISTANCE}, 1, "'distance' compares"},
-        {{.show = LOOK_TIMELINE | LOOK_TRAILS}, 1, "'timeline' compares"},
-        {{.camera = LOOK_DIVERGENCE}, 1, "'divergence' compares"},
-        {{.compare = LOOK_OVERLAY}, 3, "'overlay' compares run 3 with the first, but their worlds differ (size of"},
-    };
-    runs[2]->size[FIRST_BOX].x = 2;
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        RenderOptions options = {.width = WIDTH, .height = HEIGHT, .look = wrong[i].look};
-        assert_refused(renderer_create(panels, wrong[i].count, &options, &error), wrong[i].text);
-    }
-    runs[0]->bomb = -1;
-    assert_refused(look_check(&(RenderLook){.camera = LOOK_BOMB}, panels, 2, &error), "cannot follow the bomb");
-    error = (Error){0};
-    assert_ok(look_check(&(RenderLook){.show = LOOK_TRAILS | LOOK_VELOCITIES}, panels, 3, &error), error);
-}
-
 TEST_WITH(poses_between_frames_lie_between, make, destroy) {
     Moment between = {MOMENT_BETWEEN, 4, 1, 4, 4};
     Pose a = pose_stored(runs[0], 4, SECOND_BOX), b = pose_stored(runs[0], 5, SECOND_BOX);

@@ -224,26 +224,4 @@ TEST_WITH(hostile_names_do_no_harm, make, destroy) {
     }
 }
 
-TEST_WITH(what_cannot_be_shown_is_refused, make, destroy) {
-    static const int sizes[][2] = {{63, 64}, {64, 63}, {8193, 64}, {64, 8193}, {-5, 100}, {0, 0}};
-    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
-        assert_refused(renderer_create(panels, 1, &options, &error), "must be 64 to 8192 pixels (got");
-    }
-    RenderOptions options = {.width = 64, .height = 64};
-    for (int count = 0; count <= 7; count += 7) {
-        assert_refused(renderer_create(panels, count, &options, &error), "the number of panels must be 1 to 6 (got");
-    }
-    runs[1]->dt = 1.0F / 50;
-    assert_refused(renderer_create(panels, 2, &options, &error),
-                   "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");
-    Renderer *renderer = renderer_create(panels, 1, &options, &error);
-    Image *image = image_sized(64, 64);
-    for (int frame = -1; frame <= 12; frame += 13) {
-        assert_refused(renderer_draw(renderer, frame, image, &error), "the frames are 0 to 11");
-    }
-    image_destroy(image);
-    renderer_destroy(renderer);
-}
-
 RUN_TESTS(NULL, NULL)

@@ -167,38 +167,4 @@ TEST_WITH(a_killed_process_is_reported, make, destroy) {
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
 }
 
-TEST_WITH(folders_that_cannot_be_written_are_refused, make, destroy) {
-    const char *file = temporary_path("file"), *inside = temporary_path("file/frames");
-    assert_ok(file_write(file, "", 0, &error), error);
-    RenderOptions options = options_for(inside, 1);
-    assert_false(render_study(panels, 2, &options, NULL, NULL, NULL, &error));
-    assert_error(error, ERROR_SYSTEM, "file");
-    error = (Error){0};
-    options.directory = "/proc/frames";
-    assert_false(render_study(panels, 2, &options, NULL, NULL, NULL, &error));
-    assert_error(error, ERROR_SYSTEM, "/proc");
-}
-
-TEST_WITH(wrong_options_are_refused, make, destroy) {
-    const char *directory = temporary_path("never");
-    const struct {
-        RenderOptions options;
-        const char *text;
-    } wrong[] = {
-        {{.width = 160, .height = 90, .last = -1, .jobs = 0}, "the number of jobs must be 1 to 256 (got 0)"},
-        {{.width = 160, .height = 90, .last = -1, .jobs = 257}, "(got 257)"},
-        {{.width = 16, .height = 90, .last = -1, .jobs = 1}, "16 x 90"},
-        {{.width = 160, .height = 90, .first = 11, .last = -1, .jobs = 1}, "within 0 to 10 (got 11 to 10)"},
-        {{.width = 160, .height = 90, .first = 3, .last = 11, .jobs = 1}, "(got 3 to 11)"},
-        {{.width = 160, .height = 90, .first = 3, .last = 2, .jobs = 1}, "(got 3 to 2)"},
-        {{.width = 160, .height = 90, .first = -1, .last = 2, .jobs = 1}, "(got -1 to 2)"},
-    };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        RenderOptions options = wrong[i].options;
-        options.directory = directory;
-        assert_refused(render_study(panels, 2, &options, NULL, NULL, NULL, &error), wrong[i].text);
-        assert_int_not_equal(access(directory, F_OK), 0);
-    }
-}
-
 RUN_TESTS(NULL, NULL)

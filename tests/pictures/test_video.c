@@ -350,31 +350,6 @@ TEST(a_killed_program_leaves_nothing) {
     }
 }
 
-TEST(wrong_names_are_refused) {
-    assert_ok(file_make_directory(temporary_path("folder.mp4"), &error), error);
-    assert_ok(file_write(temporary_path("a.y4m"), "", 0, &error), error);
-    static const struct {
-        const char *name;
-        int width;
-        ErrorKind kind;
-        const char *text;
-    } cases[] = {{"a.avi", 64, ERROR_INPUT, "must end in .mp4, .webm or .gif"},
-                 {".mp4", 64, ERROR_NONE, ""},
-                 {"mp4", 64, ERROR_INPUT, "must end in"},
-                 {"a.mp4", 63, ERROR_INPUT, "width and height must be even for this video format (got 63x64)"},
-                 {"a.webm", 63, ERROR_INPUT, "width and height must be even"},
-                 {"a.gif", 63, ERROR_NONE, ""},
-                 {"folder.mp4", 64, ERROR_INPUT, "is not a regular file"},
-                 {"films/a.mp4", 64, ERROR_NONE, ""},
-                 {"a.y4m/a.mp4", 64, ERROR_SYSTEM, "cannot write there"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        error = (Error){0};
-        bool ok = video_check(temporary_path(cases[i].name), cases[i].width, 64, &error);
-        assert_int_equal(ok, cases[i].kind == ERROR_NONE);
-        if (!ok) assert_error(error, cases[i].kind, cases[i].text);
-    }
-}
-
 TEST(y4m_holds_every_frame) {
     int frames, width, height;
     double rate;

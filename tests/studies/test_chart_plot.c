@@ -86,22 +86,6 @@ TEST(sizes_are_those_of_a_column_and_a_slide) {
     free(svg);
 }
 
-TEST(the_same_table_gives_the_same_files) {
-    static const char *const endings[] = {"png", "svg", "pdf"};
-    size_t size[2][3];
-    char *data[2][3];
-    for (int run = 0; run < 2; run++) {
-        assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &page, &error), error);
-        for (int i = 0; i < 3; i++) data[run][i] = read_drawn("pyramid_settled", endings[i], &size[run][i]);
-    }
-    for (int i = 0; i < 3; i++) {
-        assert_int_equal(size[0][i], size[1][i]);
-        assert_memory_equal(data[0][i], data[1][i], size[0][i]);
-        free(data[0][i]);
-        free(data[1][i]);
-    }
-}
-
 #define HEADER                                                                                               \
     "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step,instructions," \
     "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved\n"
@@ -137,13 +121,6 @@ TEST(tables_without_a_mark_are_refused) {
     for (int i = 0; i <= CHART_MAX_LINES; i++)
         snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
     expect_refused(many, "single", "at most 32 methods");
-}
-
-TEST(one_mark_and_one_panel_are_enough) {
-    assert_ok(chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &page,
-                         &error),
-              error);
-    assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
 }
 
 /* The caption of the drawn stack, to be freed. */
@@ -184,16 +161,6 @@ TEST(a_target_without_push_out_is_noted) {
     expect_caption(write_rows(rows), "soft-step, avbd: error against the solution without the velocity that pushes",
                    NULL);
     expect_caption(write_rows(engine), "Velocity error", "error against");
-}
-
-/* The maximum number of methods, with the longest names and settings. */
-TEST(a_full_chart_is_drawn) {
-    char lines[20000] = "";
-    for (int i = 0; i < CHART_MAX_LINES * 5; i++)
-        snprintf(lines + strlen(lines), 200,
-                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n",
-                 i % CHART_MAX_LINES, i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
-    assert_ok(chart_plot(write_rows(lines), "full", folder(), &page, &error), error);
 }
 
 /* A table may have any texts: what is drawn of them is text. */
@@ -389,19 +356,6 @@ TEST(six_lines_at_most_are_in_colour) {
     expect_ranks("stack,scene-net,network=a/b.npz,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                  "stack,scene-net,\"network=a/b.npz,net=off\",closed,impact,40,5,5,5,,,2,,,,,,,,\n",
                  NULL, (const int[]){C, C}, 2);
-}
-
-TEST(a_name_that_no_row_has_is_refused) {
-    CsvTable table;
-    assert_ok(csv_table_read(&table, write_rows(many_methods), &chart_layout, &error), error);
-    assert_ok(chart_highlight_check("nncg,sain:net=off", table.rows, table.count, &error), error);
-    assert_ok(chart_highlight_check(NULL, table.rows, table.count, &error), error);
-    assert_refused(chart_highlight_check("nncg,avdb", table.rows, table.count, &error),
-                   "--highlight: error: 'avdb' is not a method of this chart; did you mean 'avbd'?");
-    assert_refused(
-        chart_highlight_check("engine,nncg,avbd,scene-net,sain,interior,engine", table.rows, table.count, &error),
-        "--highlight: error: a chart has at most 6 methods in colour (got 7)");
-    csv_table_free(&table);
 }
 
 /* What lost the scene is drawn if it is asked for. */

@@ -53,26 +53,6 @@ TEST(the_engine_as_shipped_is_always_there) {
     }
 }
 
-static void refuse(const char *text, const char *reason) {
-    Error error = {0};
-    ContenderList list;
-    assert_refused(contenders_parse(&list, text, STUDY_CHART, &error), reason);
-}
-
-TEST(bad_lists_are_refused) {
-    refuse("engin", "method: error: 'engin' is not a method");
-    refuse("engine,", "is not a method");
-    refuse("engine:", "method: error: 'engine:' has no setting behind ':'");
-    refuse("", "is not a method");
-    refuse("engine:k=3,engine:k=3", "engine:k=3: error: is given twice");
-    refuse("engine,engine:k=10", "is given twice");
-    refuse("engine:sweeps=3", "'sweeps' is not a setting");
-    char text[1000];
-    memset(text, 'x', sizeof text);
-    text[999] = '\0';
-    refuse(text, "too long");
-}
-
 TEST(a_method_without_its_network_is_left_out) {
     Scene *scene = scene_named("single");
     ContenderList list = parse("engine:k=10,pair-net:k=5,pair-net:network=x.npz");

@@ -298,17 +298,4 @@ TEST(an_interrupted_study_is_resumed) {
     }
 }
 
-TEST(unknown_names_and_methods_are_refused) {
-    StabilityOptions options = {
-        .folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"fortune"}};
-    assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error),
-                   "'fortune' is not a study or map; known: stack_height, ");
-    options.names[0] = "bomb_speed";
-    options.methods = "sorcery";
-    assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error), "'sorcery' is not a method");
-    options.methods = "engine";
-    options.scenes = "nowhere";
-    assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error), "nowhere/stability/bomb_speed.yaml");
-}
-
 RUN_TESTS(NULL, NULL)

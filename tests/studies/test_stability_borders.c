@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The borders figure, from synthetic tables; and what it has in common with maps. */
-#include "files.h"
 #include "stability_drawn.h"
 
 #include "pixels/type.h"
@@ -177,8 +176,6 @@ TEST(invalid_borders_are_refused_with_their_place) {
     static const struct {
         const char *rows, *message;
     } cases[] = {
-        {"s,engine,,h,,one,2,falls\n", "stability.csv:2:14: error: holds_at: 'one' is not a number"},
-        {"s,engine,,h,,1,2,\n", "stability.csv:2:18: error: verdict: the field is empty"},
         {"s,engine,,h,,1,2,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
         {"s,engine,,h,,,,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
         {"s,engine,,h,,,2,moves\n", "stability.csv:2:1: error: 'moves' contradicts the values"},
@@ -191,27 +188,6 @@ TEST(invalid_borders_are_refused_with_their_place) {
         snprintf(borders, sizeof borders, BORDERS "%s", cases[i].rows);
         expect_refused(MAPS ONE_CELL, borders, cases[i].message);
     }
-}
-
-static char *read_file(const char *name, size_t *size) { return read_whole(temporary_path(name), size); }
-
-TEST(the_same_tables_give_the_same_files) {
-    static const char *const names[] = {"map-grid.png", "map-grid.svg", "map-grid.txt",
-                                        "borders.png",  "borders.svg",  "borders.txt"};
-    char *maps = make_map(2, 4, 4), *data[2][6];
-    size_t size[2][6];
-    for (int run = 0; run < 2; run++) {
-        start_afresh(maps, BORDERS ONE_BORDER);
-        draw();
-        for (int i = 0; i < 6; i++) data[run][i] = read_file(names[i], &size[run][i]);
-    }
-    for (int i = 0; i < 6; i++) {
-        assert_int_equal(size[0][i], size[1][i]);
-        assert_memory_equal(data[0][i], data[1][i], size[0][i]);
-        free(data[0][i]);
-        free(data[1][i]);
-    }
-    free(maps);
 }
 
 /* Borders without maps, and maps without borders. */
