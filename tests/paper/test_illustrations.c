@@ -246,26 +246,6 @@ TEST(the_row_shown_is_the_datasets) {
     dataset_destroy(dataset);
 }
 
-TEST(the_same_run_gives_the_same_files) {
-    static const char *const endings[] = {"png", "svg"};
-    Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_from(SCENES "/stack.yaml")};
-    Sketch sketch;
-    char caption[CAPTION_SIZE];
-    sketch_begin(&sketch, illustration_loop.width, illustration_loop.height);
-    assert_ok(illustration_loop.draw(&sketch, scenes, caption, &error), error);
-    assert_ok(sketch_draw(&sketch, temporary_path("again"), SKETCH_SVG, &error), error);
-    sketch_free(&sketch);
-    scene_destroy(scenes[SCENE_STACK]);
-    for (int i = 0; i < 2; i++) {
-        size_t first_size, size;
-        char *first = read_file("loop", endings[i], &first_size), *again = read_file("again", endings[i], &size);
-        assert_int_equal(first_size, size);
-        assert_memory_equal(first, again, size);
-        free(first);
-        free(again);
-    }
-}
-
 /* A folder with the scenes that ship, but for one; what becomes of it. */
 static const char *folder_with(const char *name, const char *text) {
     static const char *const names[] = {"single.yaml", "stack.yaml", "pyramid.yaml"};

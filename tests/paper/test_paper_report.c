@@ -277,16 +277,6 @@ TEST(the_page_is_whole_and_needs_nothing) {
                temporary_path("report.html"));
 }
 
-TEST(the_same_folder_gives_the_same_bytes) {
-    static const char *const names[] = {"report.md", "report.html"};
-    for (int i = 0; i < 2; i++) {
-        char *first = write_and_read(names[i]), *second = write_and_read(names[i]);
-        assert_string_equal(first, second);
-        free(first);
-        free(second);
-    }
-}
-
 static void expect_refused(const char *message) {
     Error error = {0};
     remove(temporary_path("report.md"));
@@ -315,16 +305,6 @@ TEST(damaged_tables_are_refused_with_their_place) {
     make_study();
     remove(temporary_path("laws.csv"));
     expect_refused("laws.csv: error: cannot open");
-}
-
-TEST(a_million_rows_are_refused) {
-    make_study();
-    FILE *file = fopen(temporary_path("study.csv"), "w");
-    assert_non_null(file);
-    fputs("k,v\n", file);
-    for (int i = 0; i < 500000; i++) fputs("a,\n", file);
-    fclose(file);
-    expect_refused("study.csv:5002:1: error: the table has more than 5000 rows");
 }
 
 TEST(figures_that_miss_or_are_damaged_are_refused) {

@@ -111,23 +111,6 @@ TEST(all_are_drawn) {
         temporary_folder);
 }
 
-TEST(the_same_tables_give_the_same_files) {
-    static const char *const endings[] = {"png", "svg", "txt"};
-    char *data[2][3];
-    size_t size[2][3];
-    for (int run = 0; run < 2; run++) {
-        start_afresh();
-        draw();
-        for (int i = 0; i < 3; i++) data[run][i] = read_whole(figure_path("laws", endings[i]), &size[run][i]);
-    }
-    for (int i = 0; i < 3; i++) {
-        assert_int_equal(size[0][i], size[1][i]);
-        assert_memory_equal(data[0][i], data[1][i], size[0][i]);
-        free(data[0][i]);
-        free(data[1][i]);
-    }
-}
-
 /* Nothing is drawn where one of the tables is refused, be it the last. */
 static void expect_refused(const char *table, const char *text, const char *message) {
     Error error = {0};
