@@ -3,7 +3,6 @@
 #include "net_files.h"
 #include "scene_net_layers.h"
 
-#include "python.h"
 
 static SceneNet *example(void) {
     uint32_t seed = 1;
@@ -56,44 +55,6 @@ TEST(files_keep_every_bit) {
         scene_net_destroy(read);
     }
     scene_net_destroy(network);
-}
-
-/* Numbers that rise through all of a matrix say where NumPy has each of them. */
-TEST(numpy_sees_the_shapes) {
-    SceneNet *network = example();
-    for (int i = 0; i < 2 * FIVE_SLOTS * 64; i++) network->rows[i] = (float)i;
-    for (int i = 0; i < 24 * 16; i++) network->state.rows[i] = (float)i;
-    for (int i = 0; i < 112 * 64; i++) network->first.rows[i] = (float)i;
-    const char *path = temporary_path("numpy.npz");
-    assert_ok(scene_net_write(network, path, &error), error);
-    scene_net_destroy(network);
-    run_python("import sys, numpy as np\n"
-               "f = np.load(sys.argv[1], allow_pickle=False)\n"
-               "want = {'version': (), 'kind': (), 'scene': (), 'command': (), 'body_count': (), 'bomb': (),\n"
-               "  'sweeps': (), 'slot_a': (9,), 'slot_b': (9,), 'slot_feature': (9,),\n"
-               "  'bomb_state_rows': (6, 16), 'bomb_state_centre': (16,), 'state_rows': (24, 16),\n"
-               "  'state_centre': (16,), 'present_rows': (9, 32), 'present_centre': (32,), 'warm_rows': (18, 48),\n"
-               "  'warm_centre': (48,), 'first_rows': (112, 64), 'first_biases': (64,), 'second_rows': (64, 64),\n"
-               "  'second_biases': (64,), 'last_rows': (18, 64), 'last_biases': (18,), 'scale': (9,), 'cap': (9,),\n"
-               "  'low': (112,), 'high': (112,), 'gate': (), 'bomb_inv_mass': (),\n"
-               "  'factors': (3,)}\n"
-               "assert f.files == list(want), f.files\n"
-               "kinds = dict(version='i', body_count='i', bomb='i', sweeps='i', slot_a='i', slot_b='i',\n"
-               "  slot_feature='u', kind='U', scene='U', command='U')\n"
-               "for name, shape in want.items():\n"
-               "    assert f[name].shape == shape, (name, f[name].shape)\n"
-               "    assert f[name].dtype.kind == kinds.get(name, 'f'), (name, f[name].dtype)\n"
-               "assert (f['version'], f['kind'], f['body_count'], f['bomb']) == (2, 'scene-net', 5, 3)\n"
-               "assert (f['sweeps'], f['gate'], f['scene']) == (3, np.float32(0.1), 'pyramid \\u00e4')\n"
-               "assert f['command'] == 'twinbox train pyramid.yaml -o net.npz'\n"
-               "slots = [tuple(map(int, s)) for s in zip(f['slot_a'], f['slot_b'], f['slot_feature'])]\n"
-               "assert slots == [(0, 2, 7), (0, 2, 9), (0, 4, 0), (1, 2, 3), (1, 2, 4), (1, 2, 5),\n"
-               "  (1, 2, 2**32 - 1), (2, 3, 1), (2, 4, 7)], slots\n"
-               "for name in 'last_rows', 'state_rows', 'first_rows':\n"
-               "    a = f[name]\n"
-               "    assert (a == np.arange(a.size).reshape(a.shape)).all(), name\n"
-               "assert (f['factors'] == np.array([0, 0.7, 2], 'f4')).all()\n",
-               path);
 }
 
 static bool is_read(const char *path, Error *error) {
