@@ -305,14 +305,6 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
     setenv("PATH", "/usr/bin:/bin", 1);
 }
 
-TEST(missing_programs_are_told) {
-    assert_ok(video_check_programs(&error), error);
-    setenv("PATH", temporary_folder, 1);
-    assert_false(video_check_programs(&error));
-    assert_error(error, ERROR_SYSTEM, "ffmpeg: error: cannot be run");
-    setenv("PATH", "/usr/bin:/bin", 1);
-}
-
 static bool never(void *context, double done, double total) {
     (void)context, (void)done, (void)total;
     return false;
