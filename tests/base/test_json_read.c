@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the reader adds to jansson: places, limits, and walking containers without reading beyond the file. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/json.h"
 
@@ -108,7 +108,7 @@ static size_t repeat(char *text, const char *first, const char *part, size_t cou
 }
 
 TEST(size_depth_and_memory_of_a_value_are_limited) {
-    char *text = malloc(MAX_SIZE + 1);
+    FREED char *text = malloc(MAX_SIZE + 1);
     const size_t most = JSON_VALUE_SIZE;
     int count;
     JsonReader reader = open_text(text, repeat(text, "[\"", "x", most - 2, "\", 0]"));
@@ -122,18 +122,16 @@ TEST(size_depth_and_memory_of_a_value_are_limited) {
         refuse(text, repeat(text, firsts[i], "\xf0\x9f\x93\xa6", most / 4 + 1, "\"]"), "a value must have at most");
     refuse(text, repeat(text, "[[", "{},", most / 4, "0]]"), "1:2: error: a value must take at most 1048576 bytes");
     refuse(text, repeat(text, "[", "[", 3000, ""), "1:2050: error: maximum parsing depth reached");
-    free(text);
 }
 
 TEST(the_memory_of_a_value_is_reused) {
-    char *text = malloc(MAX_SIZE + 1);
+    FREED char *text = malloc(MAX_SIZE + 1);
     const size_t items = 10000; /* 2 MB if all were kept */
     int count;
     JsonReader reader = open_text(text, repeat(text, "[", "{\"a\": \"b\"}, ", items, "0]"));
     assert_ok(read_array(&reader, &count, &error), error);
     assert_int_equal(count, items + 1);
     json_read_close(&reader);
-    free(text);
 }
 
 TEST(a_large_file_is_refused) {

@@ -76,15 +76,13 @@ TEST(rows_give_the_bytes_of_the_whole) {
     npz_stream_destroy(stream);
     assert_same_file(path, expected);
 
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     for (int i = 0; i < ARRAYS; i++) {
         if (row_size[i] == 0) continue;
-        void *read = npz_read(file, whole[i].name, whole[i].type, whole[i].rank, whole[i].shape, &error);
+        FREED void *read = npz_read(file, whole[i].name, whole[i].type, whole[i].rank, whole[i].shape, &error);
         assert_ok(read != NULL, error);
         assert_memory_equal(read, whole[i].data, (size_t)whole[i].shape[0] * row_size[i]);
-        free(read);
     }
-    npz_close(file);
 }
 
 TEST(blocks_are_deflated_where_that_pays) {

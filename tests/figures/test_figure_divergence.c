@@ -56,11 +56,10 @@ TEST(a_plot_places_decades_evenly) {
 }
 
 static Trajectory *simulate_stack(const char *method_name, float bomb_shift, int frames) {
-    Scene *scene = scene_from(STACK);
+    OWN(Scene) *scene = scene_from(STACK);
     scene->frames = frames;
     Trajectory *run = run_by(scene, method_name);
     for (int frame = 0; frame <= frames; frame++) run->position[frame * run->bodies + run->bomb].x += bomb_shift;
-    scene_destroy(scene);
     return run;
 }
 

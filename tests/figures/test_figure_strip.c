@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "figures/run_figure.h"
 #include "pixels/type.h"
@@ -70,7 +70,7 @@ TEST(a_given_height_is_filled) {
 
 /* Only what is asked for sets the window: the boxes stand near the ground, the bomb falls from 5.6 m. */
 TEST(the_bodies_in_question_set_the_window) {
-    Trajectory *run = run_make("engine", 3);
+    OWN(Trajectory) *run = run_make("engine", 3);
     *run_position(run, 2, SECOND_BOX) = vec2(-50, 3);
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 1; /* the last */
@@ -85,7 +85,6 @@ TEST(the_bodies_in_question_set_the_window) {
     sketch_free(&sketch);
     spec.body_count = 1, spec.bodies[0] = run->bodies;
     expect_kind_refused("strip", &spec, "--bodies: error: there is no body");
-    trajectory_destroy(run);
 }
 
 TEST(who_has_left_is_counted) {
@@ -125,7 +124,7 @@ TEST(names_are_never_cut) {
     static const char *const names[] = {"momentum:k=20", "playback:launches=a-name-that-fits-nowhere.csv"};
     int beside = 0, above = 0;
     for (int i = 0; i < 2; i++) {
-        Trajectory *run = run_make(names[i], 61);
+        OWN(Trajectory) *run = run_make(names[i], 61);
         FigureSpec spec = spec_of(&run, 1);
         for (int moments = 2; moments <= 12; moments += 5)
             for (spec.width = 60 + 14 * moments; spec.width < 260; spec.width += 41.5) {
@@ -142,7 +141,6 @@ TEST(names_are_never_cut) {
                 beside += turned > 0, above += turned == 0;
                 sketch_free(&sketch);
             }
-        trajectory_destroy(run);
     }
     assert_true(beside > 0 && above > 0);
 }

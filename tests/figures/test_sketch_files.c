@@ -27,10 +27,9 @@ static Image *as_pixels(const Sketch *sketch, const SketchOutput *output) {
 
 /* Covered area of a transparent sketch, square mm. */
 static double covered(Sketch *sketch) {
-    Image *image = as_pixels(sketch, &clear);
+    OWN(Image) *image = as_pixels(sketch, &clear);
     double sum = 0;
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) sum += image->pixels[4 * i + 3];
-    image_destroy(image);
     sketch_free(sketch);
     return sum / 255 / 100;
 }
@@ -102,18 +101,16 @@ TEST(shapes_lie_at_their_place_and_colour) {
 
 TEST(a_picture_of_its_places_size_keeps_its_pixels) {
     Sketch sketch;
-    Image *picture = image_sized(20, 10);
+    OWN(Image) *picture = image_sized(20, 10);
     for (int i = 0; i < 20 * 10 * 4; i++) picture->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(i * 37);
     picture->pixels[3] = 0;
     sketch_begin(&sketch, 10, 5);
     sketch_image(&sketch, picture, (Point){3, 2}, 2);
-    Image *image = as_pixels(&sketch, &white);
+    OWN(Image) *image = as_pixels(&sketch, &white);
     expect_pixel(image, 30, 20, 0xFFFFFFFF);
     for (int y = 0; y < 10; y++)
         for (int x = 0; x < 20; x++)
             if (x + y > 0) assert_memory_equal(pixel(image, 30 + x, 20 + y), pixel(picture, x, y), 4);
-    image_destroy(image);
-    image_destroy(picture);
     sketch_free(&sketch);
 }
 
@@ -150,7 +147,7 @@ TEST(words_are_as_wide_as_they_say) {
 }
 
 static void draw_something(Sketch *sketch) {
-    Image *picture = image_sized(3, 2);
+    OWN(Image) *picture = image_sized(3, 2);
     for (int i = 0; i < 3 * 2 * 4; i++) picture->pixels[i] = (uint8_t)(i * 37);
     sketch_begin(sketch, 30, 20);
     strcpy(sketch->title, "Something <new>");
@@ -158,7 +155,6 @@ static void draw_something(Sketch *sketch) {
     sketch_text(sketch, (Point){15, 10}, &(TextStyle){8, TEXT_CENTER, 0x123456, 30, true}, "a < b & \"c\" \xFF\x01 ±");
     sketch_rectangle(sketch, (Point){1, 1}, (Point){9, 9}, &(Pen){0x336699, 0.25, 0, 1, "(3,2)"});
     sketch_arrow(sketch, (Point){1, 1}, (Point){20, 9}, HEADS_AT_BOTH, 0, 2);
-    image_destroy(picture);
 }
 
 /* With and without a white page, in every format. The hashes are equal on Debian 12 and 13. */
@@ -193,7 +189,7 @@ TEST(an_svg_has_its_words) {
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
-    char *svg = sketch_as_svg(&sketch, &white, &size, &error);
+    FREED char *svg = sketch_as_svg(&sketch, &white, &size, &error);
     assert_ok(svg != NULL, error);
     assert_non_null(strstr(svg, ">a &lt; b &amp; &quot;c&quot; ?? ±</text>"));
     assert_non_null(strstr(svg, "<title>Something &lt;new></title>"));
@@ -209,7 +205,6 @@ TEST(an_svg_has_its_words) {
              15 + TYPE_MIDDLE * em * sin(M_PI / 6), 10 + TYPE_MIDDLE * em * cos(M_PI / 6), em);
     assert_non_null(strstr(svg, text));
     assert_null(strstr(svg, "aria-label"));
-    free(svg);
     sketch_free(&sketch);
 }
 
@@ -224,16 +219,15 @@ static void expect_printed(const char *program, const char *path, const char *wa
              strcmp(program, "pdftotext") == 0 ? "-" : "", out);
     assert_ok(process_start(&process, (const char *const[]){"sh", "-c", command, NULL}, &error), error);
     assert_ok(process_finish(&process, text, sizeof text, &error), error);
-    char *printed = text_of(out);
+    FREED char *printed = text_of(out);
     if (strncmp(printed, wanted, strlen(wanted)) != 0) fail_msg("%s prints '%s', not '%s'", program, printed, wanted);
-    free(printed);
 }
 
 TEST(an_svg_of_outlines_needs_no_font) {
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
-    char *svg = sketch_as_svg(&sketch, &outlines, &size, &error);
+    FREED char *svg = sketch_as_svg(&sketch, &outlines, &size, &error);
     assert_ok(svg != NULL, error);
     assert_null(strstr(svg, "<text"));
     assert_null(strstr(svg, "font"));
@@ -241,7 +235,6 @@ TEST(an_svg_of_outlines_needs_no_font) {
     assert_non_null(strstr(svg, "width=\"30.000mm\" height=\"20.000mm\" viewBox=\"0 0 30.000 20.000\""));
     assert_non_null(strstr(svg, "M1.000 19.000L9.000 19.000L9.000 11.000L1.000 11.000Z\" fill=\"#336699\" "
                                 "fill-opacity=\"0.250\" stroke=\"#000000\" stroke-width=\"0.170\""));
-    free(svg);
     sketch_free(&sketch);
 }
 
@@ -266,7 +259,7 @@ TEST(a_pdf_has_a_valid_object_table) {
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
-    char *pdf = sketch_as_pdf(&sketch, &white, &size, &error);
+    FREED char *pdf = sketch_as_pdf(&sketch, &white, &size, &error);
     assert_ok(pdf != NULL, error);
     sketch_free(&sketch);
     assert_memory_equal(pdf, "%PDF-1.5\n", 9);
@@ -288,7 +281,6 @@ TEST(a_pdf_has_a_valid_object_table) {
     for (size_t k = 0; k < sizeof untold / sizeof *untold; k++)
         for (size_t i = 0; i + strlen(untold[k]) < size; i++)
             assert_memory_not_equal(pdf + i, untold[k], strlen(untold[k]));
-    free(pdf);
 }
 
 static void expect_refused(const char *path, double width, double dpi, const char *message) {

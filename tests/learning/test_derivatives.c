@@ -67,7 +67,7 @@ static size_t residual_count(const Case *made) {
 
 static void check_gradient(Case made) {
     const double step = 1e-5;
-    double *gradient = numbers((size_t)made.count);
+    FREED double *gradient = numbers((size_t)made.count);
     double value = loss_gradient(made.loss, made.train, made.laws, made.parameters, gradient);
     assert_true(value == loss_value(made.loss, made.train, made.laws, made.parameters));
     for (int p = 0; p < made.count; p++) {
@@ -79,7 +79,6 @@ static void check_gradient(Case made) {
         made.parameters[p] = kept;
         assert_near(gradient[p], slope, 1e-9 + 1e-6 * fabs(slope));
     }
-    free(gradient);
     free_case(&made);
 }
 
@@ -139,7 +138,7 @@ TEST(squared_residuals_sum_to_the_loss) {
 /* Column p of J [residuals, parameters], by central differences. */
 static void fill_jacobian(Case *made, double *jacobian, size_t count) {
     const double step = 1e-4;
-    double *above = numbers(count);
+    FREED double *above = numbers(count);
     for (int p = 0; p < made->count; p++) {
         double kept = made->parameters[p], *column = jacobian + (size_t)p * count;
         made->parameters[p] = kept + step;
@@ -149,7 +148,6 @@ static void fill_jacobian(Case *made, double *jacobian, size_t count) {
         made->parameters[p] = kept;
         for (size_t i = 0; i < count; i++) column[i] = (above[i] - column[i]) / (2 * step);
     }
-    free(above);
 }
 
 static double dot(const double *a, const double *b, size_t count) {
@@ -162,7 +160,8 @@ static double dot(const double *a, const double *b, size_t count) {
 static void check_gauss_newton(int layers, const int *widths, Activation hidden, Activation last, OutputScale scale) {
     Case made = make_case(layers, widths, hidden, last, scale);
     size_t count = residual_count(&made), size = (size_t)made.count;
-    double *jacobian = numbers(size * count), *u = numbers(count), *jtu = numbers(size), *jtj = numbers(size * size);
+    FREED double *jacobian = numbers(size * count), *u = numbers(count), *jtu = numbers(size),
+                 *jtj = numbers(size * size);
     fill_jacobian(&made, jacobian, count);
     loss_residuals(made.loss, made.train, made.parameters, u);
     gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu, jtj);
@@ -171,10 +170,6 @@ static void check_gauss_newton(int layers, const int *widths, Activation hidden,
         for (size_t q = 0; q <= p; q++)
             assert_near(jtj[p * size + q], dot(jacobian + p * count, jacobian + q * count, count), 1e-4);
     }
-    free(jtj);
-    free(jtu);
-    free(u);
-    free(jacobian);
     free_case(&made);
 }
 
@@ -190,7 +185,7 @@ TEST(gauss_newton_is_that_of_the_jacobian) {
 TEST(sums_do_not_depend_on_threads) {
     Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t size = (size_t)made.count;
-    double *u = numbers(residual_count(&made)), *gradient = numbers(2 * size), *jtu = numbers(2 * size);
+    FREED double *u = numbers(residual_count(&made)), *gradient = numbers(2 * size), *jtu = numbers(2 * size);
     double *jtj = numbers(2 * size * size), value[2];
     int threads = omp_get_max_threads();
     loss_residuals(made.loss, made.train, made.parameters, u);
@@ -207,9 +202,6 @@ TEST(sums_do_not_depend_on_threads) {
     gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu + size, NULL);
     assert_memory_equal(jtu, jtu + size, size * sizeof(double));
     free(jtj);
-    free(jtu);
-    free(gradient);
-    free(u);
     free_case(&made);
 }
 

@@ -12,7 +12,7 @@ static void refuse(const Dataset *dataset, TrainingOptions options, const char *
 
 /* What depends on the dataset or on a start network; the words of options: cli/refused. */
 TEST(options_that_do_not_fit_are_refused) {
-    Dataset *dataset = make_taught_dataset(100);
+    OWN(Dataset) *dataset = make_taught_dataset(100);
     TrainingOptions options = small("lm", 1);
     options.widths[1] = 20;
     refuse(dataset, options, "as many target values as weights (got 160 and 262)"); /* 80 rows of 2 */
@@ -30,15 +30,13 @@ TEST(options_that_do_not_fit_are_refused) {
     network_destroy(start);
     dataset->launch_test[4] = 0;
     refuse(dataset, small("adam", 1), "one training row and one test row (got 100 and 0)");
-    dataset_destroy(dataset);
 }
 
 /* The change of b relative to a overflows float32. */
 TEST(infinite_loss_is_an_error) {
-    Dataset *dataset = make_taught_dataset(100);
+    OWN(Dataset) *dataset = make_taught_dataset(100);
     dataset->changes[0] = -FLT_MAX, dataset->changes[3] = FLT_MAX;
     for (int i = 0; optimizers[i] != NULL; i++) refuse(dataset, small(optimizers[i]->name, 3), "iteration 0");
-    dataset_destroy(dataset);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -13,10 +13,9 @@ enum { SWEEPS = 20, NUMBERS_MAX = 2 * CONTACTS_MAX };
 /* Runs a scene with the engine; calls observe after each step. */
 static void observe_scene(const char *name, bool (*observe)(void *, int, const World *, Error *), void *context) {
     Error error = {0};
-    Scene *scene = scene_named(name);
+    OWN(Scene) *scene = scene_named(name);
     const Method engine = method_named("engine");
     assert_ok(simulate_observed(scene, &engine, &(StepObserver){observe, context}, &error), error);
-    scene_destroy(scene);
 }
 
 static void warm_start(const ContactProblem *problem, double *start) {
@@ -46,7 +45,7 @@ static void assert_equals_scalar(Unrolled *unrolled, const ContactProblem *probl
     double start[NUMBERS_MAX];
     float in_float[SWEEPS];
     UnrolledProblem rows;
-    ContactSolution expected = make_solution(problem), before = make_solution(problem);
+    OWN(ContactSolution) expected = make_solution(problem), before = make_solution(problem);
     for (int s = 0; s < sweeps; s++) in_float[s] = (float)factors[s];
     warm_start(problem, start);
     assert_true(unrolled_problem_make(&rows, problem));
@@ -54,8 +53,6 @@ static void assert_equals_scalar(Unrolled *unrolled, const ContactProblem *probl
     momentum_solve_scalar(problem, rows.visits, in_float, sweeps, &before, &expected);
     assert_same_solution(problem, unrolled, &expected, roundings * rounding_of(problem));
     unrolled_problem_free(&rows);
-    free_solution(&expected);
-    free_solution(&before);
 }
 
 static bool frame_equals_scalar(void *context, int frame, const World *world, Error *error) {
@@ -92,13 +89,12 @@ TEST(the_start_is_projected_into_the_cone) {
             outside += (double)contact->warm_tangent != start[2 * i + 1];
         }
         UnrolledProblem rows;
-        ContactSolution expected = make_solution(&random.problem);
+        OWN(ContactSolution) expected = make_solution(&random.problem);
         assert_true(unrolled_problem_make(&rows, &random.problem));
         assert_true(unrolled_run(&unrolled, &rows, start, NULL, 0));
         sequential_impulses_begin(&random.problem, &engine_options, &expected);
         assert_same_solution(&random.problem, &unrolled, &expected, 1e-4);
         unrolled_problem_free(&rows);
-        free_solution(&expected);
     }
     assert_true(outside > 100);
     unrolled_free(&unrolled);
@@ -148,7 +144,7 @@ static void free_case(Case *given) {
 static bool difference(Case *given, double *number, double step, double *slope) {
     const size_t pieces = (size_t)(given->sweeps + 1) * (size_t)given->rows.contact_count;
     const double kept = *number;
-    uint8_t *taken = malloc(pieces + 1);
+    FREED uint8_t *taken = malloc(pieces + 1);
     assert_non_null(taken);
     *number = kept + step;
     *slope = run_case(given);
@@ -157,7 +153,6 @@ static bool difference(Case *given, double *number, double step, double *slope) 
     *slope = (*slope - run_case(given)) / (2 * step);
     *number = kept;
     bool same = memcmp(taken, given->unrolled.pieces, pieces) == 0;
-    free(taken);
     return same;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every sweep kernel of this processor against the scalar reference implementation. */
 #pragma once
-#include "testing.h"
+#include "owned.h"
 
 #include "methods/momentum.h"
 #include "methods/sweeps.h"
@@ -25,6 +25,8 @@ static inline void free_solution(ContactSolution *solution) {
     free(solution->velocities);
     free(solution->impulses);
 }
+
+OWNED_VALUE(ContactSolution, free_solution)
 
 /* The rounding error of the largest velocity of a problem, m/s and rad/s: the unit of differences between solvers that
    perform the same operations in another order. */

@@ -56,7 +56,7 @@ static void refuse(const MethodKind *kind, const Scene *scene, const char *key, 
 
 /* Of every number and switch of every method that can be made without a file, whatever the method does with it. */
 TEST(settings_out_of_range_are_refused) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     int settings = 0;
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         if (kind->description->needs_network && strcmp(kind->description->name, "gns") != 0) continue;
@@ -72,7 +72,6 @@ TEST(settings_out_of_range_are_refused) {
         }
     }
     assert_true(settings >= 16);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

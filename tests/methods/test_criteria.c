@@ -132,9 +132,9 @@ TEST(the_reference_keeps_all_laws) {
     int worse = 0;
     for (int run = 0; run < 20; run++) {
         make_random(&random, &seed, 10, 0.3f, 1);
-        Reference reference = {0};
+        OWN(Reference) reference = {0};
         Error failure = {0};
-        ContactSolution solution = make_solution(&random.problem);
+        OWN(ContactSolution) solution = make_solution(&random.problem);
         assert_ok(reference_solve(&reference, &random.problem, NULL, &failure), failure);
         if (reference.residual <= REFERENCE_TOLERANCE) {
             reference_round(&reference, &random.problem, &solution);
@@ -144,8 +144,6 @@ TEST(the_reference_keeps_all_laws) {
             const ContactCriteria swept = contact_criteria(&random.problem, &solution, true);
             worse += swept.signorini > 10 * found.signorini && swept.dissipation > 10 * found.dissipation;
         }
-        free_solution(&solution);
-        reference_free(&reference);
     }
     assert_true(worse > 10);
     one.kind->destroy(one.state);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The methods exec and exec-solver read what a program writes: answers with random damage end the run with a reason, or are
    numbers that an engine or a solver could have answered. The program is a shell that writes a file whatever it is asked. */
-#include "testing.h"
+#include "owned.h"
 
 #include "methods/adapter.h"
 #include "methods/methods.h"
@@ -94,11 +94,10 @@ static bool run_program(const char *name, const Answers *answers, float y, int f
              "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n"
              "  - {size: [1, 1], mass: 1, position: [0, %g], friction: 0.2}\n",
              frames, (double)y);
-    Scene *scene = scene_read(write_bytes(temporary_path("fall.yaml"), text, strlen(text)), error);
+    OWN(Scene) *scene = scene_read(write_bytes(temporary_path("fall.yaml"), text, strlen(text)), error);
     assert_ok(scene != NULL, *error);
     assert_ok(method_parse(&method, method_text, error), *error);
     const bool done = simulate_watched(scene, &method, &(RunWatch){.observer_count = 0}, error);
-    scene_destroy(scene);
     return done;
 }
 

@@ -23,13 +23,12 @@ static Scene scene_of(BodyDef *bodies, int count) {
 /* size: of the parameters, each uniform between -size and size. */
 static const char *write_net(float size, float strongest) {
     Error error = {0};
-    GnsNet net;
+    OWN(GnsNet) net;
     make_net(&net, 16, 2);
     for (int i = 0; i < net.layout.parameters; i++) net.parameters[i] *= size / 0.4f;
     net.scales.strongest = strongest;
     const char *path = temporary_path("net.npz");
     assert_ok(gns_net_write(&net, path, &error), error);
-    gns_net_free(&net);
     return path;
 }
 

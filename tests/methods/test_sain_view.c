@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a relation network sees does not depend on the numbers of the bodies, or on the tilt of the scene. */
 #include "sain_networks.h"
+#include "owned.h"
 
 enum { BODIES = 12, PAIRS = 16 };
 
@@ -101,7 +102,7 @@ static void answer(const Problem *p, const SainNetwork *network, SainForm form, 
 TEST(numbers_of_bodies_do_not_matter) {
     static Problem problem, other;
     uint32_t seed = 3;
-    SainNetwork network;
+    OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 0.4f);
     /* Not shuffled: whose change a body is shown depends on the numbers. */
     for (SainForm form = SAIN_WITH_ENGINE; form <= SAIN_ALONE; form++) {
@@ -116,7 +117,6 @@ TEST(numbers_of_bodies_do_not_matter) {
             assert_near(first[i].angular, second[BODIES - 1 - i].angular, 3e-4);
         }
     }
-    sain_network_destroy(&network);
 }
 
 /* Quarter turns of the world leave each box's frame where it was, so a box must be seen from a frame that turns with
@@ -125,7 +125,7 @@ TEST(answers_turn_with_the_scene) {
     static Problem problem;
     uint32_t seed = 4;
     const float angle = 0.4f;
-    SainNetwork network;
+    OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 0.4f);
     network.body_low[0] = -FLT_MAX;
     for (int h = 0; h < SAIN_HIDDEN; h++) /* the tilt itself is an input */
@@ -143,7 +143,6 @@ TEST(answers_turn_with_the_scene) {
             assert_near(after[i].angular, before[i].angular, 5e-4);
         }
     }
-    sain_network_destroy(&network);
 }
 
 TEST(answers_reach_their_target) {
@@ -194,7 +193,7 @@ TEST(an_empty_problem_is_seen) {
     static Problem problem;
     SainView view = {0};
     SainAnswers answers = {0};
-    SainNetwork network;
+    OWN(SainNetwork) network;
     uint32_t seed = 1;
     fill(&problem, 2);
     make_sain_network(&network, &seed, 1);
@@ -204,7 +203,6 @@ TEST(an_empty_problem_is_seen) {
     assert_true(sain_answer(&answers, &network, &view, true));
     sain_view_free(&view);
     sain_answers_free(&answers);
-    sain_network_destroy(&network);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -55,10 +55,9 @@ static int sweep_until(Known *known, const float *factors, int count, float near
 
 static int sweep_from_the_warm_start(Known *known) {
     const ContactProblem *problem = &known->random.problem;
-    Sweeps sweeps = {0};
+    OWN(Sweeps) sweeps = {0};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
     assert_true(residual_reaches(&sweeps, problem->contact_count, known->network->gate));
-    sweeps_free(&sweeps);
     return sweep_until(known, known->network->factors, AFTER, near_aim, MORE);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "networks.h"
+#include "owned.h"
 
 #include "nets/kernels.h"
 
@@ -77,7 +78,7 @@ static int count_active(const Case *made) {
    go unseen; below its kink a rectifier has none. */
 static void check_gradient(int layers, const int *widths, const Activation *activations) {
     Case made = make_case(layers, widths, activations);
-    double *gradient = calloc((size_t)made.count, sizeof *gradient);
+    FREED double *gradient = calloc((size_t)made.count, sizeof *gradient);
     assert_non_null(gradient);
     add_gradient(&made, gradient);
     const double step = 1e-5;
@@ -96,7 +97,6 @@ static void check_gradient(int layers, const int *widths, const Activation *acti
         slopes += fabs(slope) > 1e-6;
     }
     assert_true(active > 0 ? slopes > made.count / 2 : slopes == made.count);
-    free(gradient);
     free_case(&made);
 }
 
@@ -106,7 +106,7 @@ TEST(slopes_of_the_inputs_are_the_finite_difference) {
     const Activation activations[] = {ACTIVATION_TANH, ACTIVATION_LINEAR};
     const double step = 1e-5;
     Case made = make_case(2, widths, activations);
-    double *gradient = calloc((size_t)made.count, sizeof *gradient);
+    FREED double *gradient = calloc((size_t)made.count, sizeof *gradient);
     static double slopes[3 * BLOCK_ROWS];
     assert_non_null(gradient);
     add_gradient(&made, gradient);
@@ -123,7 +123,6 @@ TEST(slopes_of_the_inputs_are_the_finite_difference) {
             assert_near(slopes[i * BLOCK_ROWS + r], slope, 1e-8);
             assert_true((fabs(slope) > 1e-6) == (r < USED_ROWS));
         }
-    free(gradient);
     free_case(&made);
 }
 

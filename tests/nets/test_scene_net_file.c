@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written is read; what holds no network of scene-net, or an impossible one, is refused with place and reason. */
 #include "net_files.h"
+#include "owned.h"
 #include "scene_net_layers.h"
-
 
 static SceneNet *example(void) {
     uint32_t seed = 1;
@@ -45,16 +45,14 @@ static SceneNet *written_and_read(const SceneNet *network) {
 
 TEST(files_keep_every_bit) {
     const int sweeps[] = {3, 0, SCENE_NET_SWEEPS_MAX};
-    SceneNet *network = example();
+    OWN(SceneNet) *network = example();
     for (int i = 0; i < 3; i++) {
         network->sweeps = sweeps[i];
         for (int f = 3; f < SCENE_NET_SWEEPS_MAX; f++) network->factors[f] = f < sweeps[i] ? 0.01f * (float)f : 0;
         for (int f = sweeps[i]; f < 3; f++) network->factors[f] = 0;
-        SceneNet *read = written_and_read(network);
+        OWN(SceneNet) *read = written_and_read(network);
         assert_same(read, network);
-        scene_net_destroy(read);
     }
-    scene_net_destroy(network);
 }
 
 static bool is_read(const char *path, Error *error) {
@@ -67,11 +65,10 @@ static bool is_read(const char *path, Error *error) {
 static NetArrays two_slots(void) {
     Error error = {0};
     uint32_t seed = 1;
-    SceneNet *network =
+    OWN(SceneNet) *network =
         make_scene_net(&(SceneNetShape){2, 1, 2, 16, 16, 16, 32}, (const Slot[]){{0, 1, 4}, {0, 1, 6}}, &seed);
     const char *path = temporary_path("two.npz");
     assert_ok(scene_net_write(network, path, &error), error);
-    scene_net_destroy(network);
     return read_arrays(path);
 }
 
@@ -81,15 +78,14 @@ TEST(every_array_is_needed_and_checked) {
     assert_ok(scene_net_write(network, path, &error), error);
     scene_net_destroy(network);
     size_t size;
-    char *bytes = read_whole(path, &size);
+    FREED char *bytes = read_whole(path, &size);
     assert_file_is_checked(is_read, path, "scene-net", SCENE_NET_NETWORK_VERSION);
     bytes[size / 2] ^= 1; /* inside a matrix */
     refuse_file(is_read, write_bytes(temporary_path("flipped.npz"), bytes, size), "damaged");
-    free(bytes);
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    SceneNet *network = example();
+    OWN(SceneNet) *network = example();
     const char *path = temporary_path("bad.npz");
     struct {
         float *number, bad;
@@ -110,7 +106,6 @@ TEST(numbers_out_of_range_are_refused) {
         *cases[i].number = kept;
         refuse_file(is_read, path, cases[i].text);
     }
-    scene_net_destroy(network);
 }
 
 TEST(sizes_and_slots_out_of_bounds_are_refused) {

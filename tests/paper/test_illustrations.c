@@ -49,10 +49,9 @@ TEST(every_figure_is_a_picture_a_drawing_and_a_caption) {
 
 static void expect_texts(const char *name, const char *const *texts) {
     size_t size;
-    char *svg = read_file(name, "svg", &size);
+    FREED char *svg = read_file(name, "svg", &size);
     for (; *texts != NULL; texts++)
         if (strstr(svg, *texts) == NULL) fail_msg("%s.svg lacks \"%s\"", name, *texts);
-    free(svg);
 }
 
 TEST(drawings_say_what_they_show) {
@@ -70,11 +69,10 @@ TEST(drawings_say_what_they_show) {
 
 /* The engine's run of a scene, up to a step. */
 static Trajectory *run_to(const char *path, int step) {
-    Scene *scene = scene_from(path);
+    OWN(Scene) *scene = scene_from(path);
     const Method engine = method_named("engine");
     scene->frames = step;
     Trajectory *run = run_with(scene, &engine);
-    scene_destroy(scene);
     return run;
 }
 
@@ -90,7 +88,7 @@ TEST(the_loop_counts_what_the_run_has) {
                             &step, &pairs, &candidates, &touching, &points, &warm),
                      6);
     free(caption);
-    Trajectory *run = run_to(SCENES "/stack.yaml", step);
+    OWN(Trajectory) *run = run_to(SCENES "/stack.yaml", step);
     int64_t first = run->contact_start[step], end = run->contact_start[step + 1];
     int different = 0, kept = 0, bombs_before = 0;
     for (int64_t i = first; i < end; i++) {
@@ -114,7 +112,6 @@ TEST(the_loop_counts_what_the_run_has) {
     assert_int_equal(warm, kept);
     assert_int_equal(pairs, run->bodies * (run->bodies - 1) / 2);
     assert_in_range(candidates, touching, pairs);
-    trajectory_destroy(run);
 }
 
 static Box box_in(const Trajectory *run, int frame, int body) {
@@ -135,7 +132,7 @@ TEST(the_collision_shown_is_the_engines) {
     assert_non_null(end);
     assert_int_equal(sscanf(end, "points, %d and %d mm deep.", &deep[0], &deep[1]), 2);
     free(caption);
-    Trajectory *run = run_to(SCENES "/pyramid.yaml", step);
+    OWN(Trajectory) *run = run_to(SCENES "/pyramid.yaml", step);
     const Box box_a = box_in(run, step - 1, a), box_b = box_in(run, step - 1, b);
     Manifold manifold;
     manifold_compute(&manifold, &box_a, &box_b);
@@ -146,7 +143,6 @@ TEST(the_collision_shown_is_the_engines) {
     for (int i = 0; i < 2; i++) assert_near(-1000 * (double)manifold.points[i].separation, deep[i], 0.6);
     /* The deepest point is a corner that clipping has left where it was. */
     assert_int_equal(least, deep[0] > deep[1] ? deep[0] : deep[1]);
-    trajectory_destroy(run);
 }
 
 static float uniform(uint32_t *seed, float from, float to) {
@@ -228,7 +224,7 @@ TEST(the_row_shown_is_the_datasets) {
                             &changes[0], &changes[1], &changes[2], &changes[3]),
                      4);
     free(caption);
-    Dataset *dataset = dataset_record(&options, NULL, &error);
+    OWN(Dataset) *dataset = dataset_record(&options, NULL, &error);
     assert_ok(dataset != NULL, error);
     assert_int_equal(rows, dataset->rows);
     int found = 0;
@@ -243,7 +239,6 @@ TEST(the_row_shown_is_the_datasets) {
         found++;
     }
     assert_int_equal(found, 1);
-    dataset_destroy(dataset);
 }
 
 /* A folder with the scenes that ship, but for one; what becomes of it. */
@@ -256,12 +251,11 @@ static const char *folder_with(const char *name, const char *text) {
         char path[512];
         size_t size = strlen(text);
         snprintf(path, sizeof path, SCENES "/%s", names[i]);
-        char *shipped = text_of(path);
+        FREED char *shipped = text_of(path);
         const char *data = strcmp(names[i], name) == 0 ? text : shipped;
         size = strlen(data);
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);
         assert_ok(file_write(path, data, size, &error), error);
-        free(shipped);
     }
     return folder;
 }

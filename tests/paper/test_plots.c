@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* paper/: tables made up after measured ones, each with all that its figure can show. */
 #include "files.h"
+#include "owned.h"
 #include "python.h"
 #include "sanitized.h"
 
@@ -40,9 +41,8 @@ static void start_afresh(void) {
         char path[512];
         size_t size;
         snprintf(path, sizeof path, "%s/tests/paper/figures/%s.csv", SOURCE_DIR, tables[i]);
-        char *text = read_whole(path, &size);
+        FREED char *text = read_whole(path, &size);
         write_table(tables[i], text, size);
-        free(text);
     }
 }
 
@@ -59,25 +59,22 @@ static unsigned number_at(const char *data, int at) {
 
 static void expect_size(const char *figure, double mm) {
     size_t size;
-    char *png = read_whole(figure_path(figure, "png"), &size);
+    FREED char *png = read_whole(figure_path(figure, "png"), &size);
     assert_true(size > 10000);
     assert_memory_equal(png, "\x89PNG\r\n\x1a\n", 8);
     assert_near(number_at(png, 16), mm / 25.4 * 300, 1);
-    free(png);
 }
 
 static void expect_caption(const char *figure) {
     size_t size;
-    char *text = read_whole(figure_path(figure, "txt"), &size);
+    FREED char *text = read_whole(figure_path(figure, "txt"), &size);
     assert_true(size > 50);
     assert_ptr_equal(strchr(text, '\n'), text + size - 1);
-    free(text);
 }
 
 static bool tells_of_values_beyond(const char *figure) {
-    char *text = text_of(figure_path(figure, "txt"));
+    FREED char *text = text_of(figure_path(figure, "txt"));
     bool tells = strstr(text, "beyond an axis") != NULL;
-    free(text);
     return tells;
 }
 
@@ -169,7 +166,7 @@ TEST(tables_out_of_order_are_refused_with_their_place) {
 }
 
 static void write_many(const char *table, const char *header, const char *line, int count) {
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
@@ -177,7 +174,6 @@ static void write_many(const char *table, const char *header, const char *line, 
     for (int i = 0; i < count; i++) fputs(line, file);
     assert_int_equal(fclose(file), 0);
     write_table(table, text, size);
-    free(text);
 }
 
 TEST(too_many_lines_are_refused) {

@@ -114,7 +114,7 @@ static bool is_equal(const Image *expected, int i, bool dark, ContextChoice cont
     char name[NAME_SIZE], path[PATH_MAX];
     Error error = {0};
     ImageDifference difference;
-    Image *actual = draw(i, dark, context);
+    OWN(Image) *actual = draw(i, dark, context);
     image_compare(expected, actual, &difference);
     name_entry(name, i, dark);
     snprintf(path, sizeof path, "actual_%s.png", name);
@@ -122,7 +122,6 @@ static bool is_equal(const Image *expected, int i, bool dark, ContextChoice cont
         image_write_png(actual, path, NULL, 0, &error);
         print_error("%s: %lld pixels differ; see %s\n", name, (long long)difference.pixels, path);
     }
-    image_destroy(actual);
     return difference.equal;
 }
 
@@ -133,9 +132,8 @@ TEST(the_gallery_is_drawn_again) {
             char name[NAME_SIZE], path[PATH_MAX];
             name_entry(name, i, dark);
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
-            Image *expected = image_of(path);
+            OWN(Image) *expected = image_of(path);
             different += !is_equal(expected, i, dark, built_context(dark ? CONTEXT_EGL : CONTEXT_OSMESA));
-            image_destroy(expected);
         }
     assert_int_equal(different, 0);
 }
@@ -147,9 +145,8 @@ static void write_all(void) {
             Error error = {0};
             name_entry(name, i, dark);
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
-            Image *image = draw(i, dark, CONTEXT_AUTO);
+            OWN(Image) *image = draw(i, dark, CONTEXT_AUTO);
             if (!image_write_png(image, path, NULL, 0, &error)) print_error("%s\n", error.message);
-            image_destroy(image);
         }
 }
 

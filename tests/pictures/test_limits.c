@@ -67,10 +67,9 @@ TEST(contacts_are_left_out_first) {
     assert_ok(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = whole.bytes * 9 / 10}, path, &less, &error),
               error);
     assert_true(less.left_contacts && less.bytes < whole.bytes * 9 / 10);
-    char *text = text_of(path);
+    FREED char *text = text_of(path);
     assert_null(strstr(text, "id=\"c0-0\""));
     assert_non_null(strstr(text, "without contacts"));
-    free(text);
 }
 
 /* With the step that the message proposes, the page is small enough. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order of a video: counts, order and fractions; films of any frame rate play in real time, and films of a given length
    last as long. */
-#include "testing.h"
+#include "owned.h"
 
 #include "pictures/render.h"
 #include "runs.h"
@@ -92,23 +92,21 @@ TEST(slow_motion_ends_where_the_run_does) {
         int frames, impact, between;
     } cases[] = {{FRAMES, 2, 2 + AFTER}, {FRAMES, FRAMES - 1, BEFORE}, {10, 4, 9}, {FRAMES, 0, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Trajectory *other = struck(cases[i].frames, cases[i].impact);
+        OWN(Trajectory) *other = struck(cases[i].frames, cases[i].impact);
         MomentPlan plan;
         const Trajectory *panels[] = {other};
         assert_ok(moments_plan(&plan, panels, 1, 0, cases[i].frames - 1, &(RenderOptions){.slow = 4}, &error), error);
         assert_int_equal(moments_last(&plan) + 1, cases[i].frames + 3 * cases[i].between);
         assert_int_equal(moments_at(&plan, moments_last(&plan)).frame, cases[i].frames - 1);
-        trajectory_destroy(other);
     }
 }
 
 TEST(the_first_impact_of_all_panels_counts) {
-    Trajectory *later = struck(FRAMES + 5, IMPACT + 30);
+    OWN(Trajectory) *later = struck(FRAMES + 5, IMPACT + 30);
     MomentPlan plan;
     const Trajectory *panels[] = {later, run};
     assert_ok(moments_plan(&plan, panels, 2, 0, FRAMES + 4, &(RenderOptions){.slow = 2}, &error), error);
     assert_int_equal(plan.slow_first, IMPACT - BEFORE);
-    trajectory_destroy(later);
 }
 
 static void assert_same_moment(Moment a, Moment b) {

@@ -55,14 +55,12 @@ TEST_WITH(a_sequence_holds_the_frames_of_the_renderer, make, destroy) {
     assert_ok(render_study(panels, 2, &options, NULL, NULL, NULL, &error), error);
     assert_int_equal(count_files(options.directory, ".png"), 5);
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
-    Image *image = image_sized(options.width, options.height);
+    OWN(Image) *image = image_sized(options.width, options.height);
     for (int frame = 3; frame <= 7; frame++) {
         assert_ok(renderer_draw(renderer, frame, image, &error), error);
-        Image *written = image_of(frame_path(options.directory, frame));
+        OWN(Image) *written = image_of(frame_path(options.directory, frame));
         assert_true(image_hash(written) == image_hash(image));
-        image_destroy(written);
     }
-    image_destroy(image);
     renderer_destroy(renderer);
 }
 
@@ -121,9 +119,8 @@ TEST_WITH(a_sequence_can_be_stopped, make, destroy) {
     assert_true(count_files(options.directory, ".png") < 1000);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
     for (int frame = 0; access(frame_path(options.directory, frame), F_OK) == 0; frame++) {
-        Image *image = image_read_png(frame_path(options.directory, frame), &(Error){0});
+        OWN(Image) *image = image_read_png(frame_path(options.directory, frame), &(Error){0});
         assert_non_null(image);
-        image_destroy(image);
     }
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signals that cut calls short change nothing in a sequence; files that cannot be removed are reported. */
 #define _GNU_SOURCE /* RTLD_NEXT */
-#include "testing.h"
+#include "owned.h"
 
 #include "files.h"
 #include "mesa.h"
@@ -58,9 +58,8 @@ static RenderOptions options_for(const char *directory) {
 }
 
 static bool draw(const RenderOptions *options, int frames, Error *error) {
-    Trajectory *run = run_make("engine", frames);
+    OWN(Trajectory) *run = run_make("engine", frames);
     const bool done = render_study((const Trajectory *[]){run}, 1, options, NULL, NULL, NULL, error);
-    trajectory_destroy(run);
     return done;
 }
 

@@ -19,21 +19,19 @@ static Image *patterned(int width, int height) {
 
 TEST(alpha_is_dropped) {
     const char *path = temporary_path("opaque.png");
-    Image *image = patterned(2, 1);
+    OWN(Image) *image = patterned(2, 1);
     image->pixels[3] = 7;
     assert_ok(image_write_png(image, path, NULL, 0, &error), error);
-    Image *back = image_of(path);
+    OWN(Image) *back = image_of(path);
     assert_int_equal(back->pixels[3], 255);
     assert_memory_equal(back->pixels, image->pixels, 3);
-    image_destroy(image);
-    image_destroy(back);
 }
 
 TEST(texts_come_back) {
     const char *path = temporary_path("text.png");
     const ImageText texts[] = {{"Scene", "pyramid"}, {"Method", "engine | pr\xC3\xA9"}, {"Empty", ""}};
     char value[64];
-    Image *image = patterned(3, 3);
+    OWN(Image) *image = patterned(3, 3);
     assert_ok(image_write_png(image, path, texts, 3, &error), error);
     for (int i = 0; i < 3; i++) {
         text_of_image(path, texts[i].key, value, sizeof value);
@@ -43,7 +41,6 @@ TEST(texts_come_back) {
     assert_string_equal(value, "");
     text_of_image(path, "Scene", value, strlen("pyramid"));
     assert_string_equal(value, "");
-    image_destroy(image);
 }
 
 static const PngKind kinds[] = {{"grey 1", PNG_COLOR_TYPE_GRAY, 1, false},
@@ -88,7 +85,7 @@ TEST(every_kind_is_read) {
         const PngKind *kind = &kinds[i / 2];
         const char *path = temporary_path("kind.png");
         write_kind(path, kind, i % 2 ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE);
-        Image *image = image_of(path);
+        OWN(Image) *image = image_of(path);
         assert_true(image->width == PNG_SIDE && image->height == PNG_SIDE);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++) {
@@ -97,7 +94,6 @@ TEST(every_kind_is_read) {
                 if (memcmp(wanted, image->pixels + (y * PNG_SIDE + x) * 4, 4) != 0)
                     fail_msg("%s, interlace %d: pixel %d, %d", kind->name, i % 2, x, y);
             }
-        image_destroy(image);
     }
 }
 
@@ -126,9 +122,8 @@ TEST(colours_beyond_the_palette_are_refused) {
 static char *small_file(size_t *size) {
     Error error = {0};
     const char *path = temporary_path("small.png");
-    Image *image = patterned(5, 4);
+    OWN(Image) *image = patterned(5, 4);
     assert_ok(image_write_png(image, path, &(ImageText){"Scene", "single"}, 1, &error), error);
-    image_destroy(image);
     return read_whole(path, size);
 }
 
@@ -142,19 +137,18 @@ static void refuse(const char *path, const char *text) {
 
 TEST(truncated_files_are_refused) {
     size_t size;
-    char *data = small_file(&size);
+    FREED char *data = small_file(&size);
     const char *path = temporary_path("truncated.png");
     for (size_t length = 0; length < size; length++) {
         write_bytes(path, data, length);
         refuse(path, "not a PNG file, or damaged");
     }
-    free(data);
 }
 
 /* Checksums cover every byte of a PNG after its signature. */
 TEST(every_flipped_bit_is_noticed) {
     size_t size;
-    char *data = small_file(&size);
+    FREED char *data = small_file(&size);
     const char *path = temporary_path("flipped.png");
     for (size_t bit = 0; bit < size * 8; bit++) {
         data[bit / 8] = (char)(data[bit / 8] ^ 1 << bit % 8);
@@ -162,7 +156,6 @@ TEST(every_flipped_bit_is_noticed) {
         refuse(path, "damaged");
         data[bit / 8] = (char)(data[bit / 8] ^ 1 << bit % 8);
     }
-    free(data);
 }
 
 TEST(large_claims_are_refused_before_they_cost) {
@@ -179,13 +172,12 @@ TEST(large_claims_are_refused_before_they_cost) {
 
 TEST(the_limit_of_pixels_is_the_callers) {
     size_t size;
-    uint8_t *data = (uint8_t *)small_file(&size);
+    FREED uint8_t *data = (uint8_t *)small_file(&size);
     Image *image = image_decode_png(data, size, "small.png", 20, &error);
     assert_ok(image != NULL, error);
     image_destroy(image);
     assert_refused(image_decode_png(data, size, "small.png", 19, &error),
                    "small.png: error: the picture has 5 x 4 pixels; at most 19");
-    free(data);
 }
 
 /* Two pictures that differ in 16 bits but not in 8. */
@@ -194,7 +186,7 @@ TEST(sixteen_bits_count_in_full) {
     for (int interlace = 0; interlace < 2; interlace++) {
         const char *path = temporary_path("deep.png");
         write_kind(path, &kind, interlace);
-        Image *a = image_of(path), *b = image_of(path);
+        OWN(Image) *a = image_of(path), *b = image_of(path);
         assert_non_null(a->pixels16);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++)
@@ -206,8 +198,6 @@ TEST(sixteen_bits_count_in_full) {
         image_compare(a, b, &difference);
         assert_true(difference.pixels == 1 && difference.largest == 1);
         assert_true(difference.first_x == 7 && difference.first_y == 5);
-        image_destroy(a);
-        image_destroy(b);
     }
 }
 
@@ -228,7 +218,7 @@ enum { SWOLLEN = 1 << 20 };
 /* 1 MiB of text in 1 KiB of file. */
 static void write_text_bomb(const char *path) {
     size_t size = SWOLLEN;
-    char *text = malloc(size);
+    FREED char *text = malloc(size);
     FILE *file = fopen(path, "wb");
     assert_true(file != NULL && text != NULL);
     memset(text, 'a', size - 1);
@@ -245,7 +235,6 @@ static void write_text_bomb(const char *path) {
     png_write_end(png, info);
     png_destroy_write_struct(&png, &info);
     fclose(file);
-    free(text);
 }
 
 TEST(texts_that_swell_do_no_harm) {
@@ -267,10 +256,9 @@ TEST(what_is_no_file_is_refused) {
 }
 
 TEST(a_failed_write_is_the_systems_fault) {
-    Image *image = patterned(2, 2);
+    OWN(Image) *image = patterned(2, 2);
     assert_false(image_write_png(image, temporary_path("no/such/folder.png"), NULL, 0, &error));
     assert_error(error, ERROR_SYSTEM, "no/such/folder.png");
-    image_destroy(image);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file has beside its pixels does not matter, whatever its size; what its pixels have must be sound, however it is cut
    into chunks. Each file is read by both decoders: libpng's is forced by Adam7, which of one pixel is the plain order. */
-#include "testing.h"
+#include "owned.h"
 
 #define PNG_PARTS_ROOM (1 << 23)
 #include "png_parts.h"
@@ -60,7 +60,7 @@ TEST(texts_are_found_behind_any_chunk) {
     static const char *const types[] = {"tEXt", "zTXt", "iTXt", "eXIf", "iCCP", "sPLT", "caBX", "tIME", "vpAg"};
     static const size_t sizes[] = {0, 1, 1 << 16, (1 << 16) + 1, 1 << 20};
     static PngParts file;
-    uint8_t *ballast = calloc(1 << 20, 1);
+    FREED uint8_t *ballast = calloc(1 << 20, 1);
     char value[16];
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
         for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
@@ -77,7 +77,6 @@ TEST(texts_are_found_behind_any_chunk) {
             assert_ok(image_find_text(file.data, file.size, "Later", value, sizeof value, &error), error);
             assert_string_equal(value, "");
         }
-    free(ballast);
 }
 
 /* Files read in pieces, with a large chunk: what displays is held, the rest is not. */
@@ -142,7 +141,7 @@ TEST(checksums_count_however_they_are_split) {
 TEST(noise_in_one_chunk_is_read) {
     enum { BYTES = 18000, DOWN = 40, SIZE = DOWN * (BYTES + 1) };
     static PngParts file;
-    uint8_t *rows = malloc(SIZE), *stream = malloc(2 * SIZE);
+    FREED uint8_t *rows = malloc(SIZE), *stream = malloc(2 * SIZE);
     uint32_t seed = 1;
     for (size_t i = 0; i < SIZE; i++) {
         seed = seed * 1664525 + 1013904223;
@@ -156,13 +155,10 @@ TEST(noise_in_one_chunk_is_read) {
             put_header(&file, BYTES * 8U / 3 / (uint32_t)depth, DOWN, depth, 2);
             put_chunk(&file, "IDAT", stream, length);
             put_chunk(&file, "IEND", NULL, 0);
-            Image *image = image_decode_png(file.data, file.size, "noise.png", IMAGE_MAX_PIXELS, &error);
+            OWN(Image) *image = image_decode_png(file.data, file.size, "noise.png", IMAGE_MAX_PIXELS, &error);
             assert_ok(image != NULL, error);
             if (depth == 8) assert_memory_equal(image->pixels, rows + 1, 3);
-            image_destroy(image);
         }
-    free(rows);
-    free(stream);
 }
 
 RUN_TESTS(NULL, NULL)

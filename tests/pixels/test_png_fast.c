@@ -2,7 +2,7 @@
 /* The fast decoder against libpng, on thousands of files: of every layout, filter, compression and split into chunks; then
    the same files damaged, with checksums that are made right again. What it accepts, libpng accepts, with the same pixels;
    and it accepts what it is for. */
-#include "testing.h"
+#include "owned.h"
 
 #include "regression/compare.h"
 #include "pixels/pixels_internal.h"
@@ -140,10 +140,9 @@ static bool check_file(const PngParts *file) {
         assert_null(fast);
         return false;
     }
-    Image *wanted = accepted_by_libpng(file);
+    OWN(Image) *wanted = accepted_by_libpng(file);
     if (wanted != NULL) assert_same(fast, wanted);
     image_destroy(fast);
-    image_destroy(wanted);
     return true;
 }
 
@@ -400,10 +399,9 @@ TEST(checks_and_reading_agree) {
         if (i % 16 == 0) good.data[28] = 1, make_checksum(good.data + 8);
         damage();
         const PngParts *file = i % 4 == 0 ? &good : &bad;
-        Image *image = image_decode_png(file->data, file->size, "file", 1 << 20, &read);
+        OWN(Image) *image = image_decode_png(file->data, file->size, "file", 1 << 20, &read);
         assert_int_equal(is_sound(file, 1 << 20, &check), image != NULL);
         assert_int_equal(read.kind, check.kind); /* of two damages, they may tell different ones */
-        image_destroy(image);
     }
 }
 

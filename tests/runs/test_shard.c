@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "runs/runs_internal.h"
 
@@ -155,9 +155,8 @@ TEST(a_list_of_shards_is_what_sbatch_takes) {
         unsigned char shards[32] = {0};
         const int count = (int)strlen(rows[i].shards);
         for (int s = 0; s < count; s++) shards[s] = rows[i].shards[s] == '1';
-        char *list = pieces_shard_list(shards, count, &rows[i].array);
+        FREED char *list = pieces_shard_list(shards, count, &rows[i].array);
         assert_string_equal(list, rows[i].list);
-        free(list);
     }
 }
 

@@ -59,13 +59,11 @@ TEST(ten_thousand_in_one_place_are_refused) {
 }
 
 TEST(the_hash_of_a_scene_does_not_depend_on_it) {
-    Scene *refused = good_scene(TWO(AT("0"), AT("1"))),
-          *allowed = good_scene(TWO(AT("0"), AT("1")) "overlaps: allowed\n");
+    OWN(Scene) *refused = good_scene(TWO(AT("0"), AT("1"))),
+               *allowed = good_scene(TWO(AT("0"), AT("1")) "overlaps: allowed\n");
     assert_true(scene_hash(refused) == scene_hash(allowed));
     assert_false(refused->overlaps_allowed);
     assert_true(allowed->overlaps_allowed);
-    scene_destroy(refused);
-    scene_destroy(allowed);
 }
 
 RUN_TESTS(NULL, NULL)

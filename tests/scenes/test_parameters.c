@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameters of scene files: numbers made of them, settings, and what is refused. */
 #include "scene_text.h"
+#include "owned.h"
 
 #include <math.h>
 
@@ -12,9 +13,8 @@
 #define USES_BOTH "camera: {center: [$height, $ratio], size: [1, 1]}\n"
 
 static float mass_of(const char *text) {
-    Scene *scene = good_scene(text);
+    OWN(Scene) *scene = good_scene(text);
     float mass = scene->bodies[0].mass;
-    scene_destroy(scene);
     return mass;
 }
 
@@ -72,10 +72,9 @@ TEST(a_fraction_keeps_its_bits) {
         for (int i = 0; i < 2; i++) {
             char text[1024];
             snprintf(text, sizeof text, formats[i], rate);
-            Scene *scene = good_scene(text);
+            OWN(Scene) *scene = good_scene(text);
             float expected = 1.0F / (float)rate;
             assert_memory_equal(&scene->dt, &expected, sizeof expected);
-            scene_destroy(scene);
         }
     }
 }
@@ -86,23 +85,21 @@ TEST(a_scene_with_parameters_is_the_scene_of_their_values) {
     static const char scene[] = BASE GROUND
         "  - {pattern: stack, count: $height, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.05*$height]}\n"
         "bomb: {x: 0.5*$height, y: 15, size: [1, 1], mass: $height, velocity: {times_position: -0.15*$height}}\n";
-    Scene *plain = good_scene(
+    OWN(Scene) *plain = good_scene(
         BASE GROUND "  - {pattern: stack, count: 10, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.5]}\n"
                     "bomb: {x: 5, y: 15, size: [1, 1], mass: 10, velocity: {times_position: -1.5}}\n");
     for (int before = 0; before <= 1; before++) {
         char text[2048];
         snprintf(text, sizeof text, "%s%s", before ? parameters : scene, before ? scene : parameters);
-        Scene *found = good_scene(text);
+        OWN(Scene) *found = good_scene(text);
         assert_int_equal(scene_hash(found), scene_hash(plain));
         assert_int_equal(found->parameter_count, 1);
         const SceneParameter *height = &found->parameters[0];
         assert_string_equal(height->name, "height");
         assert_string_equal(height->unit, "boxes");
         assert_true(height->value == 10 && height->from == 2 && height->to == 40 && height->whole);
-        scene_destroy(found);
     }
     assert_int_equal(plain->parameter_count, 0);
-    scene_destroy(plain);
 }
 
 static Scene *read_with(const char *text, const SceneSetting *settings, int count, Error *error) {
@@ -114,12 +111,11 @@ TEST(settings_take_the_place_of_values) {
     const SceneSetting settings[] = {{"ratio", 0.5}, {"height", 40}};
     static const double masses[] = {1, 5, 20};
     for (int count = 0; count <= 2; count++) {
-        Scene *scene = read_with(SCENE("$height*$ratio"), settings, count, &error);
+        OWN(Scene) *scene = read_with(SCENE("$height*$ratio"), settings, count, &error);
         assert_ok(scene != NULL, error);
         assert_near(scene->bodies[0].mass, masses[count], 0);
         assert_true(scene->parameters[0].value == (count == 2 ? 40 : 10));
         assert_true(scene->parameters[1].value == (count >= 1 ? 0.5 : 0.1));
-        scene_destroy(scene);
     }
 }
 
@@ -180,19 +176,17 @@ TEST(settings_are_read_from_text) {
 
 /* The run and the way to the bomb take as many seconds as before. */
 TEST(another_time_step_leaves_the_time) {
-    Scene *plain = good_scene(BOMBED("[0, -1]")), *scene = set_one(BOMBED("[0, -1]"), "dt", (double)plain->dt / 3);
+    OWN(Scene) *plain = good_scene(BOMBED("[0, -1]")), *scene = set_one(BOMBED("[0, -1]"), "dt", (double)plain->dt / 3);
     assert_near(scene->frames, 3 * plain->frames, 0);
     assert_near(scene->bomb.frame, 90, 0);
     assert_near(scene->dt * 3, plain->dt, 1e-9);
-    scene_destroy(scene);
-    scene_destroy(plain);
 }
 
 TEST(a_parameter_of_that_name_goes_before) {
-    Scene *scene = set_one(MASS("$friction") "parameters: {friction: {value: 1, from: 0.5, to: 20}}\n", "friction", 20);
+    OWN(Scene) *scene =
+        set_one(MASS("$friction") "parameters: {friction: {value: 1, from: 0.5, to: 20}}\n", "friction", 20);
     assert_true(scene->bodies[0].mass == 20 && scene->bodies[0].friction < 1);
     assert_ptr_equal(scene_parameter(scene, "friction"), &scene->parameters[0]);
-    scene_destroy(scene);
 }
 
 TEST(what_no_scene_can_have_is_refused) {

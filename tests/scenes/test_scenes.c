@@ -36,14 +36,13 @@ static BodyDef unit_box(float mass, float x, float y) {
 }
 
 TEST(scenes_name_the_network_beside_them) {
-    Scene *scene = shipped("single");
+    OWN(Scene) *scene = shipped("single");
     assert_string_equal(scene_network(scene, "pair-net"), SOURCE_DIR "/scenes/networks/pair-net.npz");
     assert_null(scene_network(scene, "pair"));
-    scene_destroy(scene);
 }
 
 TEST(every_key_reaches_its_member) {
-    Scene *scene =
+    OWN(Scene) *scene =
         good_scene("networks: {b-2: /absolute.npz}\n"
                    "bomb: {rotation: 0.5, spin: -2, velocity: [3, 4], friction: 0, mass: 7, size: [2, 3],\n"
                    "  y: 6, x: 5, frame: 9, impact_frames: 3}\n"
@@ -75,22 +74,20 @@ TEST(every_key_reaches_its_member) {
     assert_same_float(scene->dt, 1.0f / 120.0f);
     assert_same_vector(scene->gravity, vec2(1, 2));
     assert_string_equal(scene_network(scene, "b-2"), "/absolute.npz");
-    scene_destroy(scene);
 }
 
 TEST(keys_left_out_have_defaults) {
-    Scene *scene = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
+    OWN(Scene) *scene = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
     const BodyDef body = {.size = {6, 7}, .mass = 5, .friction = 0.2f, .position = {3, 4}};
     assert_same_body(&scene->bodies[0], &body);
     assert_false(scene->bomb.present);
     assert_true(scene->warm_starting && scene->accumulate_impulses && scene->position_correction);
     assert_same_vector(scene->camera_size, vec2(0, 0));
     assert_int_equal(scene->network_count, 0);
-    scene_destroy(scene);
 }
 
 TEST(rows_go_by_their_spacing) {
-    Scene *scene =
+    OWN(Scene) *scene =
         good_scene(BASE GROUND "  - {pattern: row, count: 100, spacing: [0.3, -0.1], mass: 1, size: [1, 1],\n"
                                "     position: [0.7, 2], angle: 0.5, velocity: [1, 2], spin: 3}\n"
                                "overlaps: allowed\n");
@@ -102,16 +99,13 @@ TEST(rows_go_by_their_spacing) {
         box.angular_velocity = 3;
         assert_same_body(&scene->bodies[1 + i], &box);
     }
-    scene_destroy(scene);
 }
 
 TEST(line_ends_and_byte_order_mark_do_not_matter) {
-    Scene *unix_ends = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
-    Scene *dos_ends = good_scene("\xef\xbb\xbfgravity: [0, -10]\r\ndt: 1/60\r\niterations: 10\r\nframes: 300\r\n"
-                                 "bodies:\r\n  - mass: 5\r\n    size: [6, 7]\r\n    position: [3, 4]\r\n");
+    OWN(Scene) *unix_ends = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
+    OWN(Scene) *dos_ends = good_scene("\xef\xbb\xbfgravity: [0, -10]\r\ndt: 1/60\r\niterations: 10\r\nframes: 300\r\n"
+                                      "bodies:\r\n  - mass: 5\r\n    size: [6, 7]\r\n    position: [3, 4]\r\n");
     assert_int_equal(scene_hash(unix_ends), scene_hash(dos_ends));
-    scene_destroy(unix_ends);
-    scene_destroy(dos_ends);
 }
 
 /* The first of each list, and that with one value changed at a time. */
@@ -161,9 +155,8 @@ static const char *const bombs[] = {
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 static uint64_t hash_text(const char *text) {
-    Scene *scene = good_scene(text);
+    OWN(Scene) *scene = good_scene(text);
     uint64_t hash = scene_hash(scene);
-    scene_destroy(scene);
     return hash;
 }
 
@@ -203,26 +196,22 @@ TEST(hash_keeps_with_all_else) {
 }
 
 TEST(world_has_the_bodies_in_order_and_the_bomb_last) {
-    Scene *scene = shipped("pyramid");
-    World *world = world_of(scene);
+    OWN(Scene) *scene = shipped("pyramid");
+    OWN(World) *world = world_of(scene);
     assert_int_equal(world_body_count(world), 68);
     for (int i = 0; i < 67; i++) assert_same_vector(world_bodies(world)[i].position, scene->bodies[i].position);
     assert_same_vector(world_bodies(world)[67].position, vec2(scene->bomb.body.position.x, 15));
     assert_same_vector(world_bodies(world)[67].velocity, vec2(-1.5f * scene->bomb.body.position.x, -22.5f));
-    world_destroy(world);
-    scene_destroy(scene);
 }
 
 TEST(world_has_no_bomb_before_its_frame) {
-    Scene *scene = shipped("pyramid_settled");
-    World *world = world_of(scene);
+    OWN(Scene) *scene = shipped("pyramid_settled");
+    OWN(World) *world = world_of(scene);
     assert_int_equal(world_body_count(world), 67);
     scene->bomb.body.position.x = -4;
     assert_ok(scene_add_bomb(scene, world, &error), error);
     assert_int_equal(world_body_count(world), 68);
     assert_same_vector(world_bodies(world)[67].velocity, vec2(6, -22.5f));
-    world_destroy(world);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -2,6 +2,7 @@
 /* chart.csv: invented numbers, modelled on measured ones; twelve methods. */
 #include "charts.h"
 #include "files.h"
+#include "owned.h"
 #include "python.h"
 
 #include "studies/chart_data.h"
@@ -58,10 +59,9 @@ TEST(a_picture_and_its_caption_are_written) {
                "               'pyramid_settled, 40 launches'):\n"
                "    assert wanted in texts, (wanted, texts)\n",
                drawn_file("pyramid_settled", "svg"));
-    char *caption = read_drawn("pyramid_settled", "txt", &size);
+    FREED char *caption = read_drawn("pyramid_settled", "txt", &size);
     assert_non_null(strstr(caption, " Beyond the axes: reference (2232 to 2400 µs, below 0.0001 m/s)."));
     assert_non_null(strstr(caption, "Ring and dotted lines: engine as shipped"));
-    free(caption);
 }
 
 /* The picture's size in pixels, from the head of its file. */
@@ -69,11 +69,10 @@ static void expect_size(const ChartLook *look, int width, int height) {
     Error error = {0};
     size_t size;
     assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), look, &error), error);
-    unsigned char *png = (unsigned char *)read_drawn("pyramid_settled", "png", &size);
+    FREED unsigned char *png = (unsigned char *)read_drawn("pyramid_settled", "png", &size);
     assert_int_equal(png[18] << 8 | png[19], width);
     if (height > 0) assert_int_equal(png[22] << 8 | png[23], height);
     if (height < 0) assert_true((png[22] << 8 | png[23]) > -height);
-    free(png);
 }
 
 TEST(sizes_are_those_of_a_column_and_a_slide) {
@@ -81,9 +80,8 @@ TEST(sizes_are_those_of_a_column_and_a_slide) {
     expect_size(&(ChartLook){.size = CHART_SLIDE}, 1890, 1063);
     expect_size(&(ChartLook){.words = true}, 2055, -1200);
     size_t size;
-    char *svg = read_drawn("pyramid_settled", "svg", &size);
+    FREED char *svg = read_drawn("pyramid_settled", "svg", &size);
     assert_non_null(strstr(svg, "Velocity error:"));
-    free(svg);
 }
 
 #define HEADER                                                                                               \
@@ -132,10 +130,9 @@ static char *caption_of(const char *path) {
 }
 
 static void expect_caption(const char *path, const char *wanted, const char *unwanted) {
-    char *caption = caption_of(path);
+    FREED char *caption = caption_of(path);
     if (strstr(caption, wanted) == NULL) fail_msg("no '%s' in: %s", wanted, caption);
     if (unwanted != NULL) assert_null(strstr(caption, unwanted));
-    free(caption);
 }
 
 TEST(times_that_vary_are_noted) {
@@ -367,10 +364,9 @@ TEST(lost_methods_are_shown_on_request) {
     size_t size;
     expect_caption(write_rows(rows), "Unstable before the impact, and left out: pair-net (1).", "Crosses");
     assert_ok(chart_plot(write_rows(rows), "stack", folder(), &asked, &error), error);
-    char *caption = read_drawn("stack", "txt", &size);
+    FREED char *caption = read_drawn("stack", "txt", &size);
     assert_non_null(strstr(caption, "Crosses: the method lost the scene before the impact."));
     assert_null(strstr(caption, "left out: pair-net"));
-    free(caption);
 }
 
 /* A program reports one time; its curve is in colour and no part of the front. */
@@ -423,14 +419,13 @@ TEST(a_chart_explains_its_words) {
                                             " near: residual at which iterations stop, m/s",
                                             " net=off: without its learned part",
                                             " Velocity error: difference from the converged solution of the same step"};
-    char *caption = caption_of(write_rows(many_methods));
+    FREED char *caption = caption_of(write_rows(many_methods));
     for (size_t i = 0; i < sizeof explained / sizeof *explained; i++) {
         const char *found = strstr(caption, explained[i]);
         if (found == NULL) fail_msg("no '%s' in: %s", explained[i], caption);
         assert_null(strstr(found + 1, explained[i]));
     }
     assert_null(strstr(caption, "substeps:"));
-    free(caption);
 }
 
 /* Links of chart.html have their places by the height that the words give. */

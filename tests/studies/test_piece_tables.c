@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 #include "files.h"
 
 #include "studies/piece_tables.h"
@@ -64,14 +64,13 @@ TEST(lines_of_no_table_are_refused) {
 }
 
 TEST(a_row_is_a_line_with_the_tables_name) {
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t size;
     FILE *results = open_memstream(&text, &size);
     assert_ok(piece_tables_print(results, &a_layout, -1, &(int){7}, &error), error);
     assert_ok(piece_tables_print(results, &ab_layout, 3, &(int){8}, &error), error);
     fclose(results);
     assert_string_equal(text, "a:7\nab/3:8\n");
-    free(text);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Both sides of every border in golden/stability.csv (made by golden/renew): each method still holds at holds_at and
    fails at fails_at. */
-#include "testing.h"
+#include "owned.h"
 #include "sanitized.h"
 
 #include "base/machine.h"
@@ -45,11 +45,10 @@ static bool check_refusal(const Golden *golden, int i, const StabilityScan *scan
     Method method;
     Error reason = {0};
     const StabilityPlace place = {.scenes = scenes, .scene = scan->study->scene};
-    Scene *scene = stability_scene(&place, NULL, 0, error);
+    OWN(Scene) *scene = stability_scene(&place, NULL, 0, error);
     bool ok = scene != NULL && method_of(border_row(&golden->table, i), &method, error);
     if (ok && stability_applies(&method, scene, &reason))
         ok = csv_table_error(&golden->table, i, 0, error, "%s, %s: it does apply", scan->study->name, method.text);
-    scene_destroy(scene);
     return ok;
 }
 

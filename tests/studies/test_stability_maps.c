@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figures of maps, from synthetic tables. */
 #include "stability_drawn.h"
+#include "owned.h"
 
 #include "pixels/type.h"
 
@@ -169,11 +170,9 @@ TEST(invalid_maps_are_refused_with_their_place) {
 }
 
 TEST(maps_too_large_are_refused) {
-    char *methods = make_map(25, 1, 1), *values = make_map(1, 1, 129);
+    FREED char *methods = make_map(25, 1, 1), *values = make_map(1, 1, 129);
     expect_refused(methods, BORDERS ONE_BORDER, "maps.csv:26:1: error: more than 24 methods");
     expect_refused(values, BORDERS ONE_BORDER, "maps.csv:130:1: error: more than 128 values");
-    free(methods);
-    free(values);
 }
 
 int main(void) {
