@@ -96,6 +96,18 @@ static inline const char *temporary_path(const char *name) {
     return path;
 }
 
+/* As printf() would print it; in a static ring of sixteen buffers. */
+__attribute__((format(printf, 1, 2))) static inline const char *printed(const char *format, ...) {
+    static _Thread_local char texts[16][1024];
+    static _Thread_local int next;
+    char *text = texts[next++ % 16];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof texts[0], format, arguments);
+    va_end(arguments);
+    return text;
+}
+
 /* Puts these bytes in a file and returns its path. A new file each time: some file systems write an overwritten one to disk
    at once, for safety. */
 static inline const char *write_bytes(const char *path, const void *data, size_t size) {

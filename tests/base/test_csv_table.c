@@ -131,9 +131,7 @@ TEST(wrong_fields_are_refused_with_their_place) {
         {"t,n,red,1,2,3\n", "2:1: error: 6 fields, but the header has 7"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[256];
-        snprintf(text, sizeof text, HEADER "%s", cases[i].row);
-        expect_refused(&all, text, cases[i].message);
+        expect_refused(&all, printed(HEADER "%s", cases[i].row), cases[i].message);
     }
 }
 

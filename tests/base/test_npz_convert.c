@@ -9,9 +9,7 @@
 /* Opens a file with `array=expression`. */
 static NpzFile *make(const char *expression) {
     const char *path = temporary_path("array.npz");
-    char program[512];
-    snprintf(program, sizeof program, "import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression);
-    run_python(program, path);
+    run_python(printed("import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression), path);
     return npz_of(path);
 }
 

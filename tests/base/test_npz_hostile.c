@@ -71,8 +71,7 @@ TEST(heads_are_read_strictly) {
         "(3)",     "(3,2)",   "(,)", "(3, )", "(3, 2,)", "(-3, 2)", "(3, 2", "3", "(99999999999999999999,)",
         "( 3, 2)", "(3, 2) x"};
     for (size_t i = 0; i < sizeof damaged / sizeof damaged[0]; i++) {
-        char head[200];
-        snprintf(head, sizeof head, HEAD("<f4", "False", "%s"), damaged[i]);
+        const char *head = printed(HEAD("<f4", "False", "%s"), damaged[i]);
         expect_head_refused(head, 24, "damaged head");
     }
     expect_head_refused(HEAD("<f4", "Maybe", "(3, 2)"), 24, "damaged head");

@@ -110,9 +110,7 @@ TEST(what_numpy_writes_is_read) {
 
 static void expect_refused(const char *expression, const char *reason) {
     const char *path = temporary_path("refused.npz");
-    char program[512];
-    snprintf(program, sizeof program, "import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression);
-    run_python(program, path);
+    run_python(printed("import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression), path);
     Error error = {0};
     OWN(NpzFile) *file = npz_of(path);
     assert_refused(npz_read(file, "array", NPZ_FLOAT32, 1, (const int64_t[]){3}, &error), reason, "'array' is ");

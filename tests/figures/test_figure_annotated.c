@@ -139,9 +139,7 @@ TEST(crowded_numbers_lead_to_their_contacts) {
         PageBox boxes[CONTACTS];
         draw_kind(&sketch, "annotated", &spec);
         for (int i = 0; i < CONTACTS; i++) {
-            char words[16];
-            snprintf(words, sizeof words, "%.2f", 0.11 * (i + 1));
-            boxes[i] = number_box(&sketch, words);
+            boxes[i] = number_box(&sketch, printed("%.2f", 0.11 * (i + 1)));
             const double own = distance_to_box(ring_at(&sketch, i), &boxes[i]);
             const bool led = is_led(&sketch, ring_at(&sketch, i), &boxes[i]);
             for (int k = 0; k < CONTACTS; k++) {
@@ -167,8 +165,7 @@ TEST(numbers_without_room_are_left_out) {
     Sketch sketch;
     draw_kind(&sketch, "annotated", &spec);
     int written = count_texts(&sketch, "0.10") + count_texts(&sketch, "3.00");
-    char line[64];
-    snprintf(line, sizeof line, "101 contacts, impulses in N s, %d labelled", written);
+    const char *line = printed("101 contacts, impulses in N s, %d labelled", written);
     assert_true(written > 1 && written < 40);
     assert_int_equal(count_texts(&sketch, line), 1);
     assert_int_equal(count_texts(&sketch, "3.00"), 1);

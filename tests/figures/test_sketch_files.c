@@ -197,12 +197,11 @@ TEST(an_svg_has_its_words) {
     assert_non_null(
         strstr(svg, "font-family=\"Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif\""));
     /* centred at (15, 10), capitals' middle 0.3635 em above the baseline, turned by 30 degrees */
-    char text[160];
     const double em = 8 * MM_PER_POINT;
-    snprintf(text, sizeof text,
-             "<text transform=\"translate(%.3f %.3f) rotate(-30)\" font-size=\"%.4f\" fill=\"#123456\" "
-             "text-anchor=\"middle\" stroke=\"#FFFFFF\"",
-             15 + TYPE_MIDDLE * em * sin(M_PI / 6), 10 + TYPE_MIDDLE * em * cos(M_PI / 6), em);
+    const char *text =
+        printed("<text transform=\"translate(%.3f %.3f) rotate(-30)\" font-size=\"%.4f\" fill=\"#123456\" "
+                "text-anchor=\"middle\" stroke=\"#FFFFFF\"",
+                15 + TYPE_MIDDLE * em * sin(M_PI / 6), 10 + TYPE_MIDDLE * em * cos(M_PI / 6), em);
     assert_non_null(strstr(svg, text));
     assert_null(strstr(svg, "aria-label"));
     sketch_free(&sketch);
@@ -214,9 +213,8 @@ static void expect_printed(const char *program, const char *path, const char *wa
     Process process;
     char text[2000];
     const char *const out = temporary_path("printed.txt");
-    char command[1000];
-    snprintf(command, sizeof command, "%s %s %s | grep . >%s", program, path,
-             strcmp(program, "pdftotext") == 0 ? "-" : "", out);
+    const char *command =
+        printed("%s %s %s | grep . >%s", program, path, strcmp(program, "pdftotext") == 0 ? "-" : "", out);
     assert_ok(process_start(&process, (const char *const[]){"sh", "-c", command, NULL}, &error), error);
     assert_ok(process_finish(&process, text, sizeof text, &error), error);
     FREED char *printed = text_of(out);
@@ -271,9 +269,8 @@ TEST(a_pdf_has_a_valid_object_table) {
     assert_int_equal(sscanf(table, "xref\n0 %d\n%n", &count, &used), 1);
     assert_int_equal(count, 13); /* ten, a picture and its alpha, and number 0 */
     for (int i = 1; i < count; i++) {
-        char begin[32];
         long offset = atol(table + used + 20 * i);
-        snprintf(begin, sizeof begin, "%d 0 obj\n", i);
+        const char *begin = printed("%d 0 obj\n", i);
         assert_memory_equal(pdf + offset, begin, strlen(begin));
     }
     assert_non_null(strstr(table, "trailer\n<</Size 13/Root 1 0 R/Info 10 0 R>>"));

@@ -46,8 +46,7 @@ TEST(every_method_with_k_has_one) {
 static void refuse(const MethodKind *kind, const Scene *scene, const char *key, const char *value) {
     Error error = {0};
     Settings settings = {0};
-    char begins[64];
-    snprintf(begins, sizeof begins, "%s: error: must be ", key);
+    const char *begins = printed("%s: error: must be ", key);
     assert_true(settings_default(&settings, key, value));
     assert_refused(kind->solver != NULL ? kind->solver->create(&settings, &error)
                                         : kind->stepping->create(&settings, scene, &error),

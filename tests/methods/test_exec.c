@@ -88,12 +88,10 @@ static bool run_program(const char *name, const Answers *answers, float y, int f
     /* The number gives each run a process of its own. */
     snprintf(method_text, sizeof method_text, "%s:/bin/sh %s %s %d,step_limit=%d", name, shell, path, runs++, seconds);
     programs_allow(method_text);
-    char text[256];
-    snprintf(text, sizeof text,
-             "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: %d\nbodies:\n"
-             "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n"
-             "  - {size: [1, 1], mass: 1, position: [0, %g], friction: 0.2}\n",
-             frames, (double)y);
+    const char *text = printed("gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: %d\nbodies:\n"
+                               "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n"
+                               "  - {size: [1, 1], mass: 1, position: [0, %g], friction: 0.2}\n",
+                               frames, (double)y);
     OWN(Scene) *scene = scene_read(write_bytes(temporary_path("fall.yaml"), text, strlen(text)), error);
     assert_ok(scene != NULL, *error);
     assert_ok(method_parse(&method, method_text, error), *error);

@@ -41,9 +41,7 @@ typedef struct Run {
 static void begin(Run *run, BodyDef *bodies, int count, const char *settings, const char *net) {
     Error error = {0};
     Method method;
-    char text[METHOD_TEXT_SIZE];
-    snprintf(text, sizeof text, "gns%s", settings);
-    assert_ok(method_with_network(&method, text, net, &error), error);
+    assert_ok(method_with_network(&method, printed("gns%s", settings), net, &error), error);
     run->scene = scene_of(bodies, count);
     run->world = world_of(&run->scene);
     run->stepper = stepper_of(&run->scene, &method);

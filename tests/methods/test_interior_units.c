@@ -50,9 +50,8 @@ static void scale(Scaled *to, const ContactProblem *from, float mass, float spee
 
 static void expect_same_bits(const ContactProblem *problem, float mass, float speed) {
     static Scaled scaled;
-    char near[32];
     scale(&scaled, problem, mass, speed);
-    snprintf(near, sizeof near, "near=%.9g", 0.001 * (double)speed);
+    const char *near = printed("near=%.9g", 0.001 * (double)speed);
     OWN(ContactSolution) found = make_solution(problem), other = make_solution(problem);
     solve_with(&solver_interior, "near=0.001", problem, &found);
     solve_with(&solver_interior, near, &scaled.problem, &other);

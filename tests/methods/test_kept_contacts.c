@@ -22,9 +22,8 @@ static float turn_within(World *world, const Scene *scene, const char *text, int
 
 static Scene *scene_with(const char *name, const char *parameter, double value) {
     Error error = {0};
-    char path[512];
     SceneSetting setting = {.value = value};
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/stability/%s.yaml", name);
+    const char *path = printed(SOURCE_DIR "/scenes/stability/%s.yaml", name);
     snprintf(setting.name, sizeof setting.name, "%s", parameter);
     Scene *scene = scene_read_with(path, &setting, 1, &error);
     assert_ok(scene != NULL, error);

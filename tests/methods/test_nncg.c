@@ -107,8 +107,7 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
     const int counts[] = {1, 2, 3, 10, 25};
     int begun_anew = 0;
     for (int c = 0; c < 5; c++) {
-        char text[16];
-        snprintf(text, sizeof text, "k=%d", counts[c]);
+        const char *text = printed("k=%d", counts[c]);
         OWN(ContactSolver) nncg = make_solver(&solver_nncg, text);
         for (int i = 0; i < 60; i++) {
             int bodies = 2 + (7 * i) % (BODIES_MAX - 1);

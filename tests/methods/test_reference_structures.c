@@ -48,9 +48,7 @@ static Converged run_scene(const Scene *scene) {
 }
 
 static Converged run_file(const char *name) {
-    char path[512];
-    snprintf(path, sizeof path, SOURCE_DIR "/tests/methods/scenes/%s.yaml", name);
-    OWN(Scene) *scene = scene_from(path);
+    OWN(Scene) *scene = scene_from(printed(SOURCE_DIR "/tests/methods/scenes/%s.yaml", name));
     const Converged run = run_scene(scene);
     assert_int_equal(run.steps, scene->frames);
     return run;

@@ -54,8 +54,7 @@ TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
     double before[2], after[2];
     linear_momentum(problem, NULL, before);
     for (int k = 1; k <= 40; k++) {
-        char text[32];
-        snprintf(text, sizeof text, "k=%d", k);
+        const char *text = printed("k=%d", k);
         for (size_t rival = 0; rival < COUNT(sweepers); rival++) {
             solve_with(sweepers[rival], text, problem, &found);
             linear_momentum(problem, found.velocities, after);

@@ -39,11 +39,10 @@ TEST(without_its_network_it_is_the_engine) {
     make_sain_networks(&networks, &seed, 1);
     assert_ok(sain_networks_write(&networks, path, &error), error);
     for (int run = 0; run < RUNS; run++) {
-        char settings[256];
         fill_heap(&random, &seed, run);
         OWN(ContactSolution) found = make_solution(&random.problem), engine = make_solution(&random.problem);
         solve_with(&solver_engine, "k=10", &random.problem, &engine);
-        snprintf(settings, sizeof settings, "network=%s,net=off,engine=%s", path, forms[run % 3]);
+        const char *settings = printed("network=%s,net=off,engine=%s", path, forms[run % 3]);
         solve_with(&solver_sain, settings, &random.problem, &found);
         assert_same_bits(&random.problem, &found, &engine, "net=off");
     }

@@ -128,8 +128,7 @@ TEST(momentum_continues_in_one_run) {
         int n = 0;
         sweep_with_momentum(problem, n, &expected);
         while (n < 6 && residual_reaches_scalar(problem, &expected, near)) sweep_with_momentum(problem, ++n, &expected);
-        char text[64];
-        snprintf(text, sizeof text, "k=7,near=%.9g", (double)near);
+        const char *text = printed("k=7,near=%.9g", (double)near);
         solve_with(&solver_momentum, text, problem, &found);
         if (n < 6) assert_same_bits(problem, &found, &expected, text);
         least = n < least ? n : least;

@@ -21,9 +21,7 @@ FIXTURE(draw_all) {
 }
 
 static char *read_file(const char *name, const char *ending, size_t *size) {
-    char file[64];
-    snprintf(file, sizeof file, "%s.%s", name, ending);
-    return read_whole(temporary_path(file), size);
+    return read_whole(temporary_path(printed("%s.%s", name, ending)), size);
 }
 
 TEST(every_figure_is_a_picture_a_drawing_and_a_caption) {
@@ -40,9 +38,7 @@ TEST(every_figure_is_a_picture_a_drawing_and_a_caption) {
         assert_true(size > 100);
         assert_ptr_equal(strchr(caption, '\n'), caption + size - 1);
         free(caption);
-        char file[64];
-        snprintf(file, sizeof file, "%s.pdf", name);
-        assert_int_equal(access(temporary_path(file), F_OK), -1);
+        assert_int_equal(access(temporary_path(printed("%s.pdf", name)), F_OK), -1);
     }
     assert_int_equal(count, 4);
 }
@@ -265,9 +261,7 @@ static void expect_refused(const char *scenes, const char *message) {
     const char *folder = temporary_path("refused");
     assert_ok(file_make_directory(folder, &error), error);
     assert_refused(illustrations_draw(scenes, folder, &error), message);
-    char path[512];
-    snprintf(path, sizeof path, "%s/loop.png", folder);
-    assert_int_equal(access(path, F_OK), -1);
+    assert_int_equal(access(printed("%s/loop.png", folder), F_OK), -1);
 }
 
 #define GROUND_AND_BOX                                                                                             \

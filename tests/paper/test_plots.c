@@ -16,16 +16,10 @@ static const char *const figures[] = {"loss",     "factors",     "rates",       
 
 enum { TABLES = sizeof tables / sizeof *tables };
 
-static const char *table_path(const char *table) {
-    char name[64];
-    snprintf(name, sizeof name, "%s.csv", table);
-    return temporary_path(name);
-}
+static const char *table_path(const char *table) { return temporary_path(printed("%s.csv", table)); }
 
 static const char *figure_path(const char *figure, const char *ending) {
-    char name[64];
-    snprintf(name, sizeof name, "figures/%s.%s", figure, ending);
-    return temporary_path(name);
+    return temporary_path(printed("figures/%s.%s", figure, ending));
 }
 
 static void write_table(const char *table, const char *text, size_t size) {
@@ -38,10 +32,8 @@ static void start_afresh(void) {
     remove_temporary_folder();
     assert_int_equal(mkdir(temporary_folder, 0700), 0);
     for (int i = 0; i < TABLES; i++) {
-        char path[512];
         size_t size;
-        snprintf(path, sizeof path, "%s/tests/paper/figures/%s.csv", SOURCE_DIR, tables[i]);
-        FREED char *text = read_whole(path, &size);
+        FREED char *text = read_whole(printed("%s/tests/paper/figures/%s.csv", SOURCE_DIR, tables[i]), &size);
         write_table(tables[i], text, size);
     }
 }

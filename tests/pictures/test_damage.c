@@ -70,9 +70,7 @@ static void assert_same_frame(Twins *twins, int frame) {
 }
 
 static Trajectory *golden_run(const char *scene, const char *method) {
-    char path[PATH_MAX];
-    snprintf(path, sizeof path, "%s/%s-%s.npz", TRAJECTORIES, scene, method);
-    return trajectory_of(path);
+    return trajectory_of(printed("%s/%s-%s.npz", TRAJECTORIES, scene, method));
 }
 
 TEST(followed_frames_equal_whole_ones) {

@@ -83,9 +83,8 @@ typedef struct Runs {
 static Runs read_runs(const char *const *names) {
     Runs runs = {0};
     for (; names[runs.count] != NULL; runs.count++) {
-        char path[PATH_MAX];
-        snprintf(path, sizeof path, "%s/%s.npz", golden, names[runs.count]);
-        runs.panels[runs.count] = runs.owned[runs.count] = trajectory_of(path);
+        runs.panels[runs.count] = runs.owned[runs.count] =
+            trajectory_of(printed("%s/%s.npz", golden, names[runs.count]));
     }
     return runs;
 }

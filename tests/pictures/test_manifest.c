@@ -72,9 +72,8 @@ static const char *copied(const char *name) {
     assert_ok(file_make_directory(directory, &error), error);
     for (int i = -1; i < PICTURES; i++) {
         size_t size;
-        char to[512];
         FREED char *data = read_whole(i < 0 ? manifest_of(whole) : frame_path(whole, i), &size);
-        snprintf(to, sizeof to, "%s", i < 0 ? manifest_of(directory) : frame_path(directory, i));
+        const char *to = printed("%s", i < 0 ? manifest_of(directory) : frame_path(directory, i));
         assert_ok(file_write_soon(to, data, size, &error), error);
     }
     return directory;
@@ -279,10 +278,9 @@ TEST(a_killed_sequence_goes_on) {
 
 /* A power failure cuts a write: the last line may be partial, and so may pictures. */
 TEST(every_cut_of_the_journal_is_survived) {
-    char journal[600];
     RenderOptions options = options_for(temporary_path("cut"));
     assert_false(render_study(panels, 2, &options, NULL, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
-    snprintf(journal, sizeof journal, "%s.part", manifest_of(options.directory));
+    const char *journal = printed("%s.part", manifest_of(options.directory));
     size_t size;
     FREED char *text = read_whole(journal, &size);
     /* In the head, in the first line, in and after the last. */
@@ -308,8 +306,7 @@ TEST(another_sequence_is_redrawn) {
         {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
     for (size_t i = 0; i < sizeof others / sizeof *others; i += (size_t)sampled(2)) {
-        char name[16];
-        snprintf(name, sizeof name, "other%zu", i);
+        const char *name = printed("other%zu", i);
         RenderOptions options = others[i].options;
         options.directory = temporary_path(name);
         options.last = -1;

@@ -75,10 +75,9 @@ TEST_WITH(frames_tell_their_origin, make, destroy) {
     options.first = options.last = FRAMES - 1;
     assert_ok(render_study(panels, 2, &options, NULL, NULL, NULL, &error), error);
     const char *path = frame_path(options.directory, FRAMES - 1);
-    char hashes[64];
-    snprintf(hashes, sizeof hashes, "%016llx | %016llx",
-             (unsigned long long)trajectory_frame_hash(panels[0], FRAMES - 1),
-             (unsigned long long)trajectory_frame_hash(panels[1], FRAMES - 4)); /* its last frame: it has ended */
+    const char *hashes =
+        printed("%016llx | %016llx", (unsigned long long)trajectory_frame_hash(panels[0], FRAMES - 1),
+                (unsigned long long)trajectory_frame_hash(panels[1], FRAMES - 4)); /* its last frame: it has ended */
     assert_text(path, "Scene", "two_boxes");
     assert_text(path, "Method", "engine | pair-net:network=nets/small.npz");
     assert_text(path, "Frame", "10");

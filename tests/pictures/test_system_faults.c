@@ -64,8 +64,7 @@ static bool draw(const RenderOptions *options, int frames, Error *error) {
 }
 
 TEST(interrupted_calls_are_continued) {
-    char whole[256];
-    snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
+    const char *whole = printed("%s", temporary_path("whole"));
     RenderOptions options = options_for(whole);
     assert_ok(draw(&options, FRAMES, &error), error);
     options = options_for(temporary_path("interrupted"));

@@ -63,9 +63,7 @@ static void assert_holds(const uint8_t *data, size_t size, const Image *image) {
 
 /* pngcheck is stricter than decoders. */
 static void assert_checked(void) {
-    char command[512];
-    snprintf(command, sizeof command, "pngcheck -q '%s' >/dev/null", temporary_path("holds.png"));
-    assert_int_equal(system(command), 0);
+    assert_int_equal(system(printed("pngcheck -q '%s' >/dev/null", temporary_path("holds.png"))), 0);
 }
 
 TEST(every_picture_comes_back) {

@@ -11,8 +11,7 @@ static const char falling[] = "gravity: [0, -10]\ndt: 1/60\niterations: 10\nfram
                               "bomb: {x: {from: -4, to: 4, value: 3}, y: 0.75, size: [1, 1], mass: 5, frame: 60}\n";
 
 static Scene *read_scene(const char *text, const char *more) {
-    char all[1000];
-    snprintf(all, sizeof all, "%s%s", text, more);
+    const char *all = printed("%s%s", text, more);
     return scene_from(write_bytes(temporary_path("scene.yaml"), all, strlen(all)));
 }
 
@@ -93,10 +92,8 @@ static void check_shipped(const char *path) {
 TEST(shipped_scenes_have_room_for_their_launches) {
     static const char *const folders[] = {"", "families/", "stability/", "templates/"};
     for (int i = 0; i < 4; i++) {
-        char pattern[512];
         glob_t found;
-        snprintf(pattern, sizeof pattern, SOURCE_DIR "/scenes/%s*.yaml", folders[i]);
-        assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+        assert_int_equal(glob(printed(SOURCE_DIR "/scenes/%s*.yaml", folders[i]), 0, NULL, &found), 0);
         for (size_t k = 0; k < found.gl_pathc; k++) check_shipped(found.gl_pathv[k]);
         globfree(&found);
     }

@@ -70,8 +70,7 @@ static void change(const Files *files, int piece, const char *text) {
 }
 
 TEST(a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again) {
-    char folder[300];
-    snprintf(folder, sizeof folder, "%s", temporary_path("files"));
+    const char *folder = printed("%s", temporary_path("files"));
     Files files = {.folder = folder};
     Pieces pieces;
     PiecePlan plan;

@@ -52,8 +52,7 @@ TEST(files_are_those_of_a_run_in_memory) {
 TEST(golden_files_have_the_same_bytes) {
     static const char *const names[] = {"stack-engine", "pyramid-pair-net", "pyramid_settled-engine"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        char golden[512];
-        snprintf(golden, sizeof golden, SOURCE_DIR "/golden/trajectories/%s.npz", names[i]);
+        const char *golden = printed(SOURCE_DIR "/golden/trajectories/%s.npz", names[i]);
         OWN(Trajectory) *run = trajectory_of(golden);
         const char *again = temporary_path("again.npz");
         assert_ok(trajectory_write(run, again, &error), error);

@@ -9,10 +9,8 @@
 enum { SCENES = 3 };
 
 static Scene *read_scene(const char *name) {
-    char path[512];
     bool ours = strcmp(name, "pyramid78") != 0;
-    snprintf(path, sizeof path, "%s/%s/%s.yaml", SOURCE_DIR, ours ? "scenes" : "tests/scenes", name);
-    return scene_from(path);
+    return scene_from(printed("%s/%s/%s.yaml", SOURCE_DIR, ours ? "scenes" : "tests/scenes", name));
 }
 
 static FILE *open_golden(const char *name, const char *header) {

@@ -70,9 +70,7 @@ TEST(a_fraction_keeps_its_bits) {
     for (int rate = 1; rate <= 480; rate += 13) {
         const char *const formats[] = {written, named};
         for (int i = 0; i < 2; i++) {
-            char text[1024];
-            snprintf(text, sizeof text, formats[i], rate);
-            OWN(Scene) *scene = good_scene(text);
+            OWN(Scene) *scene = good_scene(printed(formats[i], rate));
             float expected = 1.0F / (float)rate;
             assert_memory_equal(&scene->dt, &expected, sizeof expected);
         }

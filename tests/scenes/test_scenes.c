@@ -161,9 +161,8 @@ static uint64_t hash_text(const char *text) {
 }
 
 static uint64_t hash_of(const char *base, const char *body, const char *bomb) {
-    char text[1024];
-    snprintf(text, sizeof text, "%soverlaps: allowed\nbodies:\n  - %s\n%s%s\n", base, body,
-             bomb == NULL ? "" : "bomb: ", bomb == NULL ? "" : bomb);
+    const char *text = printed("%soverlaps: allowed\nbodies:\n  - %s\n%s%s\n", base, body,
+                               bomb == NULL ? "" : "bomb: ", bomb == NULL ? "" : bomb);
     return hash_text(text);
 }
 

@@ -20,9 +20,7 @@
 static const ChartLook page = {.size = CHART_PAGE};
 
 static const char *drawn_file(const char *scene, const char *ending) {
-    char name[128];
-    snprintf(name, sizeof name, "chart-%s.%s", scene, ending);
-    return temporary_path(name);
+    return temporary_path(printed("chart-%s.%s", scene, ending));
 }
 
 static const char *folder(void) {
@@ -153,8 +151,7 @@ TEST(a_target_without_push_out_is_noted) {
     static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n";
-    char engine[200];
-    snprintf(engine, sizeof engine, "%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
+    const char *engine = printed("%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
     expect_caption(write_rows(rows), "soft-step, avbd: error against the solution without the velocity that pushes",
                    NULL);
     expect_caption(write_rows(engine), "Velocity error", "error against");

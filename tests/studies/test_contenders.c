@@ -61,10 +61,9 @@ TEST(a_method_without_its_network_is_left_out) {
 
 /* A run with the twin of a run's method: the twin with the settings that it names, or else with those of the run. */
 static bool has_twin(const ContenderList *list, const Contender *run) {
-    char text[METHOD_TEXT_SIZE];
     const char *twin = run->method.kind->description->twin;
     const bool same = strchr(twin, ':') != NULL || run->setting[0] == '\0';
-    snprintf(text, sizeof text, same ? "%s" : "%s:%s", twin, run->setting);
+    const char *text = printed(same ? "%s" : "%s:%s", twin, run->setting);
     for (int i = 0; i < list->count; i++)
         if (strcmp(list->items[i].method.text, text) == 0) return true;
     return false;

@@ -15,10 +15,9 @@ typedef struct Case {
 /* The verdicts on methods in the scene, beside its converged run. */
 static void judge_all(const Case *the, const char *const *texts, int count, bool stands, VerdictReading *readings) {
     Error error = {0};
-    char path[512];
     Method method, reference;
     OWN(EnergyLog) converged = {0};
-    snprintf(path, sizeof path, "%s/scenes/stability/%s.yaml", SOURCE_DIR, the->scene);
+    const char *path = printed("%s/scenes/stability/%s.yaml", SOURCE_DIR, the->scene);
     OWN(Scene) *scene = scene_read_with(path, the->settings, the->count, &error);
     assert_ok(scene != NULL && method_parse(&reference, "reference", &error), error);
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);

@@ -118,11 +118,7 @@ TEST(methods_that_do_not_apply_have_a_reason) {
     assert_refused(stability_applies(&nameless, stack, &error), "names no network");
 }
 
-static char *read_table(const char *folder, const char *name) {
-    char path[600];
-    snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    return text_of(path);
-}
+static char *read_table(const char *folder, const char *name) { return text_of(printed("%s/%s.csv", folder, name)); }
 
 /* The stack's network is for ten boxes: with two boxes the first step fails. That must not count as non-finite. */
 TEST(a_method_that_fits_some_values_only_does_not_apply) {
@@ -174,9 +170,8 @@ static bool run_shots(const char *folder, const char *methods, Reports *reports,
 /* A box starts with its centre 0.51 m above the top of a slab 0.25 m thick and falls freely for one step. It is then
    pushed out on the nearer side: below, if its centre has passed the slab's. */
 TEST(a_study_writes_borders_maps_and_refusals) {
-    char folder[300];
     Reports reports = {0, -1};
-    snprintf(folder, sizeof folder, "%s", temporary_path("shots"));
+    const char *folder = printed("%s", temporary_path("shots"));
     assert_ok(run_shots(folder, "engine,engine:k=3,warm=off,reference,scene-net", &reports, &error), error);
     FREED char *borders = read_table(folder, "stability"), *maps = read_table(folder, "maps");
     FREED char *refusals = read_table(folder, "refusals");
@@ -220,9 +215,8 @@ TEST(a_study_at_rest_writes_drift_and_energy) {
     stability_scan_end(&context);
     assert_int_equal(fclose(lines), 0);
     for (int ratio = 1; ratio <= 2; ratio++) {
-        char start[64];
         double drift, energy;
-        snprintf(start, sizeof start, "\nrest:two,interior,,ratio,,%d,settles,3600,", ratio);
+        const char *start = printed("\nrest:two,interior,,ratio,,%d,settles,3600,", ratio);
         const char *row = strstr(text, start);
         assert_non_null(row);
         assert_int_equal(sscanf(row + strlen(start), "%lf,%lf\n", &drift, &energy), 2);
@@ -236,8 +230,7 @@ TEST(a_study_at_rest_writes_drift_and_energy) {
 
 /* Coulomb: a box stands on a slope if and only if its tangent is below the friction. */
 TEST(a_map_of_slopes_has_its_border_at_the_friction) {
-    char folder[300];
-    snprintf(folder, sizeof folder, "%s", temporary_path("slopes"));
+    const char *folder = printed("%s", temporary_path("slopes"));
     const StabilityOptions options = {.folder = folder,
                                       .scenes = scenes,
                                       .methods = "engine,interior",

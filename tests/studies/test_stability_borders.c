@@ -101,8 +101,7 @@ TEST(a_range_is_that_of_its_study) {
                  {"stack_height,engine,,depth,,11,16,falls\n", "depth 11 to 16", "Stack height"},
                  {"x,engine,,y,m,-1,-2.5,falls\n", "−1 to −2.5 m", "X"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char borders[256];
-        snprintf(borders, sizeof borders, BORDERS "%s", cases[i].row);
+        const char *borders = printed(BORDERS "%s", cases[i].row);
         start_afresh(MAPS ONE_CELL, borders);
         draw();
         check_svg("found = texts(read('borders'))\nassert '%s' in found and '%s' in found, found\n", cases[i].range,
@@ -165,9 +164,7 @@ TEST(unusual_ranges_are_drawn) {
                                        "a,engine,,x,m,-5,-5,falls\n",     "a,engine,,x,,1e-20,1e20,falls\n",
                                        "a,engine,,x,,-1e30,1e30,falls\n", "a,engine,,x,,3,3.0000001,falls\n"};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        char borders[256];
-        snprintf(borders, sizeof borders, BORDERS "%s", rows[i]);
-        start_afresh(MAPS ONE_CELL, borders);
+        start_afresh(MAPS ONE_CELL, printed(BORDERS "%s", rows[i]));
         draw();
     }
 }
@@ -184,9 +181,7 @@ TEST(invalid_borders_are_refused_with_their_place) {
          "stability.csv:3:1: error: the study 's' had another parameter before"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char borders[1024];
-        snprintf(borders, sizeof borders, BORDERS "%s", cases[i].rows);
-        expect_refused(MAPS ONE_CELL, borders, cases[i].message);
+        expect_refused(MAPS ONE_CELL, printed(BORDERS "%s", cases[i].rows), cases[i].message);
     }
 }
 

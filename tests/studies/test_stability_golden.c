@@ -18,9 +18,8 @@ typedef struct Golden {
 } Golden;
 
 static bool method_of(const BorderRow *row, Method *method, Error *error) {
-    char text[METHOD_TEXT_SIZE];
-    snprintf(text, sizeof text, "%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting);
-    return method_parse(method, text, error);
+    return method_parse(method, printed("%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting),
+                        error);
 }
 
 /* One side of a row; a side without a value is not checked. The row's verdict is the worst: of the failing seeds or,

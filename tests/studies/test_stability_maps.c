@@ -163,9 +163,7 @@ TEST(invalid_maps_are_refused_with_their_place) {
          "maps.csv:4:1: error: the rows of map 'stack' are not together"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char maps[1024];
-        snprintf(maps, sizeof maps, MAPS "%s", cases[i].rows);
-        expect_refused(maps, BORDERS ONE_BORDER, cases[i].message);
+        expect_refused(printed(MAPS "%s", cases[i].rows), BORDERS ONE_BORDER, cases[i].message);
     }
 }
 

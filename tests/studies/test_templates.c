@@ -35,8 +35,7 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
 }
 
 static void check_template(const char *name) {
-    char path[512];
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/templates/%s.yaml", name);
+    const char *path = printed(SOURCE_DIR "/scenes/templates/%s.yaml", name);
     OWN(Scene) *scene = scene_from(path);
     assert_true(scene->bomb.present && scene_span_varies(&scene->bomb.x));
     assert_in_range(scene->parameter_count, 1, 2);
