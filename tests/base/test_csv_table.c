@@ -4,8 +4,6 @@
 #include "files.h"
 #include "base/csv.h"
 
-#include <math.h>
-
 typedef enum Colour { RED, GREEN, BLUE } Colour;
 
 typedef struct Row {

@@ -4,8 +4,6 @@
 
 #include "python.h"
 
-#include <math.h>
-
 /* Opens a file with `array=expression`. */
 static NpzFile *make(const char *expression) {
     const char *path = temporary_path("array.npz");

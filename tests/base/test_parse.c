@@ -5,7 +5,6 @@
 #include "base/base.h"
 
 #include <locale.h>
-#include <math.h>
 
 static float parsed(const char *text) {
     float value = 0;

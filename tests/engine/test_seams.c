@@ -5,8 +5,6 @@
 
 #include "engine/engine.h"
 
-#include <math.h>
-
 /* A box of 0.8 m on the end of a tile of 1 m at x = 0, sunk by 5 mm, whose front is over the next tile. */
 typedef struct Place {
     float ahead; /* m, of the front of the box beyond the seam */

@@ -6,8 +6,6 @@
 #include "figures/sketch.h"
 #include "pixels/type.h"
 
-#include <math.h>
-
 static void add(Trajectory *run, int step, int a, int b, Vec2 point, float normal, float tangent) {
     Error error = {0};
     const TrajectoryContact contact = {a, b, 0, point, vec2(0, 1), normal, tangent};

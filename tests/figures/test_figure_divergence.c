@@ -4,8 +4,6 @@
 #include "figures/sketch.h"
 #include "figures/run_figure.h"
 
-#include <math.h>
-
 #define STACK SOURCE_DIR "/scenes/stack.yaml"
 
 /* The second box of a run departs by a factor of ten every tenth of a second, from the first frame on. */

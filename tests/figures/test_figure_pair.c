@@ -4,8 +4,6 @@
 #include "figures/figure.h"
 #include "figures/run_figure.h"
 
-#include <math.h>
-
 static void add(Trajectory *run, int step, int a, int b) {
     Error error = {0};
     const TrajectoryContact contact = {a, b, 0, vec2(0, 0), vec2(1, 0), 1, 0};

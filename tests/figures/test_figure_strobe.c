@@ -4,8 +4,6 @@
 #include "figures/run_figure.h"
 #include "pictures/mesa.h"
 
-#include <math.h>
-
 /* The first box rests; the second, two metres wide, moves right by a metre per frame; no bomb. */
 static Trajectory *run_rolling(void) {
     Trajectory *run = run_make("engine", 9);

@@ -9,8 +9,6 @@
 #include "pixels/type.h"
 
 #include <inttypes.h>
-#include <math.h>
-#include <stdlib.h>
 
 /* Ten pixels per mm. */
 static const SketchOutput white = {254, false, false}, clear = {254, true, false}, outlines = {254, false, true};

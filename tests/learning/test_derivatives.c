@@ -3,7 +3,6 @@
 
 #include "learning/pair_training_internal.h"
 
-#include <math.h>
 #include <omp.h>
 
 /* More blocks than chunks, and a partly filled last block. */

@@ -5,7 +5,6 @@
 
 #include "learning/gns_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 static Scene *small_scene(void) {

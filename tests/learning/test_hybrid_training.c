@@ -5,8 +5,6 @@
 
 #include "learning/hybrid_training.h"
 
-#include <math.h>
-
 enum { LAUNCHES = 120 };
 
 typedef struct Counts {

@@ -4,8 +4,6 @@
 
 #include "learning/dataset.h"
 
-#include <math.h>
-
 /* Frames before the bomb have none. */
 TEST(poses_are_those_of_single_runs) {
     enum { LAUNCHES = 3 };

@@ -4,8 +4,6 @@
 
 #include "learning/pair_training_internal.h"
 
-#include <math.h>
-
 enum { ROWS = 2000 };
 
 /* A network without hidden layers and with weights 0: it predicts its biases for every row. */

@@ -7,7 +7,6 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-#include <math.h>
 #include <omp.h>
 
 /* Sparse rows with capacity for dense ones. */

@@ -5,8 +5,6 @@
 #include "learning/dataset.h"
 #include "methods/reference.h"
 
-#include <math.h>
-
 static const char *const single[] = {SOURCE_DIR "/scenes/single.yaml"};
 static const char *const both[] = {SOURCE_DIR "/scenes/single.yaml", SOURCE_DIR "/scenes/stack.yaml"};
 

@@ -7,8 +7,6 @@
 #include "learning/scene_training.h"
 #include "methods/reference.h"
 
-#include <math.h>
-
 static Scene *scene;
 
 static bool train(void *context, const char *path, const Progress *progress, Error *error) {

@@ -3,8 +3,6 @@
 
 #include "learning/pair_training_internal.h"
 
-#include <math.h>
-
 /* Samples of a dataset for a network without hidden layers, and a loss of them. */
 typedef struct Case {
     Dataset *dataset;

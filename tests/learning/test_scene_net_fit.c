@@ -2,7 +2,6 @@
 /* Fits to a few impacts of the stack. */
 #include "impacts.h"
 
-#include <math.h>
 #include <omp.h>
 
 enum { LAUNCHES = 3, SAMPLES = 24, SWEEPS = 6 };

@@ -3,8 +3,6 @@
    outputs. */
 #include "impacts.h"
 
-#include <math.h>
-
 enum { LAUNCHES = 20 };
 
 static SceneNetSamples samples;

@@ -7,8 +7,6 @@
 #include "methods/reference.h"
 #include "learning/scene_training_internal.h"
 
-#include <math.h>
-
 enum { LAUNCHES = 4, SWEEPS = 6, OF_EACH_BLOCK = 6 };
 
 static const double hand_tuned[SWEEPS] = {0, 0.3, 0.5, 0.6, 0.7, 0.8}, no_momentum[SWEEPS] = {0};

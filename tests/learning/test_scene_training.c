@@ -5,7 +5,6 @@
 
 #include "learning/scene_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 enum { ROUNDS = 2, SWEEPS = 4 };

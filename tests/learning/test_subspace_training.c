@@ -6,7 +6,6 @@
 
 #include "learning/subspace_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 static Scene *short_scene(void) {

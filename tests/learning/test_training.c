@@ -3,7 +3,6 @@
 
 #include "learning/pair_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 enum { MAX_SCORES = 32 };

@@ -5,8 +5,6 @@
 #include "engine/uniform.h"
 #include "learning/subspace_training.h"
 
-#include <math.h>
-
 enum { LAUNCHES = 3, STATES = 40, COMPONENTS = 3, HIDDEN = 16 };
 
 typedef struct Case {

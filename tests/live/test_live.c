@@ -9,8 +9,6 @@
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
-#include <math.h>
-
 #define npz_archive_open bundle_archive_open
 #define npz_archive_close bundle_archive_close
 #define npz_archive_count bundle_archive_count

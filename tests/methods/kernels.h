@@ -6,8 +6,6 @@
 #include "methods/momentum.h"
 #include "methods/sweeps.h"
 
-#include <math.h>
-
 /* As the engine sweeps. */
 static const SequentialOptions engine_options = {.accumulate = true, .warm = true};
 

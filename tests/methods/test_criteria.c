@@ -7,8 +7,6 @@
 #include "methods/criteria.h"
 #include "methods/reference.h"
 
-#include <math.h>
-
 /* A ball of 2 kg above fixed ground, friction 0.5, that came with 3 m/s downwards and 4 m/s along the tangent. Half a
    tenth of a second deep, so that lengths have round numbers. */
 typedef struct Ball {

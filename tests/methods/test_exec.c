@@ -8,8 +8,6 @@
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
-#include <math.h>
-
 enum { FRAMES = 6, BODIES = 2, DAMAGES = 100, ANSWERS_MAX = 4096 };
 
 typedef struct Answers {

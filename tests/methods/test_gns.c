@@ -4,8 +4,6 @@
 #include "methods/particle_heap.h"
 #include "allocations.h"
 
-#include <math.h>
-
 static BodyDef box_at(float x, float y) {
     return (BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {x, y}, .angle = 0.1f * y};
 }

@@ -5,8 +5,6 @@
 
 #include "methods/steppers.h"
 
-#include <string.h>
-
 static void build(GnsGraph *graph, const ParticleHeap *heap, const GnsNet *net) {
     assert_true(gns_graph_build(graph, &heap->particles, &heap->ground, 1, &net->scales));
 }

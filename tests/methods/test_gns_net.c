@@ -5,10 +5,6 @@
 #include "base/npz.h"
 #include "nets/kinds.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 TEST(what_is_written_is_read_again) {
     OWN(GnsNet) net, read;
     const char *path = temporary_path("net.npz");

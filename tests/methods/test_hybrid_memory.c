@@ -3,8 +3,6 @@
 #include "memories.h"
 #include "owned.h"
 
-#include <math.h>
-
 TEST(entries_answer_inside_their_ball_and_for_their_contacts_only) {
     OWN(HybridMemory) *memory = make_memory();
     float key[KEY] = {1, 2, 3};

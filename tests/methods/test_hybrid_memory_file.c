@@ -3,8 +3,6 @@
 #include "memories.h"
 #include "owned.h"
 
-#include <math.h>
-
 /* Two sets, three entries; the last has a neighbour. */
 static HybridMemory *make_three(void) {
     HybridMemory *memory = make_memory();

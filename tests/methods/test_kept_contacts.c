@@ -4,8 +4,6 @@
 #include "sanitized.h"
 #include "worlds.h"
 
-#include <math.h>
-
 static const BodyDef ground = {.fixed = true, .size = {100, 20}, .position = {0, -10}, .friction = 0.2f};
 
 /* Steps a world by a method; returns the largest angle of the bodies on the way. */

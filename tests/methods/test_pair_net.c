@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pair_networks.h"
 
-#include <math.h>
-
 /* A (mass 2, inertia 1/3) below B (mass 1), touching at B's lower corners and in nothing else. */
 static const ProblemBody bodies[3] = {
     {.position = {0, 0},
@@ -214,8 +212,7 @@ TEST(the_world_tells_what_momentum_a_step_made) {
     for (int i = 0; i < 2; i++)
         add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .position = {0, 0.9f * (float)i}});
     OWN(ContactSolver)
-    network = make_network_solver(&solver_pair_net, pair_constant(6, six), 1),
-    engine = make_engine("");
+    network = make_network_solver(&solver_pair_net, pair_constant(6, six), 1), engine = make_engine("");
     run(world, &network, 1);
     assert_near(world_solution(world)->momentum_error, sqrt(5 * 5 + 7 * 7), 1e-5);
     run(world, &engine, 1);

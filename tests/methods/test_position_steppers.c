@@ -5,8 +5,6 @@
 
 #include "base/hash.h"
 
-#include <math.h>
-
 static const char *const methods[] = {"soft-step", "avbd", "soft-step:substeps=8", "avbd:alpha=0.99",
                                       "soft-step:keep=0.05"};
 

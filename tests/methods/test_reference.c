@@ -2,8 +2,6 @@
 /* The reference, held to closed forms. */
 #include "reference_worlds.h"
 
-#include <math.h>
-
 static const double g = 10;
 
 /* Under box i of n lie the weights of all above: m g dt (n - i). All are at rest, and stay there. */

@@ -4,8 +4,6 @@
 
 #include "methods/sweeps.h"
 
-#include <math.h>
-
 enum { MANY = 200000 };
 
 /* Plain sweeps in double, written down apart from the reference. */

@@ -6,8 +6,6 @@
 
 #include "methods/residual.h"
 
-#include <math.h>
-
 /* Two boxes side by side on the ground, two contacts each: the velocities of the boxes are those that the contacts have,
    but for their sign. */
 typedef struct Boxes {

@@ -5,8 +5,6 @@
 
 #include "worlds.h"
 
-#include <math.h>
-
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /* Sweeps enough to converge. */

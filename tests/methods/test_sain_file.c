@@ -3,8 +3,6 @@
 #include "made.h"
 #include "sain_networks.h"
 
-#include <math.h>
-
 TEST(a_file_keeps_every_bit) {
     uint32_t seed = 8;
     OWN(SainNetworks) written, read;

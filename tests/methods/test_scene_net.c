@@ -5,7 +5,6 @@
 #include "known.h"
 
 #include <float.h>
-#include <math.h>
 
 /* What impulses make of a body, and m/s, the sum of all that was done to it. */
 typedef struct Gained {

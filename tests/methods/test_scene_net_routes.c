@@ -7,8 +7,6 @@
 #include "methods/residual.h"
 #include "methods/stopping.h"
 
-#include <math.h>
-
 enum { MORE = 48, CALM_MORE = 24 };
 
 static void put_warm_impulses_into_the_cone(RandomProblem *random) {

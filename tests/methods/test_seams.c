@@ -3,8 +3,6 @@
 #include "made.h"
 #include "sanitized.h"
 
-#include <math.h>
-
 enum { TILES = 60, PLATES = 40 };
 
 static const char *const mended[] = {

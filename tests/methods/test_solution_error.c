@@ -5,8 +5,6 @@
 #include "methods/sweeps.h"
 #include "methods/reference.h"
 
-#include <math.h>
-
 enum { BODIES = 3 };
 
 /* Ground, and two boxes which the impulses of the step have stopped: they came with 10 m/s and 1 m/s. */

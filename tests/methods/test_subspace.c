@@ -5,8 +5,6 @@
 #include "engine/uniform.h"
 #include "subspace_nets.h"
 
-#include <math.h>
-
 static const float launch[SUBSPACE_LAUNCH] = {3, 0, 0, 50};
 
 static Subspace begin(const SubspaceNet *net, int predictor, bool corrects) {

@@ -5,8 +5,6 @@
 #include "base/npz.h"
 #include "subspace_nets.h"
 
-#include <math.h>
-
 TEST(what_is_written_is_read) {
     const char *path = temporary_path("net.npz");
     OWN(SubspaceNet) *net = subspace_net_by_hand(3);

@@ -5,8 +5,6 @@
 #include "methods/subspace_nets.h"
 #include "methods/steppers.h"
 
-#include <math.h>
-
 static const float dt = 1 / 60.0f;
 
 static Scene *single;

@@ -5,8 +5,6 @@
 #include "random_problem.h"
 #include "worlds.h"
 
-#include <math.h>
-
 TEST(random_problems_have_the_bits_of_the_plain_text) {
     static RandomProblem random;
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};

@@ -4,8 +4,6 @@
 
 #include "nets/kernels.h"
 
-#include <math.h>
-
 enum { USED_ROWS = 5 }; /* of the block */
 
 /* A network, its parameters in double, a block of inputs, and a loss: sum over rows and outputs of c y +

@@ -4,8 +4,6 @@
 
 #include "nets/kernels.h"
 
-#include <math.h>
-
 static void predict(const Network *network, const float *input, float *output) {
     FREED float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch);
     assert_non_null(scratch);

@@ -2,8 +2,6 @@
 #include "scene_net_layers.h"
 #include "owned.h"
 
-#include <math.h>
-
 enum { BODIES = 5, STATE = SLOT_BODY_NUMBERS * (BODIES - 1), INPUTS = ROW_LANES + 16 + 32 + 48, HIDDEN = 64 };
 
 /* A view with its arrays; of all slots, unless a test changes it. */

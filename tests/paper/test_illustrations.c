@@ -11,8 +11,6 @@
 #include "figures/figure.h"
 #include "figures/sketch.h"
 
-#include <math.h>
-
 #define SCENES SOURCE_DIR "/scenes"
 
 FIXTURE(draw_all) {

@@ -3,8 +3,6 @@
 
 #include "paper/paper_internal.h"
 
-#include <math.h>
-
 static Dataset *record(bool context) {
     Error error = {0};
     const char *const scenes[] = {SOURCE_DIR "/scenes/single.yaml"};

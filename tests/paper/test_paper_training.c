@@ -5,8 +5,6 @@
 #include "allocations.h"
 #include "paper/paper_internal.h"
 
-#include <math.h>
-
 static const PaperDataSize size = {.swept = "-2:2:1"};
 static PaperNetwork network;
 static PaperPlan plan = {.networks = &network, .network_count = 1};

@@ -7,8 +7,6 @@
 #include "sanitized.h"
 #include "studies/piece_tables.h"
 
-#include <math.h>
-
 typedef struct DoubleRow {
     double launches, error;
 } DoubleRow;

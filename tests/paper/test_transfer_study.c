@@ -4,8 +4,6 @@
 #include "learning/dataset.h"
 #include "paper/paper_internal.h"
 
-#include <math.h>
-
 static Dataset *record(const char *scene, PairView view) {
     Error error = {0};
     DatasetOptions options = {.scenes = &scene, .scene_count = 1, .view = view, .seed = 1};

@@ -8,8 +8,6 @@
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 
-#include <math.h>
-
 enum { RUNS = RENDER_PANELS_MAX, OPAQUE = 128 }; /* opacity, of 255, from which a pixel is part of a letter */
 
 static const char *const files[RUNS] = {"trajectories/stack-engine", "trajectories/stack-pair-net",

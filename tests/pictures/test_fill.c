@@ -5,7 +5,6 @@
 #include "pictures/pictures_internal.h"
 
 #include <glob.h>
-#include <math.h>
 
 static const int sizes[][2] = {{1280, 720}, {1080, 1080}, {720, 1280}};
 enum { SIZES = sizeof sizes / sizeof sizes[0], STATES_MAX = 20000, WILD_FRAMES = 120 };

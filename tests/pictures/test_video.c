@@ -10,7 +10,6 @@
 #include "sanitized.h"
 
 #include <fcntl.h>
-#include <math.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>

@@ -6,8 +6,6 @@
 #include "pixels/gl.h"
 #include "screens.h"
 
-#include <math.h>
-
 static const double PI = 3.14159265358979323846;
 
 static Shape box(double x, double y, double width, double height) {

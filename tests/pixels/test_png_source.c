@@ -6,8 +6,6 @@
 #include "base/hash.h"
 #include "pixels/png.h"
 
-#include <unistd.h>
-
 enum { WIDTH = 600, HEIGHT = 400 }; /* of noise: three pieces */
 
 /* The rows from `changed` on differ by 1 from those of another number. */

@@ -6,8 +6,6 @@
 #include "example.h"
 #include "runs/trajectory.h"
 
-#include <math.h>
-
 static const CsvRunOptions defaults = {.name = "file"};
 static CsvRunNotes notes;
 

@@ -4,8 +4,6 @@
 #include "sanitized.h"
 
 #include <dirent.h>
-#include <math.h>
-#include <stdio.h>
 
 static Scene *read_family(const char *file) { return scene_from(printed(SOURCE_DIR "/scenes/families/%s", file)); }
 

@@ -6,7 +6,6 @@
 #include "example.h"
 
 #include <inttypes.h>
-#include <math.h>
 
 static void write_file(const Trajectory *t, const char *path) {
     Error error = {0};

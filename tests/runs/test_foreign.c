@@ -5,8 +5,6 @@
 #include "example.h"
 #include "python.h"
 
-#include <math.h>
-
 /* A ground, a box that falls, and one that comes in frame 1, in NumPy's default types. */
 #define MAKE                                                                                    \
     "import sys, numpy as np\n"                                                                 \

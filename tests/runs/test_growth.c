@@ -3,8 +3,6 @@
 #include "made.h"
 #include "files.h"
 
-#include <math.h>
-
 enum { FRAMES = 200 };
 
 static const double DT = 1.0 / 60;

@@ -6,8 +6,6 @@
 
 #include "engine/uniform.h"
 
-#include <math.h>
-
 enum { SCENES = 200, STEPS = 30, BOXES_MAX = 8 };
 
 /* Evenly over the powers of ten from low to high, and now and then one of these. */

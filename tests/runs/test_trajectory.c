@@ -4,8 +4,6 @@
 
 #include "example.h"
 
-#include <math.h>
-
 TEST(a_new_trajectory_is_empty) {
     OWN(Trajectory) *t = run_sized(3, 2);
     for (int i = 0; i < 6; i++) {

@@ -5,8 +5,6 @@
 #include "runs/runs.h"
 #include "runs/verdict.h"
 
-#include <math.h>
-
 /* Both verdicts, in words. */
 static void judge(Scene *scene, const char *text, char made[TRAJECTORY_VERDICT_SIZE], Trajectory **run) {
     const Method method = method_named(text);

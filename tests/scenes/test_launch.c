@@ -6,8 +6,6 @@
 #include "base/base.h"
 #include "scenes/scenes.h"
 
-#include <math.h>
-
 #define BOMB "bomb: {x: 1, y: 15, size: [1, 1], mass: 50, rotation: 0.5, spin: 2, frame: 9"
 
 /* The family of the scenes that ship. */

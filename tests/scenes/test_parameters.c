@@ -3,8 +3,6 @@
 #include "scene_text.h"
 #include "owned.h"
 
-#include <math.h>
-
 /* A box whose mass is in line 6, column 5 + ..., and two parameters behind it. */
 #define HEIGHT "  height: {value: 10, from: 2, to: 40, unit: boxes, whole: on}\n"
 #define RATIO "  ratio: {value: 0.1, from: -1e3, to: 1e3}\n"

@@ -2,8 +2,6 @@
 /* A run compared with a shifted one. */
 #include "made.h"
 
-#include <math.h>
-
 static const char *write_scene(const char *bodies_and_bomb) {
     const char *path = temporary_path("scene.yaml");
     FILE *file = fopen(path, "w");

@@ -4,8 +4,6 @@
 
 #include "studies/chart_table.h"
 
-#include <math.h>
-
 static const ChartRow full = {"stack",
                               "momentum",
                               "k=20,warm=off",

@@ -7,8 +7,6 @@
 #include "studies/chart_plot.h"
 #include "studies/chart_table.h"
 
-#include <math.h>
-
 static ChartRow make_row(const char *scene, const char *method, const char *cpu) {
     const bool timed = cpu[0] != '\0';
     return (ChartRow){.scene = scene,

@@ -13,8 +13,6 @@
 
 #include "methods/methods.h"
 
-#include <math.h>
-
 #define SAMPLE SOURCE_DIR "/tests/studies/chart.csv"
 
 static const ChartLook page = {.size = CHART_PAGE};

@@ -5,8 +5,6 @@
 #include "studies/frozen.h"
 #include "studies/rollout.h"
 
-#include <math.h>
-
 static ClosedLoop run(const char *text, const Scene *scene) {
     Error error = {0};
     ClosedLoop result;

@@ -7,8 +7,6 @@
 #include "studies/equal_time.h"
 #include "studies/error_curve.h"
 
-#include <math.h>
-
 /* A row of the impact in closed loop; median and 95th percentile are half and twice the mean. */
 #define IMPACT(method, setting, us, mean, half, twice) \
     "tower," method "," setting ",closed,impact,5," us "," us "," us ",9,," mean "," half "," twice ",1,1,0,,0,\n"

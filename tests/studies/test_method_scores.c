@@ -7,8 +7,6 @@
 #include "studies/launch_scores.h"
 #include "studies/rollout.h"
 
-#include <math.h>
-
 enum { METHODS = 3, LAUNCHES = 2 };
 
 /* Of a launch, a method and a step: all different. */

@@ -6,8 +6,6 @@
 #include "studies/rollout.h"
 #include "studies/statistics.h"
 
-#include <math.h>
-
 enum { FRAMES = 10, BODIES = 3 };
 
 /* A ground and two boxes; the bomb is added after step 2 and touches in step 5; 2 impact frames. */

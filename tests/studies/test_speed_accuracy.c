@@ -5,8 +5,6 @@
 #include "studies/chart.h"
 #include "studies/chart_table.h"
 
-#include <math.h>
-
 static const char *const scenes[] = {SOURCE_DIR "/scenes/single.yaml", SOURCE_DIR "/scenes/stack.yaml"};
 
 enum { LAUNCHES = 2, TIMES_OF_STACK = 2 * LAUNCHES + 1 };

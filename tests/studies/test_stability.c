@@ -6,8 +6,6 @@
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
-#include <math.h>
-
 static const char scenes[] = SOURCE_DIR "/scenes";
 
 /* The scan is of a parameter of the scene, within its bounds, and whole if the parameter is. */

@@ -8,8 +8,6 @@
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
-#include <math.h>
-
 static const char scenes[] = SOURCE_DIR "/scenes";
 
 typedef struct Golden {

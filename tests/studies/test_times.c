@@ -14,7 +14,6 @@
 #include "studies/rollout.h"
 #include "studies/timing.h"
 
-#include <math.h>
 #include <time.h>
 
 int __real_clock_gettime(clockid_t clock, struct timespec *now);
