@@ -10,6 +10,8 @@
 
 #include <inttypes.h>
 
+OWNED_VALUE(Sketch, sketch_free)
+
 /* Ten pixels per mm. */
 static const SketchOutput white = {254, false, false}, clear = {254, true, false}, outlines = {254, false, true};
 
@@ -78,7 +80,7 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
 }
 
 TEST(shapes_lie_at_their_place_and_colour) {
-    Sketch sketch;
+    OWN(Sketch) sketch;
     sketch_begin(&sketch, 10, 10);
     sketch_rectangle(&sketch, (Point){2, 1}, (Point){5, 6}, &(Pen){0x204060, 1, NO_COLOUR, 0, NULL});
     sketch_rectangle(&sketch, (Point){4, 1}, (Point){5, 6}, &(Pen){0xFFFFFF, 0.2, NO_COLOUR, 0, NULL});
@@ -94,11 +96,10 @@ TEST(shapes_lie_at_their_place_and_colour) {
     expect_pixel(image, 19, 50, 0);
     expect_pixel(image, 20, 40, 0x204060FF);
     image_destroy(image);
-    sketch_free(&sketch);
 }
 
 TEST(a_picture_of_its_places_size_keeps_its_pixels) {
-    Sketch sketch;
+    OWN(Sketch) sketch;
     OWN(Image) *picture = image_sized(20, 10);
     for (int i = 0; i < 20 * 10 * 4; i++) picture->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(i * 37);
     picture->pixels[3] = 0;
@@ -109,7 +110,6 @@ TEST(a_picture_of_its_places_size_keeps_its_pixels) {
     for (int y = 0; y < 10; y++)
         for (int x = 0; x < 20; x++)
             if (x + y > 0) assert_memory_equal(pixel(image, 30 + x, 20 + y), pixel(picture, x, y), 4);
-    sketch_free(&sketch);
 }
 
 /* Left and right edge of everything not white, mm. */
@@ -165,7 +165,7 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
         {"a.svg", 0x77c28023e196dc9c, 0x59a07ad45902c0cd},
         {"a.pdf", 0x1ec4adee1acfa27e, 0x04ccdd4df6961d22},
     };
-    Sketch sketch;
+    OWN(Sketch) sketch;
     draw_something(&sketch);
     for (int i = 0; i < 2 * SKETCH_FORMATS; i++) {
         const bool transparent = i % 2 == 1;
@@ -179,12 +179,11 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
             fail_msg("%s%s: other bytes, with the hash 0x%016" PRIx64, expected[i / 2].name,
                      transparent ? ", transparent" : "", hash);
     }
-    sketch_free(&sketch);
 }
 
 /* Text is text, in a font that the file brings; or outlines, without the font. */
 TEST(an_svg_has_its_words) {
-    Sketch sketch;
+    OWN(Sketch) sketch;
     size_t size;
     draw_something(&sketch);
     FREED char *svg = sketch_as_svg(&sketch, &white, &size, &error);
@@ -202,7 +201,6 @@ TEST(an_svg_has_its_words) {
                 15 + TYPE_MIDDLE * em * sin(M_PI / 6), 10 + TYPE_MIDDLE * em * cos(M_PI / 6), em);
     assert_non_null(strstr(svg, text));
     assert_null(strstr(svg, "aria-label"));
-    sketch_free(&sketch);
 }
 
 /* The program prints this text, without blank lines, first. */
@@ -220,7 +218,7 @@ static void expect_printed(const char *program, const char *path, const char *wa
 }
 
 TEST(an_svg_of_outlines_needs_no_font) {
-    Sketch sketch;
+    OWN(Sketch) sketch;
     size_t size;
     draw_something(&sketch);
     FREED char *svg = sketch_as_svg(&sketch, &outlines, &size, &error);
@@ -231,7 +229,6 @@ TEST(an_svg_of_outlines_needs_no_font) {
     assert_non_null(strstr(svg, "width=\"30.000mm\" height=\"20.000mm\" viewBox=\"0 0 30.000 20.000\""));
     assert_non_null(strstr(svg, "M1.000 19.000L9.000 19.000L9.000 11.000L1.000 11.000Z\" fill=\"#336699\" "
                                 "fill-opacity=\"0.250\" stroke=\"#000000\" stroke-width=\"0.170\""));
-    sketch_free(&sketch);
 }
 
 /* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
@@ -280,11 +277,10 @@ TEST(a_pdf_has_a_valid_object_table) {
 
 static void expect_refused(const char *path, double width, double dpi, const char *message) {
     Error error = {0};
-    Sketch sketch;
+    OWN(Sketch) sketch;
     sketch_begin(&sketch, width, width);
     assert_false(sketch_write(&sketch, path, &(SketchOutput){.dpi = dpi}, &error));
     if (strstr(error.message, message) == NULL) fail_msg("'%s' lacks '%s'", error.message, message);
-    sketch_free(&sketch);
 }
 
 TEST(what_cannot_be_written_is_refused) {

@@ -54,6 +54,8 @@ static void free_case(Case *made) {
     dataset_destroy(made->dataset);
 }
 
+OWNED_VALUE(Case, free_case)
+
 static double *numbers(size_t count) {
     double *made = calloc(count, sizeof *made);
     assert_non_null(made);
@@ -124,14 +126,13 @@ TEST(gradient_of_the_laws_is_the_finite_difference) {
 }
 
 TEST(squared_residuals_sum_to_the_loss) {
-    Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
+    OWN(Case) made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t count = residual_count(&made);
     double *residuals = numbers(count), sum = 0;
     loss_residuals(made.loss, made.train, made.parameters, residuals);
     for (size_t i = 0; i < count; i++) sum += residuals[i] * residuals[i];
     assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, NULL, made.parameters), 1e-12);
     free(residuals);
-    free_case(&made);
 }
 
 /* Column p of J [residuals, parameters], by central differences. */
@@ -157,7 +158,7 @@ static double dot(const double *a, const double *b, size_t count) {
 
 /* An entry is a sum over 10^4 residuals; differences with step 1e-4 are accurate to 1e-8 each. */
 static void check_gauss_newton(int layers, const int *widths, Activation hidden, Activation last, OutputScale scale) {
-    Case made = make_case(layers, widths, hidden, last, scale);
+    OWN(Case) made = make_case(layers, widths, hidden, last, scale);
     size_t count = residual_count(&made), size = (size_t)made.count;
     FREED double *jacobian = numbers(size * count), *u = numbers(count), *jtu = numbers(size),
                  *jtj = numbers(size * size);
@@ -169,7 +170,6 @@ static void check_gauss_newton(int layers, const int *widths, Activation hidden,
         for (size_t q = 0; q <= p; q++)
             assert_near(jtj[p * size + q], dot(jacobian + p * count, jacobian + q * count, count), 1e-4);
     }
-    free_case(&made);
 }
 
 TEST(gauss_newton_is_that_of_the_jacobian) {
@@ -182,7 +182,7 @@ TEST(gauss_newton_is_that_of_the_jacobian) {
 
 /* J^T u must also be the same if J^T J is not requested. */
 TEST(sums_do_not_depend_on_threads) {
-    Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
+    OWN(Case) made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t size = (size_t)made.count;
     FREED double *u = numbers(residual_count(&made)), *gradient = numbers(2 * size), *jtu = numbers(2 * size);
     double *jtj = numbers(2 * size * size), value[2];
@@ -201,7 +201,6 @@ TEST(sums_do_not_depend_on_threads) {
     gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu + size, NULL);
     assert_memory_equal(jtu, jtu + size, size * sizeof(double));
     free(jtj);
-    free_case(&made);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -5,6 +5,8 @@
 
 #include "methods/steppers.h"
 
+OWNED_VALUE(GnsGraph, gns_graph_free)
+
 static void build(GnsGraph *graph, const ParticleHeap *heap, const GnsNet *net) {
     assert_true(gns_graph_build(graph, &heap->particles, &heap->ground, 1, &net->scales));
 }
@@ -13,7 +15,7 @@ static void build(GnsGraph *graph, const ParticleHeap *heap, const GnsNet *net) 
 TEST(edges_are_those_of_all_pairs) {
     static ParticleHeap heap;
     GnsNet net;
-    GnsGraph graph = {.nodes = 0};
+    OWN(GnsGraph) graph = {.nodes = 0};
     make_heap(&heap, heap_order);
     make_net(&net, 16, 1);
     build(&graph, &heap, &net);
@@ -34,7 +36,6 @@ TEST(edges_are_those_of_all_pairs) {
         }
     assert_int_equal(found, graph.edges);
     assert_false(graph.beyond);
-    gns_graph_free(&graph);
     gns_net_free(&net);
 }
 
@@ -42,7 +43,7 @@ TEST(edges_are_those_of_all_pairs) {
 TEST(what_training_never_had_is_told) {
     static ParticleHeap heap;
     OWN(GnsNet) net;
-    GnsGraph graph = {.nodes = 0};
+    OWN(GnsGraph) graph = {.nodes = 0};
     make_heap(&heap, heap_order);
     make_net(&net, 16, 1);
     heap.velocity[40][2].y = -1e30f;
@@ -54,18 +55,16 @@ TEST(what_training_never_had_is_told) {
     build(&graph, &heap, &net);
     assert_true(graph.beyond);
     assert_int_equal(graph.edges, HEAP_PARTICLES * GNS_NEIGHBOURS);
-    gns_graph_free(&graph);
 }
 
 /* outputs[HEAP_PARTICLES, GNS_OUTPUTS] */
 static void predict(const ParticleHeap *heap, const GnsNet *net, const GnsKernels *kernels, bool tape, float *outputs) {
-    GnsGraph graph = {.nodes = 0};
+    OWN(GnsGraph) graph = {.nodes = 0};
     GnsPass pass = {.tape = tape, .kernels = kernels};
     build(&graph, heap, net);
     assert_true(gns_forward(&pass, &net->layout, net->parameters, &graph));
     memcpy(outputs, pass.outputs, HEAP_PARTICLES * GNS_OUTPUTS * sizeof *outputs);
     gns_pass_free(&pass);
-    gns_graph_free(&graph);
 }
 
 TEST(all_kernels_have_the_same_bits) {

@@ -3,6 +3,8 @@
 #include "sain_networks.h"
 #include "owned.h"
 
+OWNED_VALUE(SainView, sain_view_free)
+
 enum { BODIES = 12, PAIRS = 16 };
 
 typedef struct Problem {
@@ -85,7 +87,7 @@ static void renumber(Problem *to, const Problem *from) {
 
 /* Velocities of all bodies, the answers added. */
 static void answer(const Problem *p, const SainNetwork *network, SainForm form, BodyVelocity *velocities) {
-    SainView view = {0};
+    OWN(SainView) view = {0};
     SainAnswers answers = {0};
     for (int i = 0; i < BODIES; i++) velocities[i] = p->engine[i];
     assert_true(sain_view_make(&view, &p->problem, form == SAIN_ALONE ? NULL : p->engine, form));
@@ -95,7 +97,6 @@ static void answer(const Problem *p, const SainNetwork *network, SainForm form, 
         assert_true(answers.known[b]);
         velocities[view.bodies[b].body] = sain_corrected(&view.bodies[b], answers.outputs + b * SAIN_OUTPUTS);
     }
-    sain_view_free(&view);
     sain_answers_free(&answers);
 }
 
@@ -147,7 +148,7 @@ TEST(answers_turn_with_the_scene) {
 
 TEST(answers_reach_their_target) {
     static Problem problem;
-    SainView view = {0};
+    OWN(SainView) view = {0};
     fill(&problem, 1);
     for (SainForm form = 0; form < SAIN_FORMS; form++) {
         assert_true(sain_view_make(&view, &problem.problem, problem.engine, form));
@@ -163,13 +164,12 @@ TEST(answers_reach_their_target) {
             assert_near(velocity.angular, 3, 1e-4);
         }
     }
-    sain_view_free(&view);
 }
 
 /* Each moving body is shown the change of another one, and all changes are shown. */
 TEST(shuffling_permutes_changes) {
     static Problem problem;
-    SainView view = {0};
+    OWN(SainView) view = {0};
     int same = 0, found = 0;
     fill(&problem, 2);
     assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_SHUFFLED));
@@ -185,13 +185,12 @@ TEST(shuffling_permutes_changes) {
     }
     assert_int_equal(found, BODIES - 1);
     assert_int_equal(same, 0);
-    sain_view_free(&view);
 }
 
 /* What touches nothing is not seen; a problem without contacts has no receivers. */
 TEST(an_empty_problem_is_seen) {
     static Problem problem;
-    SainView view = {0};
+    OWN(SainView) view = {0};
     SainAnswers answers = {0};
     OWN(SainNetwork) network;
     uint32_t seed = 1;
@@ -201,7 +200,6 @@ TEST(an_empty_problem_is_seen) {
     assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_WITH_ENGINE));
     assert_int_equal(view.body_count, 0);
     assert_true(sain_answer(&answers, &network, &view, true));
-    sain_view_free(&view);
     sain_answers_free(&answers);
 }
 

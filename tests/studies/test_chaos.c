@@ -2,6 +2,8 @@
 /* A run compared with a shifted one. */
 #include "made.h"
 
+OWNED_VALUE(Chaos, chaos_free)
+
 static const char *write_scene(const char *bodies_and_bomb) {
     const char *path = temporary_path("scene.yaml");
     FILE *file = fopen(path, "w");
@@ -32,13 +34,12 @@ TEST(a_shift_in_free_flight_is_constant) {
         OWN(Trajectory) *run = run_scene(path, "engine");
         int body = chaos_body(run, -1, -1);
         assert_int_equal(body, with_bomb ? 2 : 0);
-        Chaos chaos;
+        OWN(Chaos) chaos;
         assert_ok(chaos_run(&chaos, path, run, body, 50, NULL, &error), error);
         assert_true(chaos.body == body && chaos.rerun_differs == -1 && chaos.frames == 50);
         assert_near(chaos.shift, 1e-6, 0.2e-6);
         for (int frame = 0; frame < 50; frame++)
             assert_near(chaos.distance[frame], with_bomb && frame < 20 ? 0 : chaos.shift, 1e-7);
-        chaos_free(&chaos);
     }
 }
 
@@ -46,10 +47,9 @@ TEST(a_shift_in_free_flight_is_constant) {
 TEST(a_shift_is_at_least_one_float) {
     const char *path = write_scene("  - {size: [1, 1], position: [600000, 50], mass: 1, friction: 0}\n");
     OWN(Trajectory) *run = run_scene(path, "engine");
-    Chaos chaos;
+    OWN(Chaos) chaos;
     assert_ok(chaos_run(&chaos, path, run, 0, 10, NULL, &error), error);
     assert_true(chaos.shift == 0.0625 && chaos.distance[9] == 0.0625);
-    chaos_free(&chaos);
 }
 
 /* scenes/stack.yaml: the bomb hits in step 41; body 1 touches the ground from step 4. */
@@ -77,11 +77,10 @@ TEST(distances_are_those_of_the_trajectories) {
     OWN(Scene) *scene = scene_from(path);
     scene->bodies[10].position.x = 1e-6F;
     OWN(Trajectory) *shifted = run_by(scene, "momentum:k=5");
-    Chaos chaos;
+    OWN(Chaos) chaos;
     assert_ok(chaos_run(&chaos, path, run, 10, run->frames, NULL, &error), error);
     for (int frame = 0; frame < run->frames; frame++)
         assert_true(chaos.distance[frame] == trajectory_distance(run, shifted, frame));
-    chaos_free(&chaos);
 }
 
 static void expect_refused(const Trajectory *run, const char *path, int frames, const char *reason) {

@@ -5,14 +5,17 @@
 #include "studies/frozen.h"
 #include "studies/rollout.h"
 
+OWNED_VALUE(RunLog, run_log_free)
+
+OWNED_VALUE(Rollout, rollout_free)
+
 static ClosedLoop run(const char *text, const Scene *scene) {
     Error error = {0};
     ClosedLoop result;
-    RunLog converged = {0};
+    OWN(RunLog) converged = {0};
     const Method method = method_named(text);
     assert_ok(closed_loop_log_converged(&converged, scene, &error), error);
     assert_ok(closed_loop_run(&method, scene, &converged, 1, &result, &error), error);
-    run_log_free(&converged);
     return result;
 }
 
@@ -55,8 +58,8 @@ TEST(energy_before_the_bomb_does_not_count) {
 /* The log of the engine, moved by a centimetre more in each frame. */
 TEST(runs_have_parted_at_a_tenth_of_a_metre) {
     OWN(Scene) *scene = scene_named("single");
-    RunLog engine = {0};
-    Rollout rollout = {0};
+    OWN(RunLog) engine = {0};
+    OWN(Rollout) rollout = {0};
     LaunchLoop loop;
     const Method method = method_named("engine");
     scene->frames = 40;
@@ -65,14 +68,12 @@ TEST(runs_have_parted_at_a_tenth_of_a_metre) {
         engine.position[frame * engine.bodies + 1].x += 0.01f * ((float)frame - 0.5f);
     assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, NULL, &loop, &error), error);
     assert_near(loop.frames_engine, 11, 0);
-    rollout_free(&rollout);
-    run_log_free(&engine);
 }
 
 /* avbd moves bodies without equal and opposite impulses. */
 TEST(momentum_is_that_of_a_step) {
     OWN(Scene) *scene = scene_named("stack");
-    Rollout rollout = {0};
+    OWN(Rollout) rollout = {0};
     const Method method = method_named("avbd:k=2");
     OWN(Stepper) *stepper = stepper_of(scene, &method);
     const ClosedLoop result = run("avbd:k=2", scene);
@@ -80,15 +81,14 @@ TEST(momentum_is_that_of_a_step) {
     assert_ok(rollout_run(&rollout, stepper, scene, NULL, NULL, &error), error);
     assert_true(rollout.log.momentum_error > 0);
     assert_near(result.momentum_error, rollout.log.momentum_error / rollout.log.frames, 1e-12);
-    rollout_free(&rollout);
 }
 
 /* The interior method is close to the converged run of the pyramid for longer than to the engine's. */
 TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
     OWN(Scene) *scene = scene_named("pyramid");
     scene->frames = 60;
-    RunLog engine = {0}, converged = {0};
-    Rollout rollout = {0};
+    OWN(RunLog) engine = {0}, converged = {0};
+    OWN(Rollout) rollout = {0};
     LaunchLoop loop;
     const Method method = method_named("interior");
     assert_ok(closed_loop_log(&engine, "engine", scene, &error), error);
@@ -101,9 +101,6 @@ TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
     assert_true(isnan(loop.frames_converged) && loop.frames_engine < 60);
     assert_ok(closed_loop_launch(&rollout, &method, scene, NULL, &converged, &loop, &error), error);
     assert_true(isnan(loop.frames_engine) && loop.frames_converged > 1);
-    rollout_free(&rollout);
-    run_log_free(&engine);
-    run_log_free(&converged);
 }
 
 /* The converged run tells when another parts from it, up to its first unconverged step. */
