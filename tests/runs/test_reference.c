@@ -76,21 +76,4 @@ TEST(every_frame_of_the_long_runs_has_the_bits_of_box2d_lite) {
     assert_int_equal(runs, 25);
 }
 
-TEST(two_runs_give_the_same_bits) {
-    OWN(Scene) *scene = read_scene("pyramid_settled");
-    scene->frames = 240;
-    Trajectory *a = run_by(scene, "engine"), *b = run_by(scene, "engine");
-    assert_same_run(a, b);
-    TrajectoryDifference difference;
-    scene->bomb.body.position.x += 0.001f;
-    trajectory_destroy(b);
-    b = run_by(scene, "engine");
-    trajectory_compare(a, b, &difference);
-    assert_false(difference.equal);
-    assert_int_equal(difference.frame, 180);
-    assert_int_equal(difference.body, 67);
-    trajectory_destroy(a);
-    trajectory_destroy(b);
-}
-
 RUN_TESTS(NULL, NULL)

@@ -155,34 +155,6 @@ TEST(a_target_without_push_out_is_noted) {
     expect_caption(write_rows(engine), "Velocity error", "error against");
 }
 
-/* A table may have any texts: what is drawn of them is text. */
-TEST(names_stay_texts) {
-    static const char *const names[] = {"'; x='",         "</text><script>", "&amp;",
-                                        "`touch victim`", "\xc3\x28'\\",     "%s %d %n"};
-    char *lines = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&lines, &size);
-    assert_non_null(file);
-    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
-        for (int k = 1; k <= 2; k++) {
-            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,impact,40,%d,%d,%d,,,%d,,,,,,,,\n", names[i], k, names[i],
-                    5 * k, 4 * k, 6 * k, i + 1);
-            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,after,40,1,1,1,,,0,,,,,,,,\n", names[i], k, names[i]);
-        }
-    fclose(file);
-    const char *path = write_rows(lines);
-    free(lines);
-    assert_ok(chart_plot(path, "hostile", folder(), &page, &error), error);
-    run_python(
-        "import sys, xml.etree.ElementTree as tree\n"
-        "root = tree.parse(sys.argv[1]).getroot()\n"
-        "kinds = {e.tag.split('}')[1] for e in root.iter()}\n"
-        "assert kinds == {'svg', 'title', 'style', 'rect', 'path', 'text'}, kinds\n"
-        "names = [e.text or '' for e in root.iter()] + [open(sys.argv[1][:-3] + 'txt', encoding='utf-8').read()]\n"
-        "assert any('?s ?d ?n' in name for name in names), names\n",
-        drawn_file("hostile", "svg"));
-}
-
 TEST(texts_become_plain) {
     char plain[CHART_TEXT_SIZE];
     chart_plain(plain, "engine, warm=off (k=10)");
