@@ -238,23 +238,4 @@ TEST(neighbours_are_seen_beside_the_contact) {
     assert_true(pushed > 10 && alone > 100);
 }
 
-static void refuse(DatasetOptions options, const char *text) {
-    Error error = {0};
-    options.scenes = single;
-    options.scene_count = 1;
-    assert_refused(dataset_record(&options, NULL, &error), text);
-}
-
-TEST(what_cannot_be_recorded_is_refused) {
-    refuse((DatasetOptions){.random = 4}, "4 launches per scene; expected at least 5");
-    refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
-    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
-           "the reference has none");
-    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .view = PAIR_NEIGHBOURS},
-           "the target impulse has no view neighbours");
-    refuse((DatasetOptions){.random = 5, .target = TARGET_POINTS, .view = PAIR_RAW},
-           "the target points needs the view contact or neighbours");
-    refuse((DatasetOptions){.random = 5, .target = TARGET_NET, .context = true}, "the target net has none");
-}
-
 RUN_TESTS(NULL, NULL)

@@ -104,11 +104,4 @@ TEST(a_training_stopped_before_the_first_network_fails) {
     assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
 }
 
-TEST(a_scene_without_a_bomb_is_refused) {
-    OWN(Scene) *scene = scene_named("stack");
-    Scores scores;
-    scene->bomb.present = false;
-    assert_refused(train(scene, &scores, NULL, &error), "stack: error: has no bomb to launch");
-}
-
 RUN_TESTS(NULL, NULL)

@@ -180,15 +180,4 @@ TEST(an_engine_that_does_not_accumulate_stops_too) {
     assert_same_bits(problem, &found, &expected, "all");
 }
 
-TEST(settings_out_of_range_are_refused) {
-    for (int kind = 0; kind < KINDS; kind++) {
-        assert_settings_refused(kinds[kind], "near=-0.1", "near");
-        assert_settings_refused(kinds[kind], "near=nan", "near");
-        assert_settings_refused(kinds[kind], "near=small", "near");
-        assert_settings_refused(kinds[kind], "near=0.1,more=0", "more");
-        assert_settings_refused(kinds[kind], "near=0.1,more=8.5", "more");
-        assert_settings_refused(kinds[kind], "more=8", "more: error: needs near");
-    }
-}
-
 RUN_TESTS(NULL, NULL)

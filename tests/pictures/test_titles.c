@@ -159,14 +159,4 @@ TEST_WITH(a_caption_stands_for_the_method, make, destroy) {
     assert_true(draws(&drawing, &kept.layout.title, "pair-net"));
 }
 
-TEST(captions_are_checked) {
-    char text[CAPTION_TEXT_SIZE + 1];
-    memset(text, 'a', sizeof text);
-    text[CAPTION_TEXT_SIZE - 1] = '\0';
-    assert_ok(caption_check(text, "--caption", &error), error);
-    text[CAPTION_TEXT_SIZE - 1] = 'a', text[CAPTION_TEXT_SIZE] = '\0';
-    assert_refused(caption_check(text, "--caption", &error),
-                   "--caption: error: the text has 256 bytes, but at most 255 are allowed");
-}
-
 RUN_TESTS(NULL, NULL)

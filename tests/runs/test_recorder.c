@@ -79,10 +79,4 @@ TEST(a_run_that_fails_leaves_no_file) {
     assert_int_not_equal(access(path, F_OK), 0);
 }
 
-TEST(too_long_runs_are_refused_before_the_first_step) {
-    Method method = method_named("engine");
-    OWN(Scene) *scene = read_scene("pyramid", SIMULATE_MAX_STATES / 60);
-    assert_refused(recorder_create_to(scene, &method, NULL, 0, false, &error), "are too many to record");
-}
-
 RUN_TESTS(NULL, NULL)

@@ -200,10 +200,4 @@ TEST(every_number_of_a_family_is_spread_over_its_span) {
                         launches[0][i].mass != launches[1][k].mass);
 }
 
-TEST(a_bomb_without_a_family_cannot_be_spread) {
-    OWN(Scene) *scene = aiming_scene();
-    Launch out;
-    assert_refused(launches_for_scoring(scene, 1, &out, &error), "scene: error: the bomb has one launch and no family");
-}
-
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bodies that start inside one another are refused, unless the scene allows it. */
-#include "made.h"
 #include "scene_text.h"
 
 #define TWO(first, second) BASE "bodies:\n  - {mass: 1, " first "}\n  - {mass: 1, " second "}\n"
@@ -40,16 +39,6 @@ static const Refused bombs[] = {
 TEST(overlapping_bodies_are_refused) { CHECK_TABLE(overlaps); }
 
 TEST(bombs_inside_bodies_are_refused) { CHECK_TABLE(bombs); }
-
-TEST(settings_are_checked_too) {
-    static const char text[] =
-        BASE GROUND STACK("5", "$spacing") "parameters:\n  spacing: {value: 1, from: 0.5, to: 2}\n";
-    const char *path = write_scene(text, sizeof text - 1);
-    Scene *scene = scene_from(path);
-    scene_destroy(scene);
-    assert_refused(scene_read_with(path, &(SceneSetting){"spacing", 0.5}, 1, &error),
-                   ":7:5: error: body 2 starts 0.5 m inside body 1");
-}
 
 /* 10,000 boxes in one place: the first pair suffices, so that memory does not grow with the pairs. */
 TEST(ten_thousand_in_one_place_are_refused) {
