@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bodies that start inside one another are refused, unless the scene allows it. */
 #include "scene_text.h"
+#include "owned.h"
 
 #define TWO(first, second) BASE "bodies:\n  - {mass: 1, " first "}\n  - {mass: 1, " second "}\n"
 #define AT(x) "size: [1, 1], position: [" x ", 0]"
