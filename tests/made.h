@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scenes, methods, steppers, runs, networks and pictures that must be in order. */
 #pragma once
-#include "testing.h"
+#include "owned.h"
 
 #include "base/npz.h"
 #include "nets/nets.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* cmocka with the headers it wants, and what every test needs. Include this first. */
+/* cmocka with the headers it wants, and what every test needs, mathematics too. Include this first. */
 #pragma once
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,6 +11,7 @@
 #include "base/base.h"
 
 #include <ftw.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,6 +95,18 @@ static inline const char *temporary_path(const char *name) {
     char *path = paths[next++ % 8];
     snprintf(path, sizeof paths[0], "%s/%s", temporary_folder, name);
     return path;
+}
+
+/* As printf() would print it; in a static ring of sixteen buffers. */
+__attribute__((format(printf, 1, 2))) static inline const char *printed(const char *format, ...) {
+    static _Thread_local char texts[16][1024];
+    static _Thread_local int next;
+    char *text = texts[next++ % 16];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof texts[0], format, arguments);
+    va_end(arguments);
+    return text;
 }
 
 /* Puts these bytes in a file and returns its path. A new file each time: some file systems write an overwritten one to disk

@@ -153,7 +153,6 @@ bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files,
 
 /* Whether a file can be decoded. */
 bool png_fast_check_rows(PngRows *rows);
-bool png_fast_check(const uint8_t *data, size_t size, int64_t max_pixels);
 
 /* Any file, by libpng; NULL with error set. What png_fast_decode() accepts, this accepts, with the same pixels;
    but for codes of deflate that are incomplete, which ISA-L reads and zlib refuses: the pixels have the right checksum. */

@@ -46,9 +46,6 @@ uint8_t *image_load_png(const char *path, size_t *size, Error *error);
 /* Like image_read_png(), for a file in memory and with another limit; `path` is used in messages. */
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
 
-/* Whether image_decode_png() would read the file, in memory for some rows. */
-bool image_check_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
-
 /* Two files. If all their pixels are equal, images[1] may be images[0]. image_destroy_pair() frees them, also after a
    failure. */
 bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],
@@ -87,7 +84,7 @@ void png_file_close(PngFile *file);
 /* Reads the whole file. ERROR_INPUT if it has changed. */
 bool png_file_load(PngFile *file, Error *error);
 
-/* As image_check_png(), at most once. Then the file may be loaded. */
+/* Whether image_decode_png() would read the file, in memory for some rows. At most once; then the file may be loaded. */
 bool png_file_check(PngFile *file, Error *error);
 
 /* Whether all bytes are equal. */

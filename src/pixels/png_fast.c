@@ -554,11 +554,3 @@ bool png_fast_check_rows(PngRows *rows) {
     free(row);
     return ok;
 }
-
-bool png_fast_check(const uint8_t *data, size_t size, int64_t max_pixels) {
-    PngRows rows = {0};
-    png_source_of(&rows.source, data, size);
-    bool ok = png_rows_open(&rows, max_pixels) && png_fast_check_rows(&rows);
-    png_rows_close(&rows);
-    return ok;
-}

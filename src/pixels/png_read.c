@@ -436,10 +436,6 @@ static bool check_by_libpng(const uint8_t *data, size_t size, const char *path, 
     return ok;
 }
 
-bool image_check_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
-    return png_fast_check(data, size, max_pixels) || check_by_libpng(data, size, path, max_pixels, error);
-}
-
 bool png_file_check(PngFile *file, Error *error) {
     if (file->rows != NULL && !file->damaged && png_fast_check_rows(file->rows)) return true;
     return png_file_load(file, error) && check_by_libpng(file->data, file->size, file->path, file->max_pixels, error);

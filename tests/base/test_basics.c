@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hashes, arrays and errors: the small parts. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/base.h"
 #include "base/hash.h"
@@ -17,7 +17,7 @@ TEST(fnv_is_xor_then_multiply) {
 TEST(xxh3_of_nothing) { assert_true(hash_xxh3("", 0) == 0x2d06800538d394c2ULL); }
 
 TEST(arrays_grow_by_doubling_and_keep_their_items) {
-    void *items = NULL;
+    FREED void *items = NULL;
     size_t capacity = 0, grown = 0;
     for (size_t i = 0; i < 1000; i++) {
         size_t before = capacity;
@@ -31,7 +31,6 @@ TEST(arrays_grow_by_doubling_and_keep_their_items) {
     assert_false(array_reserve(&items, &capacity, SIZE_MAX, sizeof(int)));
     assert_false(array_reserve(&items, &capacity, SIZE_MAX / 4, 8));
     assert_ptr_equal(items, kept);
-    free(items);
 }
 
 TEST(the_first_error_stays) {

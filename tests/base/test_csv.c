@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/csv.h"
 
@@ -80,7 +80,7 @@ TEST(large_and_missing_files_are_refused) {
 TEST(what_is_put_is_read_again) {
     static const char *const texts[] = {"k=20", "k=20,warm=off", "say \"k\"", "\"", ",", "", " a "};
     enum { COUNT = sizeof texts / sizeof *texts };
-    char *data = NULL;
+    FREED char *data = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&data, &size);
     assert_non_null(file);
@@ -94,7 +94,6 @@ TEST(what_is_put_is_read_again) {
     assert_int_equal(csv.width, COUNT);
     for (int i = 0; i < COUNT; i++) assert_string_equal(csv_text(&csv, 1, i), texts[i]);
     csv_free(&csv);
-    free(data);
 }
 
 TEST(shown_text_is_short_and_prints) {

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "files.h"
 #include "base/csv.h"
-
-#include <math.h>
 
 typedef enum Colour { RED, GREEN, BLUE } Colour;
 
@@ -61,7 +59,7 @@ static void expect_refused(const CsvLayout *layout, const char *text, const char
 }
 
 TEST(each_kind_fills_its_member) {
-    CsvTable table = read_good(&exact, HEADER "\"a,\"\"b\xc3\xa4\",x [m],blue,-5,1/3,1e30,-0.5\n,,red,7,2,0,\n");
+    OWN(CsvTable) table = read_good(&exact, HEADER "\"a,\"\"b\xc3\xa4\",x [m],blue,-5,1/3,1e30,-0.5\n,,red,7,2,0,\n");
     const Row *rows = table.rows;
     assert_int_equal(table.count, 2);
     assert_string_equal(rows[0].text, "a,\"b\xc3\xa4");
@@ -74,7 +72,6 @@ TEST(each_kind_fills_its_member) {
     assert_string_equal(rows[1].name, "");
     assert_int_equal(rows[1].word, RED);
     assert_true(isnan(rows[1].optional));
-    csv_table_free(&table);
 }
 
 TEST(columns_are_found_by_name) {
@@ -132,9 +129,7 @@ TEST(wrong_fields_are_refused_with_their_place) {
         {"t,n,red,1,2,3\n", "2:1: error: 6 fields, but the header has 7"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[256];
-        snprintf(text, sizeof text, HEADER "%s", cases[i].row);
-        expect_refused(&all, text, cases[i].message);
+        expect_refused(&all, printed(HEADER "%s", cases[i].row), cases[i].message);
     }
 }
 
@@ -159,10 +154,9 @@ TEST(keys_are_not_repeated) {
 }
 
 TEST(errors_point_at_a_field) {
-    CsvTable table = read_good(&subset, "number,name\n2,\"a,b\"\n3,c\n");
+    OWN(CsvTable) table = read_good(&subset, "number,name\n2,\"a,b\"\n3,c\n");
     assert_refused(csv_table_error(&table, 1, NAME, &error, "not %d", 7), "rows.csv:3:3: error: not 7");
     assert_refused(csv_table_error(&table, 0, WORD, &error, "no word"), "rows.csv:2:1: error: no word");
-    csv_table_free(&table);
 }
 
 static const Row written[] = {{"k=20,b=\"c\"", "x [m]", GREEN, -5, 0.1f, 1234567.8912, -0.12345678},
@@ -172,7 +166,7 @@ TEST(written_tables_are_read_back) {
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &exact, written, 2, &error), error);
     assert_file(path, HEADER "\"k=20,b=\"\"c\"\"\",\"x [m]\",green,-5,0.1,1234567.89,-0.123457\n,\"\",red,0,-3,0,\n");
-    CsvTable table;
+    OWN(CsvTable) table;
     assert_ok(csv_table_read(&table, path, &exact, &error), error);
     const Row *rows = table.rows;
     assert_string_equal(rows[0].text, written[0].text);
@@ -180,7 +174,6 @@ TEST(written_tables_are_read_back) {
     assert_true(rows[0].word == GREEN && rows[0].integer == -5 && rows[0].single == 0.1f);
     assert_true(rows[0].number == 1234567.89 && rows[0].optional == -0.123457);
     assert_true(isnan(rows[1].optional));
-    csv_table_free(&table);
 }
 
 TEST(unreadable_values_are_not_written) {
@@ -195,13 +188,12 @@ TEST(unreadable_values_are_not_written) {
         const char *path = temporary_path("unwritten.csv");
         assert_refused(csv_table_write(path, &exact, &rows[i], 1, &error), "unwritten.csv: error: ", messages[i]);
         assert_int_equal(access(path, F_OK), -1);
-        char *text = NULL;
+        FREED char *text = NULL;
         size_t size;
         FILE *stream = open_memstream(&text, &size);
         assert_refused(csv_row_print(stream, &exact, &rows[i], &error), messages[i]);
         fclose(stream);
         assert_int_equal(size, 0);
-        free(text);
     }
 }
 

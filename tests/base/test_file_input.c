@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Standard input is read to its end, up to a limit. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/file.h"
 
@@ -21,11 +21,10 @@ TEST(all_of_it_is_read) {
     for (int i = 0; i < 3; i++) {
         size_t size;
         give(sizes[i]);
-        char *data = file_read_input(60000, &size, &error);
+        FREED char *data = file_read_input(60000, &size, &error);
         assert_ok(data != NULL, error);
         assert_int_equal(size, sizes[i]);
         assert_int_equal(strlen(data), size);
-        free(data);
     }
 }
 

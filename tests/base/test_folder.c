@@ -17,10 +17,8 @@ static const char *below(const char *name) {
 
 static void make_file(const char *name) {
     Error error = {0};
-    char folder[512];
     const char *path = below(name);
-    snprintf(folder, sizeof folder, "%.*s", (int)file_folder_length(path), path);
-    assert_ok(file_make_directory(folder, &error), error);
+    assert_ok(file_make_directory(printed("%.*s", (int)file_folder_length(path), path), &error), error);
     write_bytes(path, "x", 1);
 }
 
@@ -31,9 +29,7 @@ FIXTURE(make_tree) {
     static const char *const names[] = {"tree/a.x",         "tree/b/c.x",  "tree/b/d/e.x",  "tree/a.y",
                                         "tree/b/.hidden.x", "tree/.b/f.x", "outside/far.x", "tree/b/x"};
     static int made;
-    char name[32];
-    snprintf(name, sizeof name, "tree-%d", made++);
-    snprintf(root, sizeof root, "%s", temporary_path(name));
+    snprintf(root, sizeof root, "%s", temporary_path(printed("tree-%d", made++)));
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) make_file(names[i]);
     failing_opendir = failing_readdir = failing_stat = 0;
 }

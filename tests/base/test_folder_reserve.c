@@ -50,14 +50,12 @@ static pid_t start_holder(bool leave) {
 }
 
 TEST(the_other_process_is_named) {
-    char name[64];
     choose_folder("held/by/another");
     const pid_t holder = start_holder(false);
     assert_int_equal(reserve_in_child(&error), 0);
     assert_error(error, ERROR_SYSTEM, folder);
     assert_error(error, ERROR_SYSTEM, "is writing into this folder");
-    snprintf(name, sizeof name, "another process (%ld)", (long)holder);
-    assert_error(error, ERROR_SYSTEM, name);
+    assert_error(error, ERROR_SYSTEM, printed("another process (%ld)", (long)holder));
     kill(holder, SIGKILL);
     assert_int_equal(waitpid(holder, NULL, 0), holder);
     error = (Error){0};
@@ -75,8 +73,7 @@ TEST(children_of_an_ended_process_are_waited_for) {
 
 TEST(a_process_may_reserve_a_folder_again) {
     for (int i = 0; i < 30; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "own-%d", i % 10); /* more than are kept at a time */
+        const char *name = printed("own-%d", i % 10); /* more than are kept at a time */
         choose_folder(name);
         assert_ok(folder_reserve(folder, &error) && folder_reserve(folder, &error), error);
     }

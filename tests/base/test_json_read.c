@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the reader adds to jansson: places, limits, and walking containers without reading beyond the file. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/json.h"
+
+OWNED_VALUE(JsonReader, json_read_close)
 
 enum { MAX_SIZE = 1 << 20 };
 
@@ -29,16 +31,15 @@ static bool read_array(JsonReader *reader, int *count, Error *error) {
 static void refuse(const char *text, size_t size, const char *why) {
     Error error = {0};
     int count;
-    JsonReader reader = open_text(text, size);
+    OWN(JsonReader) reader = open_text(text, size);
     if (read_array(&reader, &count, &error)) fail_msg("read: %s", text);
     assert_error(error, ERROR_INPUT, why);
-    json_read_close(&reader);
 }
 
 TEST(values_are_read_one_by_one_with_their_places) {
     static const char text[] = " [ -0.5E+1 ,\r\n\t\"\xc3\xa4\\u00e4\",  {\n \"a\": [1,\n2]} ,\n7] ";
     bool more;
-    JsonReader reader = open_text(text, sizeof text - 1);
+    OWN(JsonReader) reader = open_text(text, sizeof text - 1);
     assert_true(json_read_char(&reader, '['));
     assert_false(json_read_char(&reader, ']'));
     assert_true(json_real_value(json_read_value(&reader, &error)) == -5);
@@ -56,7 +57,6 @@ TEST(values_are_read_one_by_one_with_their_places) {
     assert_int_equal(reader.value_line, 5);
     assert_true(json_read_more(&reader, ']', &more, &error) && !more);
     assert_ok(json_read_end(&reader, &error), error);
-    json_read_close(&reader);
 }
 
 TEST(invalid_json_is_refused_with_its_place) {
@@ -85,12 +85,11 @@ TEST(invalid_json_is_refused_with_its_place) {
 
 /* Terminal escape sequences in a file must not reach the terminal. */
 TEST(messages_contain_nothing_of_the_file) {
-    JsonReader reader = open_text("[\x1b[31m]", 7);
+    OWN(JsonReader) reader = open_text("[\x1b[31m]", 7);
     int count;
     assert_false(read_array(&reader, &count, &error));
     assert_null(strchr(error.message, 0x1b));
     assert_error(error, ERROR_INPUT, "values.json:1:2: error: invalid token");
-    json_read_close(&reader);
 }
 
 /* A truncated file is never read beyond its end or accepted. */
@@ -108,7 +107,7 @@ static size_t repeat(char *text, const char *first, const char *part, size_t cou
 }
 
 TEST(size_depth_and_memory_of_a_value_are_limited) {
-    char *text = malloc(MAX_SIZE + 1);
+    FREED char *text = malloc(MAX_SIZE + 1);
     const size_t most = JSON_VALUE_SIZE;
     int count;
     JsonReader reader = open_text(text, repeat(text, "[\"", "x", most - 2, "\", 0]"));
@@ -122,18 +121,15 @@ TEST(size_depth_and_memory_of_a_value_are_limited) {
         refuse(text, repeat(text, firsts[i], "\xf0\x9f\x93\xa6", most / 4 + 1, "\"]"), "a value must have at most");
     refuse(text, repeat(text, "[[", "{},", most / 4, "0]]"), "1:2: error: a value must take at most 1048576 bytes");
     refuse(text, repeat(text, "[", "[", 3000, ""), "1:2050: error: maximum parsing depth reached");
-    free(text);
 }
 
 TEST(the_memory_of_a_value_is_reused) {
-    char *text = malloc(MAX_SIZE + 1);
+    FREED char *text = malloc(MAX_SIZE + 1);
     const size_t items = 10000; /* 2 MB if all were kept */
     int count;
-    JsonReader reader = open_text(text, repeat(text, "[", "{\"a\": \"b\"}, ", items, "0]"));
+    OWN(JsonReader) reader = open_text(text, repeat(text, "[", "{\"a\": \"b\"}, ", items, "0]"));
     assert_ok(read_array(&reader, &count, &error), error);
     assert_int_equal(count, items + 1);
-    json_read_close(&reader);
-    free(text);
 }
 
 TEST(a_large_file_is_refused) {

@@ -4,8 +4,6 @@
 
 #include "base/json.h"
 
-#include <math.h>
-
 enum { MAX_SIZE = 1 << 20 };
 
 /* Every kind of value, key and layout. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/file.h"
 
@@ -38,19 +38,18 @@ TEST(holds_what_is_written) {
 }
 
 TEST(is_empty_at_first) {
-    char *text;
+    FREED char *text;
     size_t size;
     FILE *file = memory_stream(&text, &size);
     assert_non_null(file);
     assert_int_equal(fclose(file), 0);
     assert_int_equal(size, 0);
     assert_string_equal(text, "");
-    free(text);
 }
 
 /* Also where memory is there again later, and for whatever function wrote: none of them is checked for its result. */
 TEST(tells_that_memory_ran_out) {
-    char *text;
+    FREED char *text;
     size_t size;
     FILE *file = memory_stream(&text, &size);
     assert_non_null(file);
@@ -63,7 +62,6 @@ TEST(tells_that_memory_ran_out) {
     assert_int_not_equal(fclose(file), 0);
     assert_int_equal(strlen(text), size);
     assert_null(strstr(text, "line 2999"));
-    free(text);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -37,10 +37,9 @@ static int read_and_compare(const char *path) {
             if (done) assert_string_equal(text, arrays[i].data);
             continue;
         }
-        void *data = npz_read(file, arrays[i].name, arrays[i].type, arrays[i].rank, arrays[i].shape, &error);
+        FREED void *data = npz_read(file, arrays[i].name, arrays[i].type, arrays[i].rank, arrays[i].shape, &error);
         done = data != NULL;
         if (done && sizes[i] > 0) assert_memory_equal(data, arrays[i].data, sizes[i]);
-        free(data);
     }
     npz_close(file);
     if (!done) assert_error(error, ERROR_INPUT, path);
@@ -51,14 +50,13 @@ TEST(written_is_read) {
     const char *path = temporary_path("written.npz");
     write_arrays(path);
     assert_int_equal(read_and_compare(path), 1);
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     assert_true(npz_has(file, "matrix"));
     assert_false(npz_has(file, "matri"));
     int64_t shape[2];
     assert_ok(npz_shape(file, "matrix", NPZ_FLOAT32, 2, shape, &error), error);
     assert_int_equal(shape[0], 3);
     assert_int_equal(shape[1], 2);
-    npz_close(file);
 }
 
 /* Whatever the time zone: a zip holds local time. */
@@ -67,24 +65,22 @@ TEST(same_arrays_same_bytes) {
     const char *first = temporary_path("first.npz"), *second = temporary_path("second.npz");
     write_arrays(first);
     size_t size, other_size;
-    char *data = read_whole(first, &size);
+    FREED char *data = read_whole(first, &size);
     for (size_t i = 0; i < sizeof zones / sizeof zones[0]; i++) {
         setenv("TZ", zones[i], 1);
         tzset();
         write_arrays(second);
-        char *other = read_whole(second, &other_size);
+        FREED char *other = read_whole(second, &other_size);
         if (other_size != size || memcmp(data, other, size) != 0) fail_msg("other bytes in zone %s", zones[i]);
-        free(other);
     }
     /* 1980-01-01 12:00 in the first local header. */
     assert_memory_equal(data + 10, "\x00\x60\x21\x00", 4);
-    free(data);
 }
 
 TEST(mismatches_name_found_and_wanted) {
     const char *path = temporary_path("mismatch.npz");
     write_arrays(path);
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     Error missing = {0}, type = {0}, rank = {0}, shape = {0}, text = {0};
     int64_t found[NPZ_MAX_RANK];
     assert_null(npz_read(file, "no", NPZ_FLOAT32, 0, NULL, &missing));
@@ -99,7 +95,6 @@ TEST(mismatches_name_found_and_wanted) {
     assert_false(npz_read_text(file, "name", small, sizeof small, &text));
     assert_error(text, ERROR_INPUT, "'name'");
     assert_ok(npz_read_text(file, "name", exact, sizeof exact, &error), error);
-    npz_close(file);
 }
 
 TEST(bad_texts_are_not_written) {
@@ -117,12 +112,11 @@ TEST(truncated_files_are_refused) {
     const char *path = temporary_path("truncated.npz");
     write_arrays(path);
     size_t size;
-    char *data = read_whole(path, &size);
+    FREED char *data = read_whole(path, &size);
     for (size_t length = 0; length < size; length++) {
         write_bytes(path, data, length);
         if (read_and_compare(path) != 0) fail_msg("cut off at %zu, and read", length);
     }
-    free(data);
 }
 
 static uint32_t random_next(uint32_t *seed) { return *seed = *seed * 1664525 + 1013904223; }
@@ -132,7 +126,7 @@ TEST(flipped_bytes_are_refused_or_harmless) {
     const char *path = temporary_path("flipped.npz");
     write_arrays(path);
     size_t size;
-    char *data = read_whole(path, &size), *damaged = malloc(size);
+    FREED char *data = read_whole(path, &size), *damaged = malloc(size);
     uint32_t seed = 1;
     int refused = 0;
     for (int round = 0; round < 4000; round++) {
@@ -143,8 +137,6 @@ TEST(flipped_bytes_are_refused_or_harmless) {
         refused += read_and_compare(path) == 0;
     }
     assert_true(refused > 1000);
-    free(damaged);
-    free(data);
 }
 
 TEST(failed_writes_tell) {
@@ -158,10 +150,9 @@ static bool is_table(const char *kind, int32_t version, Error *error) {
     const char *path = temporary_path("kind.npz");
     *error = (Error){0};
     assert_ok(npz_write(path, head, 2, error), *error);
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     assert_string_equal(npz_path(file), path);
     const bool is = npz_check_kind(file, "table", 3, error);
-    npz_close(file);
     return is;
 }
 
@@ -181,7 +172,7 @@ TEST(scalars_and_names_are_read) {
                                {"turned", NPZ_TEXT, 0, {0}, "a\xe2\x80\xae"}};
     const char *path = temporary_path("fields.npz");
     assert_ok(npz_write(path, fields, 5, &error), error);
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     uint64_t found = 0;
     char text[16];
     assert_ok(npz_read_scalar(file, "hash", NPZ_UINT64, &found, sizeof found, &error), error);
@@ -194,7 +185,6 @@ TEST(scalars_and_names_are_read) {
     assert_refused(npz_read_name(file, "turned", text, sizeof text, &error),
                    "fields.npz: error: the name of the turned has the control character U+202E");
     assert_refused(npz_read_scalar(file, "hash", NPZ_INT64, &found, sizeof found, &error), "hash");
-    npz_close(file);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -4,14 +4,10 @@
 
 #include "python.h"
 
-#include <math.h>
-
 /* Opens a file with `array=expression`. */
 static NpzFile *make(const char *expression) {
     const char *path = temporary_path("array.npz");
-    char program[512];
-    snprintf(program, sizeof program, "import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression);
-    run_python(program, path);
+    run_python(printed("import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression), path);
     return npz_of(path);
 }
 
@@ -42,10 +38,9 @@ static NpzFile *make_all(void) {
 static void expect_in(NpzFile *file, const char *name, NpzType type, const void *wanted, size_t size) {
     Error error = {0};
     const int64_t three[] = {3};
-    void *data = npz_read(file, name, type, 1, three, &error);
+    FREED void *data = npz_read(file, name, type, 1, three, &error);
     assert_ok(data != NULL, error);
     if (memcmp(data, wanted, size) != 0) fail_msg("%s is read as something else", name);
-    free(data);
 }
 
 TEST(numbers_of_any_type_become_the_type_that_is_read) {
@@ -56,7 +51,7 @@ TEST(numbers_of_any_type_become_the_type_that_is_read) {
     const uint8_t u1[] = {0, 1, 100};
     const uint32_t u4[] = {0, 1, 100};
     const uint64_t u8[] = {0, 1, 100};
-    NpzFile *file = make_all();
+    OWN(NpzFile) *file = make_all();
     npz_convert(file);
     size_t count = 0;
     for (const char *name; (name = npz_name(file, count)) != NULL; count++) {
@@ -71,7 +66,6 @@ TEST(numbers_of_any_type_become_the_type_that_is_read) {
     }
     assert_int_equal(count, 23);
     expect_in(file, "bool", NPZ_UINT8, (const uint8_t[]){0, 1, 1}, 3);
-    npz_close(file);
 }
 
 /* Each number keeps what its new type can hold. */
@@ -107,11 +101,10 @@ TEST(one_number_is_a_scalar) {
 
 TEST(texts_of_either_order_are_read) {
     char text[16];
-    NpzFile *file = make("np.array('z\\u00e4h', '>U8')");
+    OWN(NpzFile) *file = make("np.array('z\\u00e4h', '>U8')");
     npz_convert(file);
     assert_ok(npz_read_text(file, "array", text, sizeof text, &error), error);
     assert_string_equal(text, "z\xc3\xa4h");
-    npz_close(file);
 }
 
 static void expect_refused(const char *expression, bool converts, NpzType type, int rank, const int64_t *shape,

@@ -25,13 +25,12 @@ static void expect_refused(const char *path, const char *reason) {
 /* A file of one array with this dictionary and data_size bytes of data. */
 static const char *write_head(const char *dictionary, size_t data_size) {
     const char *path = temporary_path("head.npz");
-    char *member = calloc(1, 10 + strlen(dictionary) + data_size);
+    FREED char *member = calloc(1, 10 + strlen(dictionary) + data_size);
     memcpy(member, "\x93NUMPY\1\0", 8);
     member[8] = (char)(strlen(dictionary) & 0xff);
     member[9] = (char)(strlen(dictionary) >> 8);
     memcpy(member + 10, dictionary, strlen(dictionary));
     write_member(path, "array.npy", member, 10 + strlen(dictionary) + data_size, ZIP_CM_STORE);
-    free(member);
     return path;
 }
 
@@ -46,7 +45,7 @@ static void expect_head_refused(const char *dictionary, size_t data_size, const 
 /* What NumPy can write makes no other array of the file unreadable. */
 static void expect_foreign(const char *dictionary, size_t data_size, const char *reason) {
     const char *path = write_head(dictionary, data_size);
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     npz_convert(file);
     assert_true(npz_has(file, "array"));
     for (NpzType type = NPZ_FLOAT32; type <= NPZ_TEXT; type++)
@@ -55,7 +54,6 @@ static void expect_foreign(const char *dictionary, size_t data_size, const char 
             Error error = {0};
             assert_refused(npz_shape(file, "array", type, rank, shape, &error), path, "'array' is ", reason);
         }
-    npz_close(file);
 }
 
 #define HEAD(type, order, shape) "{'descr': '" type "', 'fortran_order': " order ", 'shape': " shape ", }\n"
@@ -73,8 +71,7 @@ TEST(heads_are_read_strictly) {
         "(3)",     "(3,2)",   "(,)", "(3, )", "(3, 2,)", "(-3, 2)", "(3, 2", "3", "(99999999999999999999,)",
         "( 3, 2)", "(3, 2) x"};
     for (size_t i = 0; i < sizeof damaged / sizeof damaged[0]; i++) {
-        char head[200];
-        snprintf(head, sizeof head, HEAD("<f4", "False", "%s"), damaged[i]);
+        const char *head = printed(HEAD("<f4", "False", "%s"), damaged[i]);
         expect_head_refused(head, 24, "damaged head");
     }
     expect_head_refused(HEAD("<f4", "Maybe", "(3, 2)"), 24, "damaged head");
@@ -196,13 +193,12 @@ TEST(small_files_cannot_hold_much) {
 
 /* A .npz of one array of `size` zeros of one byte, deflated by libzip. */
 static void write_zeros(const char *path, const char *type, size_t size) {
-    char *member = calloc(1, 128 + size);
+    FREED char *member = calloc(1, 128 + size);
     int head = snprintf(member + 10, 118, "{'descr': '%s', 'fortran_order': False, 'shape': (%zu,), }", type, size);
     memcpy(member, "\x93NUMPY\1\0v", 9);
     memset(member + 10 + head, ' ', 117 - (size_t)head);
     member[127] = '\n';
     write_member(path, "zeros.npy", member, 128 + size, ZIP_CM_DEFLATE);
-    free(member);
 }
 
 /* 16 MiB and 256 times the file. Zeros deflate to 1/1000, by npz_write() to 1/218. */
@@ -257,21 +253,20 @@ TEST(shapes_are_expected_without_data) {
     const NpzArray written[] = {{"a", NPZ_FLOAT32, 2, {3, 2}, numbers}, {"b", NPZ_FLOAT32, 0, {0}, numbers}};
     NpzArray expected[] = {{"b", NPZ_FLOAT32, 0, {0}, NULL}, {"a", NPZ_FLOAT32, 2, {3, 2}, NULL}};
     assert_ok(npz_write(path, written, 2, &error), error);
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     assert_ok(npz_expect(file, expected, 2, &error), error);
     expected[1].shape[0] = 2;
     assert_refused(npz_expect(file, expected, 2, &error), "array 'a' has shape (3, 2); expected (2, 2)");
     assert_ok(npz_expect(file, expected, 1, &error), error);
     expected[0].name = "c";
     assert_refused(npz_expect(file, expected, 1, &error), "has no array 'c'");
-    npz_close(file);
 }
 
 /* Directories of millions of entries, or thousands of directories, never reach libzip. */
 TEST(large_directories_are_refused) {
     const char *path = temporary_path("directory.npz");
     enum { SIZE = 1 << 20 };
-    char *data = calloc(SIZE, 1);
+    FREED char *data = calloc(SIZE, 1);
     for (size_t at = 0; at + 46 + 22 <= SIZE; at += 46) memcpy(data + at, "PK\1\2", 4);
     char *end = data + SIZE - 22;
     memset(end, 0, 22);
@@ -287,7 +282,6 @@ TEST(large_directories_are_refused) {
     memcpy(end - 20, "PK\6\7", 4);
     write_bytes(path, data, SIZE);
     expect_refused(path, "its directory is too large");
-    free(data);
 }
 
 /* A file of holes of more than 2 GiB. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the machine lacks is not blamed on the file. */
 #include "library_allocations.h"
+#include "owned.h"
 
 #include "base/npz.h"
 #include "cli/output_checks.h"
@@ -58,17 +59,14 @@ TEST_WITH(a_lack_of_descriptors_is_no_other_kind, NULL, allow_all) {
 static bool read_all(Error *error) {
     const int64_t shape[] = {300};
     bool done = false;
-    NpzFile *file = npz_open(path, error);
-    float *small = file != NULL ? npz_read(file, "small", NPZ_FLOAT32, 0, NULL, error) : NULL;
-    float *large = small != NULL ? npz_read(file, "large", NPZ_FLOAT32, 1, shape, error) : NULL;
+    OWN(NpzFile) *file = npz_open(path, error);
+    FREED float *small = file != NULL ? npz_read(file, "small", NPZ_FLOAT32, 0, NULL, error) : NULL;
+    FREED float *large = small != NULL ? npz_read(file, "large", NPZ_FLOAT32, 1, shape, error) : NULL;
     if (large != NULL) {
         assert_memory_equal(small, &numbers[7], sizeof *small);
         assert_memory_equal(large, numbers, sizeof numbers);
         done = true;
     }
-    free(small);
-    free(large);
-    npz_close(file);
     return done;
 }
 

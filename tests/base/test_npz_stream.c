@@ -76,15 +76,13 @@ TEST(rows_give_the_bytes_of_the_whole) {
     npz_stream_destroy(stream);
     assert_same_file(path, expected);
 
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     for (int i = 0; i < ARRAYS; i++) {
         if (row_size[i] == 0) continue;
-        void *read = npz_read(file, whole[i].name, whole[i].type, whole[i].rank, whole[i].shape, &error);
+        FREED void *read = npz_read(file, whole[i].name, whole[i].type, whole[i].rank, whole[i].shape, &error);
         assert_ok(read != NULL, error);
         assert_memory_equal(read, whole[i].data, (size_t)whole[i].shape[0] * row_size[i]);
-        free(read);
     }
-    npz_close(file);
 }
 
 TEST(blocks_are_deflated_where_that_pays) {
@@ -99,12 +97,9 @@ TEST(blocks_are_deflated_where_that_pays) {
 }
 
 TEST(an_unfinished_stream_leaves_nothing) {
-    char folder[256];
-    snprintf(folder, sizeof folder, "%s", temporary_path("unfinished"));
+    const char *folder = printed("%s", temporary_path("unfinished"));
     assert_int_equal(mkdir(folder, 0777), 0);
-    char path[300];
-    snprintf(path, sizeof path, "%s/run.npz", folder);
-    NpzStream *stream = npz_stream_create(path, 1, &error);
+    NpzStream *stream = npz_stream_create(printed("%s/run.npz", folder), 1, &error);
     assert_ok(stream != NULL, error);
     const int array = npz_stream_add(stream, &(NpzArray){"noise", NPZ_UINT32, 1, {0}, NULL}, &error);
     assert_ok(npz_stream_append(stream, array, noise, 2 * ROWS, &error), error);

@@ -61,15 +61,14 @@ TEST(numpy_reads_what_is_written) {
 
 static void expect_array(NpzFile *file, const NpzArray *wanted, size_t size) {
     Error error = {0};
-    void *data = npz_read(file, wanted->name, wanted->type, wanted->rank, wanted->shape, &error);
+    FREED void *data = npz_read(file, wanted->name, wanted->type, wanted->rank, wanted->shape, &error);
     assert_ok(data != NULL, error);
     assert_memory_equal(data, wanted->data, size);
-    free(data);
 }
 
 static void expect_arrays(const char *path) {
     Error error = {0};
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     expect_array(file, &(NpzArray){"matrix", NPZ_FLOAT32, 2, {3, 2}, matrix}, sizeof matrix);
     expect_array(file, &(NpzArray){"reals", NPZ_FLOAT64, 1, {2}, reals}, sizeof reals);
     expect_array(file, &(NpzArray){"cube", NPZ_INT32, 3, {2, 1, 2}, cube}, sizeof cube);
@@ -83,7 +82,6 @@ static void expect_arrays(const char *path) {
     assert_string_equal(got, text);
     assert_ok(npz_read_text(file, "nothing", got, sizeof got, &error), error);
     assert_string_equal(got, "");
-    npz_close(file);
 }
 
 #define MAKE                                                                                             \
@@ -112,13 +110,10 @@ TEST(what_numpy_writes_is_read) {
 
 static void expect_refused(const char *expression, const char *reason) {
     const char *path = temporary_path("refused.npz");
-    char program[512];
-    snprintf(program, sizeof program, "import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression);
-    run_python(program, path);
+    run_python(printed("import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression), path);
     Error error = {0};
-    NpzFile *file = npz_of(path);
+    OWN(NpzFile) *file = npz_of(path);
     assert_refused(npz_read(file, "array", NPZ_FLOAT32, 1, (const int64_t[]){3}, &error), reason, "'array' is ");
-    npz_close(file);
 }
 
 TEST(other_arrays_of_numpy_are_refused) {

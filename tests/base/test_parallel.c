@@ -43,7 +43,6 @@ static bool fail_backwards(void *context, int i, Error *error) {
 TEST(the_error_is_that_of_the_least_piece) {
     for (int i = 0; i < 10; i++) {
         atomic_int failed = 0;
-        error = (Error){0};
         assert_refused(parallel_for(&(ParallelWork){fail_backwards, &failed}, PIECES, "test", NULL, &error),
                        "piece: error: number 0");
     }

@@ -5,7 +5,6 @@
 #include "base/base.h"
 
 #include <locale.h>
-#include <math.h>
 
 static float parsed(const char *text) {
     float value = 0;
@@ -100,8 +99,7 @@ static void check_range(const char *text, double first, double step, int decimal
     assert_true(parse_range(text, 100000, &range));
     assert_int_equal(range.count, count);
     for (int i = 0; i < count; i++) {
-        char decimal[32];
-        snprintf(decimal, sizeof decimal, "%.*f", decimals, first + i * step);
+        const char *decimal = printed("%.*f", decimals, first + i * step);
         if (range_value(&range, i) != strtof(decimal, NULL)) fail_msg("%s: value %d is not %s", text, i, decimal);
     }
 }

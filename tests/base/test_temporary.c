@@ -80,9 +80,7 @@ static bool replace_file(const char *path, const char *text, Error *error) {
 }
 
 static bool create_file(const char *path, const char *text, Error *error) {
-    char other[300];
-    snprintf(other, sizeof other, "%s-created", path);
-    return file_create(other, text, strlen(text), error) && replace_file(path, text, error);
+    return file_create(printed("%s-created", path), text, strlen(text), error) && replace_file(path, text, error);
 }
 
 static bool publish_draft(const char *path, const char *text, Error *error) {
@@ -109,9 +107,7 @@ static int write_in_child(Write *write_file, const char *text, Call call) {
 static void make_folder(void) {
     static int made;
     Error error = {0};
-    char name[32];
-    snprintf(name, sizeof name, "folder-%d", made++);
-    snprintf(folder, sizeof folder, "%s", temporary_path(name));
+    snprintf(folder, sizeof folder, "%s", temporary_path(printed("folder-%d", made++)));
     assert_ok(file_make_directory(folder, &error), error);
 }
 

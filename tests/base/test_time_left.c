@@ -4,8 +4,6 @@
 
 #include "cli/progress_bar.h"
 
-#include <math.h>
-
 /* Work in two phases: `rate` 1/s up to `turn` s, then `rate_after`. */
 typedef struct Work {
     double rate, turn, rate_after;

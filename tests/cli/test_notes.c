@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What reaches standard error at each level. Time is that of the test: the linker replaces clock_seconds(). */
-#include "testing.h"
+#include "owned.h"
 #include "files.h"
 
 #include "base/base.h"
@@ -58,36 +58,32 @@ static void end_soon(NoteLevel level) {
 }
 
 TEST(the_last_line_in_a_file_is_the_end) {
-    char *text = printed_by(end_soon, NOTES_NORMAL);
+    FREED char *text = printed_by(end_soon, NOTES_NORMAL);
     const char *end = strstr(text, "short work: 100%\n");
     assert_non_null(end);
     assert_string_equal(end, "short work: 100%\n");
     assert_non_null(strstr(text, "short work: 85%"));
-    free(text);
 }
 
 TEST(quiet_prints_nothing) {
-    char *text = print_all(NOTES_QUIET);
+    FREED char *text = print_all(NOTES_QUIET);
     assert_string_equal(text, "");
-    free(text);
 }
 
 TEST(notes_and_progress_are_printed) {
-    char *text = print_all(NOTES_NORMAL);
+    FREED char *text = print_all(NOTES_NORMAL);
     assert_non_null(strstr(text, "work: 100%"));
     assert_non_null(strstr(text, "\ntwinbox: note: 1 is a note\n"));
     assert_null(strstr(text, "only with -v"));
     assert_null(strstr(text, "from below"));
-    free(text);
 }
 
 TEST(verbose_prints_all) {
-    char *text = print_all(NOTES_VERBOSE);
+    FREED char *text = print_all(NOTES_VERBOSE);
     assert_non_null(strstr(text, "work: 100%"));
     assert_non_null(strstr(text, "\ntwinbox: note: 1 is a note\ntwinbox: 2 is printed only with -v\n"
                                  "twinbox: 3 comes from below\n"));
     assert_string_equal(strstr(text, "twinbox: 3"), "twinbox: 3 comes from below\n");
-    free(text);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -25,9 +25,8 @@ static Trajectory *make_run(int frames) {
 static PageFile write_run(const PageSet *set, const char *name, int frames, const PlayerOptions *options) {
     Error error = {0};
     PageFile file;
-    Trajectory *run = make_run(frames);
+    OWN(Trajectory) *run = make_run(frames);
     assert_ok(page_set_write(set, name, (const Trajectory *const[]){run}, 1, options, &file, &error), error);
-    trajectory_destroy(run);
     return file;
 }
 
@@ -61,10 +60,9 @@ TEST(a_long_run_has_every_second_frame) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const PageFile file = write_run(&set, "a long/run", cases[i].frames, &cases[i].options);
         assert_string_equal(file.path, "pages/a_long_run.html");
-        char *text = read_page(&file);
+        FREED char *text = read_page(&file);
         if (strstr(text, cases[i].every) == NULL) fail_msg("case %d: not %s", (int)i, cases[i].every);
         assert_int_equal(strlen(text), file.bytes);
-        free(text);
     }
 }
 

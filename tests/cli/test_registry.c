@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A solver that only this test has is one definition and one line of the registry. Lists, charts, captions and the
    stability study then know it. */
-#include "testing.h"
+#include "owned.h"
 #include "files.h"
+#include "owned_drawings.h"
 
 #include "cli/cli.h"
 #include "cli/draw_panels.h"
@@ -52,27 +53,24 @@ static char *run_command(bool (*command)(int, char **, Error *), char **argv) {
 /* The command writes a table to the path, and the table has the text. */
 static void assert_table_has(bool (*command)(int, char **, Error *), char **argv, const char *path, const char *text) {
     free(run_command(command, argv));
-    char *table = text_of(path);
+    FREED char *table = text_of(path);
     if (strstr(table, text) == NULL) fail_msg("%s lacks %s", path, text);
-    free(table);
 }
 
 TEST(methods_lists_it) {
-    char *printed = run_command(command_methods, (char *[]){"twinbox methods", NULL});
+    FREED char *printed = run_command(command_methods, (char *[]){"twinbox methods", NULL});
     assert_non_null(strstr(printed, "\nof-test           a solver that only a test has\n"));
     assert_non_null(strstr(printed, "engine"));
-    free(printed);
 }
 
 TEST(every_study_has_it) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
-        ContenderList list;
+        OWN(ContenderList) list;
         assert_ok(contenders_parse(&list, NULL, study, &error), error);
         const Contender *last = &list.items[list.count - 1];
         assert_string_equal(last->name, "of-test");
         assert_string_equal(last->setting, "");
         assert_ptr_equal(last->method.kind->solver, &solver_of_test);
-        contenders_free(&list);
     }
 }
 
@@ -114,14 +112,13 @@ TEST(its_fallbacks_are_counted) {
     assert_int_equal(by_sweeps, steps);
     free(table);
     char *run[] = {"twinbox simulate", SOURCE_DIR "/scenes/single.yaml", "--frames", "7", "--method", "of-test", NULL};
-    char *printed = run_command(command_simulate, run);
+    FREED char *printed = run_command(command_simulate, run);
     assert_non_null(strstr(printed, "\n    steps solved by sweeps instead: 7\n"));
-    free(printed);
 }
 
 TEST(a_picture_has_its_caption) {
-    Picture picture;
-    Trajectory *run = run_make("of-test", 2);
+    OWN(Picture) picture;
+    OWN(Trajectory) *run = run_make("of-test", 2);
     const RenderOptions options = draw_panels_defaults(".");
     char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
     assert_ok(picture_plan(&picture, (const Trajectory *[]){run}, 1, 640, 360, &error), error);
@@ -129,8 +126,6 @@ TEST(a_picture_has_its_caption) {
     caption_method(&picture, 0, name, note);
     assert_string_equal(name, "of-test");
     assert_string_equal(note, "solver of a test");
-    picture_free(&picture);
-    trajectory_destroy(run);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -99,29 +99,6 @@ PYTHON
 equal "status where nobody reads" "${PIPESTATUS[0]}" 3
 complains "standard output: error: cannot write: Broken pipe"
 
-# Interrupted or killed: --resume ends with the same bytes (what it keeps and draws again: tests/pictures/test_manifest.c).
-run 0 simulate "$scenes/stack.yaml" --frames 120 -o long.npz
-film="render long.npz --size 640x360 --jobs 2 --slow 2 -o"
-run 0 $film whole
-for signal in INT KILL; do
-    rm -rf broken
-    strike $signal $([ $signal = INT ] && echo 130 || echo 137) "ls broken/*.png | grep -c . | grep -q [2-9]." $film broken
-    [ -e broken/manifest.json ] && fail "$signal came too late"
-    run 0 $film broken --resume
-    sed -n 's/.*, \([0-9]*\) of them kept/\1/p' out >kept
-    [ "$(cat kept)" -gt 0 ] && [ "$(cat kept)" -lt 165 ] || fail "$signal: kept $(cat kept)"
-    diff -r whole broken >out || fail "after $signal: $(cat out)"
-done
-cp broken/frame_000013.png broken/frame_000012.png
-run 0 $film broken --resume --video again.gif
-says ", 165 of them kept"
-diff -r whole broken || fail "a damaged frame"
-equal "frames of the video, a third of those at 60 a second" "$(count again.gif)" 56
-run 0 render short.npz -o broken --size 320x180 --resume
-says "nothing to resume: broken/manifest.json:"
-echo '{"mine": 1}' >broken/manifest.json
-unchanged broken "is not a manifest" render short.npz -o broken --size 320x180 --resume
-
 # No file is written outside the folder, whatever the name of a run.
 /usr/bin/python3 -c "
 import numpy
@@ -133,14 +110,4 @@ run 0 render evil.npz -o jail/frames --size 192x108
 equal "files in the folder" "$(ls jail/frames | grep -v '^frame_')" "$(printf '_._.._evil-_tmp_.._x.npz\nmanifest.json')"
 equal "folders beside it" "$(ls jail)" frames
 
-# Colours are those of methods, whatever their order; a chosen one redraws what an earlier call drew.
-colours() { sed -n 's/.*"method": "\([^"]*\)".*"colour": "\([^"]*\)".*/\1 \2/p' "$1/manifest.json" | sort; }
-few="--size 192x108 --frames 2"
-run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o there $few
-run 0 render pictures/single-pair-net.npz pictures/single-engine.npz -o back $few
-equal "colours in another order" "$(colours back)" "$(colours there)"
-run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o there $few --resume --colour pair-net=7a9a01
-says "0 of them kept"
-equal "a chosen colour" "$(colours there | sed -n 's/^pair-net.* //p')" "#7a9a01"
-equal "the other" "$(colours there | sed -n 's/^engine.* //p')" "#0072b2"
 finish

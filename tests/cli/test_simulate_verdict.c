@@ -26,12 +26,11 @@ TEST(a_run_that_overflows_has_a_verdict) {
     Error other = {0};
     size_t size;
     assert_ok(simulate_verdict_write(&verdict, temporary_path("v.json"), &other), other);
-    char *text = file_read(temporary_path("v.json"), 10000, &size, &other);
+    FREED char *text = file_read(temporary_path("v.json"), 10000, &size, &other);
     assert_ok(text != NULL, other);
     assert_non_null(strstr(text, "\"verdict\": \"non-finite\""));
     assert_non_null(strstr(text, "\"frame\": 69"));
     assert_non_null(strstr(text, "\"steps\": 69"));
-    free(text);
     simulate_verdict_free(&verdict);
 }
 

@@ -5,8 +5,6 @@
 #include "base/file.h"
 #include "cli/larger_commands.h"
 
-#include <math.h>
-
 #define HEADER "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"
 
 static CsvTable table;

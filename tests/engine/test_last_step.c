@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The contact problem of the last step and its solution stay valid when bodies are added after it: the bomb comes then. */
-#include "testing.h"
+#include "owned.h"
 
 #include "engine/engine.h"
 
@@ -21,7 +21,7 @@ static void add_box(World *world, float x) {
 }
 
 TEST(a_problem_outlives_added_bodies) {
-    World *world = world_create(&(WorldDef){.gravity = {0, -10}}, &error);
+    OWN(World) *world = world_create(&(WorldDef){.gravity = {0, -10}}, &error);
     assert_ok(world != NULL, error);
     for (int i = 0; i < BODIES; i++) add_box(world, 2.0f * (float)i);
     assert_ok(world_step(world, solve, NULL, 0.1f, &error), error);
@@ -43,7 +43,6 @@ TEST(a_problem_outlives_added_bodies) {
         assert_near(solution->velocities[i].linear.y, -1, 1e-6);
     }
     for (int i = 0; i < BLOCKS; i++) free(blocks[i]);
-    world_destroy(world);
 }
 
 RUN_TESTS(NULL, NULL)

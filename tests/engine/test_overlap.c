@@ -5,8 +5,6 @@
 
 #include "engine/engine.h"
 
-#include <math.h>
-
 /* The slop. */
 static const double depth = 0.01;
 

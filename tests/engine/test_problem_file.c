@@ -4,8 +4,6 @@
 
 #include "runs/runs.h"
 
-#include <math.h>
-
 enum { BODIES = 3, CONTACTS = 3 };
 
 /* A static ground, a box on it, and the bomb in the corner of both. */

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Contacts that are mended: which faces a box and a tile touch with, and from when on thin boxes touch. Answers follow from the
    places of the boxes. */
-#include "testing.h"
+#include "owned.h"
 
 #include "engine/engine.h"
-
-#include <math.h>
 
 /* A box of 0.8 m on the end of a tile of 1 m at x = 0, sunk by 5 mm, whose front is over the next tile. */
 typedef struct Place {
@@ -46,7 +44,7 @@ static Vec2 normal_at(const Place *place, bool mend) {
         turned(vec2(place->ahead - 0.4f, 0.395f), vec2(0.8f, 0.8f), 1, place)};
     ContactProblem problem;
     ContactSolution *solution;
-    World *world = world_create(&def, &error);
+    OWN(World) *world = world_create(&def, &error);
     assert_ok(world != NULL, error);
     for (int i = 0; i < 3; i++) assert_ok(world_add_body(world, &bodies[i], &error), error);
     world_set_contacts(world, (ContactRules){.mend = mend});
@@ -54,7 +52,6 @@ static Vec2 normal_at(const Place *place, bool mend) {
     const Vec2 first = normal_from(world, 0, place->angle), second = normal_from(world, 1, place->angle);
     assert_near(first.x, 0, 1e-5);
     assert_near(first.y, 1, 1e-5);
-    world_destroy(world);
     return second;
 }
 
@@ -115,13 +112,12 @@ static int contacts_of_plates(float thickness, float gap, ContactRules rules, Co
     const BodyDef above = {.size = {2, thickness}, .mass = 1, .position = {0, 0.5f * thickness + gap}};
     ContactProblem problem;
     ContactSolution *solution;
-    World *world = world_create(&def, &error);
+    OWN(World) *world = world_create(&def, &error);
     assert_ok(world != NULL && world_add_body(world, &below, &error) && world_add_body(world, &above, &error), error);
     world_set_contacts(world, rules);
     assert_ok(world_begin_step(world, 0.01f, &problem, &solution, &error), error);
     const int count = problem.contact_count;
     if (count > 0) *first = problem.contacts[0];
-    world_destroy(world);
     return count;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The step around the solver: what a contact problem holds, what persists, and what a failed step leaves. */
-#include "testing.h"
+#include "owned.h"
 
 #include "engine/engine.h"
 
@@ -42,7 +42,7 @@ static void step(World *world, FakeSolver *fake) {
 /* A unit box of mass 3 (inertia m (1 + 1) / 12 = 0.5) whose corners are 0.5 m below and beside its centre:
    1/m_n = 1/3 + (1/0.5) 0.5^2, and the same along the tangent. Depth 0.03 m: bias = 0.2 / dt (0.03 - 0.01). */
 TEST(a_contact_problem_holds_what_the_step_froze) {
-    World *world = box_on_ground(true, true, 0.47f);
+    OWN(World) *world = box_on_ground(true, true, 0.47f);
     FakeSolver fake = {0};
     world_set_bomb(world, 1);
     step(world, &fake);
@@ -65,20 +65,18 @@ TEST(a_contact_problem_holds_what_the_step_froze) {
         assert_near(contact->arm_b.x, i == 0 ? -0.5 : 0.5, 1e-5);
         assert_near(contact->arm_b.y, -0.47, 1e-5);
     }
-    world_destroy(world);
 }
 
 TEST(position_correction_can_be_switched_off) {
-    World *world = box_on_ground(true, false, 0.47f);
+    OWN(World) *world = box_on_ground(true, false, 0.47f);
     FakeSolver fake = {0};
     step(world, &fake);
     assert_near(world_problem(world)->contacts[0].bias, 0, 0);
-    world_destroy(world);
 }
 
 /* The impulses of a step come back as the warm start of the next, point by point; not once the pair has parted. */
 TEST(impulses_persist_while_the_pair_touches) {
-    World *world = box_on_ground(true, true, 0.495f);
+    OWN(World) *world = box_on_ground(true, true, 0.495f);
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
     assert_near(world_problem(world)->contacts[1].warm_normal, 0, 0);
@@ -95,17 +93,15 @@ TEST(impulses_persist_while_the_pair_touches) {
     step(world, &fake);
     assert_int_equal(world_problem(world)->contact_count, 2);
     assert_near(world_problem(world)->contacts[0].warm_normal, 0, 0);
-    world_destroy(world);
 }
 
 TEST(warm_starting_can_be_switched_off) {
-    World *world = box_on_ground(false, true, 0.495f);
+    OWN(World) *world = box_on_ground(false, true, 0.495f);
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
     step(world, &fake);
     assert_int_equal(world_problem(world)->contact_count, 2);
     assert_near(world_problem(world)->contacts[0].warm_normal, 0, 0);
-    world_destroy(world);
 }
 
 static void fail_step(World *world, FakeSolver *fake, const char *message) {
@@ -118,7 +114,7 @@ static void fail_step(World *world, FakeSolver *fake, const char *message) {
 
 /* Unchanged means: the bodies, and the impulses that the next step starts from. */
 TEST(a_step_that_fails_leaves_the_world_unchanged) {
-    World *world = box_on_ground(true, true, 0.495f);
+    OWN(World) *world = box_on_ground(true, true, 0.495f);
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
     fail_step(world, &(FakeSolver){.impulse = 99, .fails = true}, "told to fail");
@@ -126,12 +122,11 @@ TEST(a_step_that_fails_leaves_the_world_unchanged) {
     fail_step(world, &(FakeSolver){.impulse = 99, .velocity = NAN}, "the state of body 1 is NaN or infinite");
     step(world, &fake);
     assert_near(world_problem(world)->contacts[0].warm_normal, 7, 0);
-    world_destroy(world);
 }
 
 /* A copy continues as the original does, impulses included; a step that is begun and not ended changes neither. */
 TEST(a_copy_goes_on_as_the_original) {
-    World *world = box_on_ground(true, true, 0.495f), *copy = box_on_ground(false, false, 3);
+    OWN(World) *world = box_on_ground(true, true, 0.495f), *copy = box_on_ground(false, false, 3);
     FakeSolver fake = {.impulse = 7, .velocity = -0.1f};
     step(world, &fake);
     assert_ok(world_copy(copy, world, &error), error);
@@ -146,13 +141,11 @@ TEST(a_copy_goes_on_as_the_original) {
         assert_memory_equal(world_bodies(world), world_bodies(copy), 2 * sizeof(Body));
         assert_near(world_problem(copy)->contacts[1].warm_normal, 7 + (float)i + 1, 0);
     }
-    world_destroy(world);
-    world_destroy(copy);
 }
 
 /* Poses from the method, velocities from the solution. */
 TEST(a_step_can_end_at_poses_given) {
-    World *world = box_on_ground(true, true, 2);
+    OWN(World) *world = box_on_ground(true, true, 2);
     ContactProblem problem;
     ContactSolution *solution;
     assert_ok(world_begin_step(world, dt, &problem, &solution, &error), error);
@@ -162,7 +155,6 @@ TEST(a_step_can_end_at_poses_given) {
     assert_near(world_bodies(world)[1].position.x, 4, 0);
     assert_near(world_bodies(world)[1].angle, 6, 0);
     assert_near(world_bodies(world)[1].angular_velocity, 3, 0);
-    world_destroy(world);
 }
 
 /* Ground, a box on it and a box on that; each pair touches in two points. */
@@ -180,7 +172,7 @@ static void expect_warm(const World *world, int contact, float warm) {
 
 /* What the step did can be read until the next, which has the others' contacts and their impulses. */
 TEST(a_body_taken_out_takes_its_contacts_with_it) {
-    World *world = two_boxes_on_ground(vec2(1, 1));
+    OWN(World) *world = two_boxes_on_ground(vec2(1, 1));
     FakeSolver fake = {.impulse = 7};
     world_set_bomb(world, 2);
     step(world, &fake);
@@ -194,7 +186,6 @@ TEST(a_body_taken_out_takes_its_contacts_with_it) {
     assert_int_equal(world_problem(world)->bomb, -1);
     assert_int_equal(world_problem(world)->contact_count, 2);
     for (int i = 0; i < 2; i++) expect_warm(world, i, 7 + (float)i);
-    world_destroy(world);
 }
 
 /* A body added in its place has neither its impulses nor its box; a copy made meanwhile continues alike. */
@@ -222,7 +213,7 @@ TEST(a_body_in_the_place_of_one_taken_out_starts_anew) {
 TEST(too_many_pairs_are_refused) {
     const WorldDef def = {.gravity = {0, -10}};
     const BodyDef box = {.size = {1, 1}, .mass = 1};
-    World *world = world_create(&def, &error);
+    OWN(World) *world = world_create(&def, &error);
     ContactProblem problem;
     ContactSolution *solution;
     for (int i = 0; i < 1448; i++) assert_ok(world_add_body(world, &box, &error), error);
@@ -233,17 +224,15 @@ TEST(too_many_pairs_are_refused) {
     error = (Error){0};
     world_remove_last_body(world);
     assert_ok(world_begin_step(world, 0.01f, &problem, &solution, &error), error);
-    world_destroy(world);
 }
 
 TEST(fixed_bodies_stay) {
-    World *world = box_on_ground(true, true, 5);
+    OWN(World) *world = box_on_ground(true, true, 5);
     FakeSolver fake = {0};
     for (int i = 0; i < 10; i++) step(world, &fake);
     assert_near(world_bodies(world)[0].position.y, -10, 0);
     assert_near(world_bodies(world)[0].inv_mass, 0, 0);
     assert_int_equal(world_body_count(world), 2);
-    world_destroy(world);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -7,8 +7,6 @@
 #include "pixels/png.h"
 #include "pixels/type.h"
 
-#include <math.h>
-
 /* What counts as a fault. Lengths in mm. */
 static const double touch = 0.08;         /* boxes and lines that meet by less are beside each other */
 static const double least_contrast = 4.5; /* WCAG 2, of small text */

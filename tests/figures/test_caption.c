@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Captions for LaTeX: what they state, and that no name breaks them. */
-#include "testing.h"
+#include "owned.h"
 #include "files.h"
 
 #include "figures/figures_internal.h"
@@ -41,9 +41,8 @@ TEST(every_character_stands_for_itself) {
                                            {"", ""}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         size_t size;
-        char *text = file_print(print_text, cases[i][0], &size);
+        FREED char *text = file_print(print_text, cases[i][0], &size);
         assert_string_equal(text, cases[i][1]);
-        free(text);
     }
 }
 

@@ -169,10 +169,9 @@ TEST(maps_and_borders) {
     static const int shapes[][3] = {{1, 1, 1}, {1, 8, 2}, {3, 4, 4}, {4, 12, 12}, {9, 30, 20}};
     char *borders = text_of(SOURCE_DIR "/golden/stability.csv");
     for (int i = 0; i < 5; i++) {
-        char *maps = make_map(shapes[i][0], shapes[i][1], shapes[i][2]);
+        FREED char *maps = make_map(shapes[i][0], shapes[i][1], shapes[i][2]);
         start_afresh(maps, i % 2 == 0 ? borders : BORDERS ONE_BORDER);
         draw();
-        free(maps);
     }
     free(borders);
     assert_clear(&faults);
@@ -201,9 +200,8 @@ TEST(figures_of_the_paper) {
         size_t size;
         snprintf(name, sizeof name, "%s.csv", tables[i]);
         snprintf(path, sizeof path, SOURCE_DIR "/tests/paper/figures/%s", name);
-        char *text = read_whole(path, &size);
+        FREED char *text = read_whole(path, &size);
         write_bytes(temporary_path(name), text, size);
-        free(text);
     }
     assert_ok(plots_draw(temporary_folder, NULL, &error), error);
     assert_ok(illustrations_draw(SOURCE_DIR "/scenes", temporary_folder, &error), error);
@@ -262,7 +260,7 @@ TEST(faults_are_found) {
 /* A picture behind a text: dark pixels under a part of its letters. */
 TEST(texts_on_pictures_are_seen) {
     Sketch sketch;
-    Image *image = image_create(40, 20, &error);
+    OWN(Image) *image = image_create(40, 20, &error);
     assert_non_null(image);
     for (int i = 0; i < 40 * 20; i++)
         memcpy(image->pixels + 4 * i, i % 40 < 20 ? "\xFF\xFF\xFF\xFF" : "\0\x72\xB2\xFF", 4);
@@ -273,7 +271,6 @@ TEST(texts_on_pictures_are_seen) {
                     "2 out of view");
         over ? expect_fault(&sketch, "has a contrast of") : expect_none(&sketch);
     }
-    image_destroy(image);
 }
 
 RUN_TESTS(NULL, NULL)

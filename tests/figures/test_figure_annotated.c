@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "figures/run_figure.h"
 #include "pictures/mesa.h"
 #include "figures/sketch.h"
 #include "pixels/type.h"
-
-#include <math.h>
 
 static void add(Trajectory *run, int step, int a, int b, Vec2 point, float normal, float tangent) {
     Error error = {0};
@@ -126,7 +124,7 @@ static bool is_led(const Sketch *sketch, Point point, const PageBox *box) {
    rings, and at the end of a line from its contact, or clearly nearest to it. */
 TEST(crowded_numbers_lead_to_their_contacts) {
     enum { CONTACTS = 6 };
-    Trajectory *run = run_make("engine", 2);
+    OWN(Trajectory) *run = run_make("engine", 2);
     for (int i = 0; i < CONTACTS; i++)
         add(run, 1, SECOND_BOX, BOMB_BODY, vec2(1.5f + 0.08f * (float)(i * i % 5), 0.2f + 0.13f * (float)i),
             0.11f * (float)(i + 1), 0);
@@ -139,9 +137,7 @@ TEST(crowded_numbers_lead_to_their_contacts) {
         PageBox boxes[CONTACTS];
         draw_kind(&sketch, "annotated", &spec);
         for (int i = 0; i < CONTACTS; i++) {
-            char words[16];
-            snprintf(words, sizeof words, "%.2f", 0.11 * (i + 1));
-            boxes[i] = number_box(&sketch, words);
+            boxes[i] = number_box(&sketch, printed("%.2f", 0.11 * (i + 1)));
             const double own = distance_to_box(ring_at(&sketch, i), &boxes[i]);
             const bool led = is_led(&sketch, ring_at(&sketch, i), &boxes[i]);
             for (int k = 0; k < CONTACTS; k++) {
@@ -154,7 +150,6 @@ TEST(crowded_numbers_lead_to_their_contacts) {
         }
         sketch_free(&sketch);
     }
-    trajectory_destroy(run);
 }
 
 /* A hundred points in one place: some numbers are left out, and the title states it. */
@@ -168,8 +163,7 @@ TEST(numbers_without_room_are_left_out) {
     Sketch sketch;
     draw_kind(&sketch, "annotated", &spec);
     int written = count_texts(&sketch, "0.10") + count_texts(&sketch, "3.00");
-    char line[64];
-    snprintf(line, sizeof line, "101 contacts, impulses in N s, %d labelled", written);
+    const char *line = printed("101 contacts, impulses in N s, %d labelled", written);
     assert_true(written > 1 && written < 40);
     assert_int_equal(count_texts(&sketch, line), 1);
     assert_int_equal(count_texts(&sketch, "3.00"), 1);
@@ -177,7 +171,7 @@ TEST(numbers_without_room_are_left_out) {
 }
 
 TEST(what_cannot_be_shown_is_refused) {
-    Trajectory *without = run_make("engine", 5), *run = run_with_contacts();
+    OWN(Trajectory) *without = run_make("engine", 5), *run = run_with_contacts();
     FigureSpec spec = spec_of(&without, 1);
     expect_kind_refused("annotated", &spec, "a.npz: error: the run has no contacts with an impulse");
     spec = spec_of(&run, 1);
@@ -192,8 +186,6 @@ TEST(what_cannot_be_shown_is_refused) {
     run->contact_start[1] = run->contact_start[2];
     expect_kind_refused("annotated", &spec,
                         "a.npz: error: has no contacts with an impulse in the step after 0.0166667 s");
-    trajectory_destroy(without);
-    trajectory_destroy(run);
 }
 
 RUN_TESTS(NULL, NULL)

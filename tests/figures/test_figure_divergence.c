@@ -4,8 +4,6 @@
 #include "figures/sketch.h"
 #include "figures/run_figure.h"
 
-#include <math.h>
-
 #define STACK SOURCE_DIR "/scenes/stack.yaml"
 
 /* The second box of a run departs by a factor of ten every tenth of a second, from the first frame on. */
@@ -56,11 +54,10 @@ TEST(a_plot_places_decades_evenly) {
 }
 
 static Trajectory *simulate_stack(const char *method_name, float bomb_shift, int frames) {
-    Scene *scene = scene_from(STACK);
+    OWN(Scene) *scene = scene_from(STACK);
     scene->frames = frames;
     Trajectory *run = run_by(scene, method_name);
     for (int frame = 0; frame <= frames; frame++) run->position[frame * run->bodies + run->bomb].x += bomb_shift;
-    scene_destroy(scene);
     return run;
 }
 
@@ -93,10 +90,6 @@ TEST(the_band_begins_with_the_shift) {
 TEST(what_cannot_be_shown_is_refused) {
     Trajectory *runs[] = {run_make("engine", 11), run_make("engine", 11)};
     FigureSpec spec = spec_of(runs, 2);
-    expect_kind_refused("divergence", &spec, "b.npz: error: never diverges from a.npz");
-    runs[1]->size[1] = vec2(3, 3);
-    expect_kind_refused("divergence", &spec, "b.npz: error: cannot be shown beside a.npz");
-    runs[1]->size[1] = runs[0]->size[1];
     spec.scene = STACK;
     expect_kind_refused("divergence", &spec, "that run does not state its scene_hash");
     runs[0]->scene_hash = 1;

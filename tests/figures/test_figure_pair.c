@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "figures/figure.h"
 #include "figures/run_figure.h"
-
-#include <math.h>
 
 static void add(Trajectory *run, int step, int a, int b) {
     Error error = {0};
@@ -31,7 +29,7 @@ static Trajectory *run_touching(void) {
 }
 
 TEST(the_pairs_own_numbers_are_written) {
-    Trajectory *run = run_touching();
+    OWN(Trajectory) *run = run_touching();
     FigureSpec spec = spec_of(&run, 1);
     for (int column = 0; column < 2; column++) {
         if (column) spec.width = FIGURE_COLUMN_WIDTH;
@@ -49,7 +47,6 @@ TEST(the_pairs_own_numbers_are_written) {
         assert_near(sketch.width, spec.width, 0);
         sketch_free(&sketch);
     }
-    trajectory_destroy(run);
 }
 
 /* Typical pairs of runs, with any normal: after the rotation the normal points up out of the reference box, and
@@ -87,7 +84,7 @@ TEST(turning_changes_no_length) {
 }
 
 TEST(what_cannot_be_shown_is_refused) {
-    Trajectory *run = run_touching(), *without = run_make("engine", 3);
+    OWN(Trajectory) *run = run_touching(), *without = run_make("engine", 3);
     FigureSpec spec = spec_of(&without, 1);
     expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two dynamic bodies touch");
     spec = spec_of(&run, 1);
@@ -103,8 +100,6 @@ TEST(what_cannot_be_shown_is_refused) {
     spec.times[0] = 3 / 60.0;
     *run_position(run, 3, SECOND_BOX) = vec2(9, 9);
     expect_kind_refused("narrow-phase", &spec, "touch in the step after 0.05 s, but not at the poses");
-    trajectory_destroy(run);
-    trajectory_destroy(without);
 }
 
 RUN_TESTS(NULL, NULL)

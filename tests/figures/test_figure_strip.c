@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "figures/run_figure.h"
 #include "pixels/type.h"
@@ -70,7 +70,7 @@ TEST(a_given_height_is_filled) {
 
 /* Only what is asked for sets the window: the boxes stand near the ground, the bomb falls from 5.6 m. */
 TEST(the_bodies_in_question_set_the_window) {
-    Trajectory *run = run_make("engine", 3);
+    OWN(Trajectory) *run = run_make("engine", 3);
     *run_position(run, 2, SECOND_BOX) = vec2(-50, 3);
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 1; /* the last */
@@ -85,7 +85,6 @@ TEST(the_bodies_in_question_set_the_window) {
     sketch_free(&sketch);
     spec.body_count = 1, spec.bodies[0] = run->bodies;
     expect_kind_refused("strip", &spec, "--bodies: error: there is no body");
-    trajectory_destroy(run);
 }
 
 TEST(who_has_left_is_counted) {
@@ -125,7 +124,7 @@ TEST(names_are_never_cut) {
     static const char *const names[] = {"momentum:k=20", "playback:launches=a-name-that-fits-nowhere.csv"};
     int beside = 0, above = 0;
     for (int i = 0; i < 2; i++) {
-        Trajectory *run = run_make(names[i], 61);
+        OWN(Trajectory) *run = run_make(names[i], 61);
         FigureSpec spec = spec_of(&run, 1);
         for (int moments = 2; moments <= 12; moments += 5)
             for (spec.width = 60 + 14 * moments; spec.width < 260; spec.width += 41.5) {
@@ -142,27 +141,8 @@ TEST(names_are_never_cut) {
                 beside += turned > 0, above += turned == 0;
                 sketch_free(&sketch);
             }
-        trajectory_destroy(run);
     }
     assert_true(beside > 0 && above > 0);
-}
-
-TEST(what_cannot_be_shown_is_refused) {
-    Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 11)};
-    FigureSpec spec = spec_of(runs, 2);
-    spec.time_count = 1;
-    spec.times[0] = 0.3;
-    expect_kind_refused("strip", &spec, "b.npz: error: has no moment at 0.3 s; its moments are 0 to 0.16666");
-    spec.times[0] = -1;
-    expect_kind_refused("strip", &spec, "a.npz: error: has no moment at -1 s");
-    spec.time_count = 0, spec.moments = 60;
-    expect_kind_refused("strip", &spec, "60 moments of 2 runs leave");
-    spec.moments = 1;
-    runs[1]->size[2] = vec2(3, 3);
-    expect_kind_refused("strip", &spec, "b.npz: error: cannot be shown beside a.npz:");
-    assert_refused(figure_kind("stripe", &error), "'stripe' is not a kind of figure; did you mean 'strip'?");
-    trajectory_destroy(runs[0]);
-    trajectory_destroy(runs[1]);
 }
 
 RUN_TESTS(NULL, NULL)

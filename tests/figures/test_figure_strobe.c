@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "figures/run_figure.h"
 #include "pictures/mesa.h"
-
-#include <math.h>
 
 /* The first box rests; the second, two metres wide, moves right by a metre per frame; no bomb. */
 static Trajectory *run_rolling(void) {
@@ -76,7 +74,7 @@ TEST(the_bombs_way_is_drawn_and_timed) {
 }
 
 TEST(moments_are_as_many_as_asked_for) {
-    Trajectory *run = run_make("engine", 21);
+    OWN(Trajectory) *run = run_make("engine", 21);
     FigureSpec spec = spec_of(&run, 1);
     Sketch sketch;
     draw_kind(&sketch, "strobe", &spec);
@@ -88,7 +86,6 @@ TEST(moments_are_as_many_as_asked_for) {
     sketch_free(&sketch);
     spec.time_count = 1, spec.times[0] = 1;
     expect_kind_refused("strobe", &spec, "a.npz: error: has no moment at 1 s");
-    trajectory_destroy(run);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The part of the world that figures of runs show. */
-#include "testing.h"
+#include "owned.h"
 
 #include "figures/run_figure.h"
 #include "figures/figures_internal.h"
@@ -17,7 +17,7 @@ static void assert_same(WorldWindow a, WorldWindow b) {
 
 /* The box is in the middle in the frames before, and far away in the last one shown. */
 TEST(a_body_that_has_flown_off_changes_nothing) {
-    Trajectory *run = run_make("engine", 12);
+    OWN(Trajectory) *run = run_make("engine", 12);
     const FigureSpec spec = spec_of(&run, 1);
     for (int frame = 0; frame < 12; frame++) *run_position(run, frame, FIRST_BOX) = vec2(0, 0.5F);
     const WorldWindow before = run_window(&spec, frames, COUNT);
@@ -25,7 +25,6 @@ TEST(a_body_that_has_flown_off_changes_nothing) {
         *run_position(run, 11, FIRST_BOX) = vec2(-far, far);
         assert_same(run_window(&spec, frames, COUNT), before);
     }
-    trajectory_destroy(run);
 }
 
 static bool shows(const WorldWindow *window, double x, double y) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Placement of labels. */
-#include "testing.h"
+#include "owned.h"
 
 #include "figures/sketch.h"
 
@@ -12,7 +12,7 @@ static LabelField *field_10_by_10(void) {
 }
 
 TEST(labels_go_where_nothing_is) {
-    LabelField *field = field_10_by_10();
+    FREED LabelField *field = field_10_by_10();
     PageBox box;
     /* The right is preferred, then left, above, below. */
     assert_true(label_place(field, 5, 5, 1, 2, 1, false, &box));
@@ -25,20 +25,18 @@ TEST(labels_go_where_nothing_is) {
     assert_true(label_place(field, 5, 5, 1, 2, 1, false, &box));
     assert_near(box.bottom, 6, 1e-12);
     assert_near(box.left, 4, 1e-12);
-    free(field);
 }
 
 TEST(labels_stay_inside_the_frame) {
-    LabelField *field = field_10_by_10();
+    FREED LabelField *field = field_10_by_10();
     PageBox box;
     assert_true(label_place(field, 9, 9.5, 0.5, 2, 1, false, &box));
     assert_true(box.right <= 10 && box.top <= 10);
     assert_false(label_place(field, 5, 5, 0.5, 11, 1, true, &box));
-    free(field);
 }
 
 TEST(only_what_must_be_there_crosses_a_line) {
-    LabelField *field = field_10_by_10();
+    FREED LabelField *field = field_10_by_10();
     PageBox box;
     for (int i = 0; i <= 20; i++) label_add_segment(field, (Segment){0, 0.5 * i, 10, 0.5 * i});
     assert_false(label_place(field, 5, 5, 1, 2, 1, false, &box));
@@ -46,7 +44,6 @@ TEST(only_what_must_be_there_crosses_a_line) {
     /* But nothing covers a mark. */
     label_add_box(field, (PageBox){0, 0, 10, 10});
     assert_false(label_place(field, 5, 5, 1, 2, 1, true, &box));
-    free(field);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -6,8 +6,6 @@
 
 #include "pixels/type.h"
 
-#include <math.h>
-
 TEST(an_axis_has_room_for_its_values) {
     PlotAxis axis = plot_log_axis(1, 1000, "");
     assert_true(axis.low < 1 && axis.low > 0.5 && axis.high > 1000 && axis.high < 2000);

@@ -9,8 +9,8 @@
 #include "pixels/type.h"
 
 #include <inttypes.h>
-#include <math.h>
-#include <stdlib.h>
+
+OWNED_VALUE(Sketch, sketch_free)
 
 /* Ten pixels per mm. */
 static const SketchOutput white = {254, false, false}, clear = {254, true, false}, outlines = {254, false, true};
@@ -27,10 +27,9 @@ static Image *as_pixels(const Sketch *sketch, const SketchOutput *output) {
 
 /* Covered area of a transparent sketch, square mm. */
 static double covered(Sketch *sketch) {
-    Image *image = as_pixels(sketch, &clear);
+    OWN(Image) *image = as_pixels(sketch, &clear);
     double sum = 0;
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) sum += image->pixels[4 * i + 3];
-    image_destroy(image);
     sketch_free(sketch);
     return sum / 255 / 100;
 }
@@ -81,7 +80,7 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
 }
 
 TEST(shapes_lie_at_their_place_and_colour) {
-    Sketch sketch;
+    OWN(Sketch) sketch;
     sketch_begin(&sketch, 10, 10);
     sketch_rectangle(&sketch, (Point){2, 1}, (Point){5, 6}, &(Pen){0x204060, 1, NO_COLOUR, 0, NULL});
     sketch_rectangle(&sketch, (Point){4, 1}, (Point){5, 6}, &(Pen){0xFFFFFF, 0.2, NO_COLOUR, 0, NULL});
@@ -97,24 +96,20 @@ TEST(shapes_lie_at_their_place_and_colour) {
     expect_pixel(image, 19, 50, 0);
     expect_pixel(image, 20, 40, 0x204060FF);
     image_destroy(image);
-    sketch_free(&sketch);
 }
 
 TEST(a_picture_of_its_places_size_keeps_its_pixels) {
-    Sketch sketch;
-    Image *picture = image_sized(20, 10);
+    OWN(Sketch) sketch;
+    OWN(Image) *picture = image_sized(20, 10);
     for (int i = 0; i < 20 * 10 * 4; i++) picture->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(i * 37);
     picture->pixels[3] = 0;
     sketch_begin(&sketch, 10, 5);
     sketch_image(&sketch, picture, (Point){3, 2}, 2);
-    Image *image = as_pixels(&sketch, &white);
+    OWN(Image) *image = as_pixels(&sketch, &white);
     expect_pixel(image, 30, 20, 0xFFFFFFFF);
     for (int y = 0; y < 10; y++)
         for (int x = 0; x < 20; x++)
             if (x + y > 0) assert_memory_equal(pixel(image, 30 + x, 20 + y), pixel(picture, x, y), 4);
-    image_destroy(image);
-    image_destroy(picture);
-    sketch_free(&sketch);
 }
 
 /* Left and right edge of everything not white, mm. */
@@ -150,7 +145,7 @@ TEST(words_are_as_wide_as_they_say) {
 }
 
 static void draw_something(Sketch *sketch) {
-    Image *picture = image_sized(3, 2);
+    OWN(Image) *picture = image_sized(3, 2);
     for (int i = 0; i < 3 * 2 * 4; i++) picture->pixels[i] = (uint8_t)(i * 37);
     sketch_begin(sketch, 30, 20);
     strcpy(sketch->title, "Something <new>");
@@ -158,7 +153,6 @@ static void draw_something(Sketch *sketch) {
     sketch_text(sketch, (Point){15, 10}, &(TextStyle){8, TEXT_CENTER, 0x123456, 30, true}, "a < b & \"c\" \xFF\x01 ±");
     sketch_rectangle(sketch, (Point){1, 1}, (Point){9, 9}, &(Pen){0x336699, 0.25, 0, 1, "(3,2)"});
     sketch_arrow(sketch, (Point){1, 1}, (Point){20, 9}, HEADS_AT_BOTH, 0, 2);
-    image_destroy(picture);
 }
 
 /* With and without a white page, in every format. The hashes are equal on Debian 12 and 13. */
@@ -171,7 +165,7 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
         {"a.svg", 0x77c28023e196dc9c, 0x59a07ad45902c0cd},
         {"a.pdf", 0x1ec4adee1acfa27e, 0x04ccdd4df6961d22},
     };
-    Sketch sketch;
+    OWN(Sketch) sketch;
     draw_something(&sketch);
     for (int i = 0; i < 2 * SKETCH_FORMATS; i++) {
         const bool transparent = i % 2 == 1;
@@ -185,15 +179,14 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
             fail_msg("%s%s: other bytes, with the hash 0x%016" PRIx64, expected[i / 2].name,
                      transparent ? ", transparent" : "", hash);
     }
-    sketch_free(&sketch);
 }
 
 /* Text is text, in a font that the file brings; or outlines, without the font. */
 TEST(an_svg_has_its_words) {
-    Sketch sketch;
+    OWN(Sketch) sketch;
     size_t size;
     draw_something(&sketch);
-    char *svg = sketch_as_svg(&sketch, &white, &size, &error);
+    FREED char *svg = sketch_as_svg(&sketch, &white, &size, &error);
     assert_ok(svg != NULL, error);
     assert_non_null(strstr(svg, ">a &lt; b &amp; &quot;c&quot; ?? ±</text>"));
     assert_non_null(strstr(svg, "<title>Something &lt;new></title>"));
@@ -201,16 +194,13 @@ TEST(an_svg_has_its_words) {
     assert_non_null(
         strstr(svg, "font-family=\"Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif\""));
     /* centred at (15, 10), capitals' middle 0.3635 em above the baseline, turned by 30 degrees */
-    char text[160];
     const double em = 8 * MM_PER_POINT;
-    snprintf(text, sizeof text,
-             "<text transform=\"translate(%.3f %.3f) rotate(-30)\" font-size=\"%.4f\" fill=\"#123456\" "
-             "text-anchor=\"middle\" stroke=\"#FFFFFF\"",
-             15 + TYPE_MIDDLE * em * sin(M_PI / 6), 10 + TYPE_MIDDLE * em * cos(M_PI / 6), em);
+    const char *text =
+        printed("<text transform=\"translate(%.3f %.3f) rotate(-30)\" font-size=\"%.4f\" fill=\"#123456\" "
+                "text-anchor=\"middle\" stroke=\"#FFFFFF\"",
+                15 + TYPE_MIDDLE * em * sin(M_PI / 6), 10 + TYPE_MIDDLE * em * cos(M_PI / 6), em);
     assert_non_null(strstr(svg, text));
     assert_null(strstr(svg, "aria-label"));
-    free(svg);
-    sketch_free(&sketch);
 }
 
 /* The program prints this text, without blank lines, first. */
@@ -219,21 +209,19 @@ static void expect_printed(const char *program, const char *path, const char *wa
     Process process;
     char text[2000];
     const char *const out = temporary_path("printed.txt");
-    char command[1000];
-    snprintf(command, sizeof command, "%s %s %s | grep . >%s", program, path,
-             strcmp(program, "pdftotext") == 0 ? "-" : "", out);
+    const char *command =
+        printed("%s %s %s | grep . >%s", program, path, strcmp(program, "pdftotext") == 0 ? "-" : "", out);
     assert_ok(process_start(&process, (const char *const[]){"sh", "-c", command, NULL}, &error), error);
     assert_ok(process_finish(&process, text, sizeof text, &error), error);
-    char *printed = text_of(out);
+    FREED char *printed = text_of(out);
     if (strncmp(printed, wanted, strlen(wanted)) != 0) fail_msg("%s prints '%s', not '%s'", program, printed, wanted);
-    free(printed);
 }
 
 TEST(an_svg_of_outlines_needs_no_font) {
-    Sketch sketch;
+    OWN(Sketch) sketch;
     size_t size;
     draw_something(&sketch);
-    char *svg = sketch_as_svg(&sketch, &outlines, &size, &error);
+    FREED char *svg = sketch_as_svg(&sketch, &outlines, &size, &error);
     assert_ok(svg != NULL, error);
     assert_null(strstr(svg, "<text"));
     assert_null(strstr(svg, "font"));
@@ -241,8 +229,6 @@ TEST(an_svg_of_outlines_needs_no_font) {
     assert_non_null(strstr(svg, "width=\"30.000mm\" height=\"20.000mm\" viewBox=\"0 0 30.000 20.000\""));
     assert_non_null(strstr(svg, "M1.000 19.000L9.000 19.000L9.000 11.000L1.000 11.000Z\" fill=\"#336699\" "
                                 "fill-opacity=\"0.250\" stroke=\"#000000\" stroke-width=\"0.170\""));
-    free(svg);
-    sketch_free(&sketch);
 }
 
 /* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
@@ -266,7 +252,7 @@ TEST(a_pdf_has_a_valid_object_table) {
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
-    char *pdf = sketch_as_pdf(&sketch, &white, &size, &error);
+    FREED char *pdf = sketch_as_pdf(&sketch, &white, &size, &error);
     assert_ok(pdf != NULL, error);
     sketch_free(&sketch);
     assert_memory_equal(pdf, "%PDF-1.5\n", 9);
@@ -278,9 +264,8 @@ TEST(a_pdf_has_a_valid_object_table) {
     assert_int_equal(sscanf(table, "xref\n0 %d\n%n", &count, &used), 1);
     assert_int_equal(count, 13); /* ten, a picture and its alpha, and number 0 */
     for (int i = 1; i < count; i++) {
-        char begin[32];
         long offset = atol(table + used + 20 * i);
-        snprintf(begin, sizeof begin, "%d 0 obj\n", i);
+        const char *begin = printed("%d 0 obj\n", i);
         assert_memory_equal(pdf + offset, begin, strlen(begin));
     }
     assert_non_null(strstr(table, "trailer\n<</Size 13/Root 1 0 R/Info 10 0 R>>"));
@@ -288,16 +273,14 @@ TEST(a_pdf_has_a_valid_object_table) {
     for (size_t k = 0; k < sizeof untold / sizeof *untold; k++)
         for (size_t i = 0; i + strlen(untold[k]) < size; i++)
             assert_memory_not_equal(pdf + i, untold[k], strlen(untold[k]));
-    free(pdf);
 }
 
 static void expect_refused(const char *path, double width, double dpi, const char *message) {
     Error error = {0};
-    Sketch sketch;
+    OWN(Sketch) sketch;
     sketch_begin(&sketch, width, width);
     assert_false(sketch_write(&sketch, path, &(SketchOutput){.dpi = dpi}, &error));
     if (strstr(error.message, message) == NULL) fail_msg("'%s' lacks '%s'", error.message, message);
-    sketch_free(&sketch);
 }
 
 TEST(what_cannot_be_written_is_refused) {

@@ -6,8 +6,6 @@
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 
-#include <math.h>
-
 /* Numbers in [-1, 1) from a linear congruential sequence. */
 static inline float next_number(uint32_t *sequence) {
     *sequence = *sequence * 1664525u + 1013904223u;

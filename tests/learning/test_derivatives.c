@@ -3,7 +3,6 @@
 
 #include "learning/pair_training_internal.h"
 
-#include <math.h>
 #include <omp.h>
 
 /* More blocks than chunks, and a partly filled last block. */
@@ -55,6 +54,8 @@ static void free_case(Case *made) {
     dataset_destroy(made->dataset);
 }
 
+OWNED_VALUE(Case, free_case)
+
 static double *numbers(size_t count) {
     double *made = calloc(count, sizeof *made);
     assert_non_null(made);
@@ -67,7 +68,7 @@ static size_t residual_count(const Case *made) {
 
 static void check_gradient(Case made) {
     const double step = 1e-5;
-    double *gradient = numbers((size_t)made.count);
+    FREED double *gradient = numbers((size_t)made.count);
     double value = loss_gradient(made.loss, made.train, made.laws, made.parameters, gradient);
     assert_true(value == loss_value(made.loss, made.train, made.laws, made.parameters));
     for (int p = 0; p < made.count; p++) {
@@ -79,7 +80,6 @@ static void check_gradient(Case made) {
         made.parameters[p] = kept;
         assert_near(gradient[p], slope, 1e-9 + 1e-6 * fabs(slope));
     }
-    free(gradient);
     free_case(&made);
 }
 
@@ -126,20 +126,19 @@ TEST(gradient_of_the_laws_is_the_finite_difference) {
 }
 
 TEST(squared_residuals_sum_to_the_loss) {
-    Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
+    OWN(Case) made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t count = residual_count(&made);
     double *residuals = numbers(count), sum = 0;
     loss_residuals(made.loss, made.train, made.parameters, residuals);
     for (size_t i = 0; i < count; i++) sum += residuals[i] * residuals[i];
     assert_near(sum / (double)(made.train->rows * 2), loss_value(made.loss, made.train, NULL, made.parameters), 1e-12);
     free(residuals);
-    free_case(&made);
 }
 
 /* Column p of J [residuals, parameters], by central differences. */
 static void fill_jacobian(Case *made, double *jacobian, size_t count) {
     const double step = 1e-4;
-    double *above = numbers(count);
+    FREED double *above = numbers(count);
     for (int p = 0; p < made->count; p++) {
         double kept = made->parameters[p], *column = jacobian + (size_t)p * count;
         made->parameters[p] = kept + step;
@@ -149,7 +148,6 @@ static void fill_jacobian(Case *made, double *jacobian, size_t count) {
         made->parameters[p] = kept;
         for (size_t i = 0; i < count; i++) column[i] = (above[i] - column[i]) / (2 * step);
     }
-    free(above);
 }
 
 static double dot(const double *a, const double *b, size_t count) {
@@ -160,9 +158,10 @@ static double dot(const double *a, const double *b, size_t count) {
 
 /* An entry is a sum over 10^4 residuals; differences with step 1e-4 are accurate to 1e-8 each. */
 static void check_gauss_newton(int layers, const int *widths, Activation hidden, Activation last, OutputScale scale) {
-    Case made = make_case(layers, widths, hidden, last, scale);
+    OWN(Case) made = make_case(layers, widths, hidden, last, scale);
     size_t count = residual_count(&made), size = (size_t)made.count;
-    double *jacobian = numbers(size * count), *u = numbers(count), *jtu = numbers(size), *jtj = numbers(size * size);
+    FREED double *jacobian = numbers(size * count), *u = numbers(count), *jtu = numbers(size),
+                 *jtj = numbers(size * size);
     fill_jacobian(&made, jacobian, count);
     loss_residuals(made.loss, made.train, made.parameters, u);
     gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu, jtj);
@@ -171,11 +170,6 @@ static void check_gauss_newton(int layers, const int *widths, Activation hidden,
         for (size_t q = 0; q <= p; q++)
             assert_near(jtj[p * size + q], dot(jacobian + p * count, jacobian + q * count, count), 1e-4);
     }
-    free(jtj);
-    free(jtu);
-    free(u);
-    free(jacobian);
-    free_case(&made);
 }
 
 TEST(gauss_newton_is_that_of_the_jacobian) {
@@ -188,9 +182,9 @@ TEST(gauss_newton_is_that_of_the_jacobian) {
 
 /* J^T u must also be the same if J^T J is not requested. */
 TEST(sums_do_not_depend_on_threads) {
-    Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
+    OWN(Case) made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t size = (size_t)made.count;
-    double *u = numbers(residual_count(&made)), *gradient = numbers(2 * size), *jtu = numbers(2 * size);
+    FREED double *u = numbers(residual_count(&made)), *gradient = numbers(2 * size), *jtu = numbers(2 * size);
     double *jtj = numbers(2 * size * size), value[2];
     int threads = omp_get_max_threads();
     loss_residuals(made.loss, made.train, made.parameters, u);
@@ -207,10 +201,6 @@ TEST(sums_do_not_depend_on_threads) {
     gauss_newton_sum(made.gauss_newton, made.train, made.parameters, u, jtu + size, NULL);
     assert_memory_equal(jtu, jtu + size, size * sizeof(double));
     free(jtj);
-    free(jtu);
-    free(gradient);
-    free(u);
-    free_case(&made);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -5,8 +5,6 @@
 #include "engine/uniform.h"
 #include "learning/learning.h"
 
-#include <math.h>
-
 TEST(two_by_two_in_closed_form) {
     double matrix[4] = {2, 1, 1, 2}, values[2], vectors[4];
     assert_true(symmetric_eigenvectors(matrix, 2, values, vectors));

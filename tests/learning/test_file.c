@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nets/net_files.h"
+#include "owned.h"
 
 #include "learning/dataset.h"
 
@@ -54,7 +55,7 @@ TEST(files_keep_every_bit) {
     dataset.target = TARGET_IMPULSE;
     dataset.labels = DATASET_BY_REFERENCE;
     dataset.view = PAIR_RAW_UNTURNED;
-    Dataset *read = written_and_read(&dataset);
+    OWN(Dataset) *read = written_and_read(&dataset);
     assert_true(read->rows == ROWS && read->launches == LAUNCHES);
     assert_memory_equal(read->inputs, numbers.inputs, sizeof numbers.inputs);
     assert_memory_equal(read->changes, numbers.changes, sizeof numbers.changes);
@@ -71,7 +72,6 @@ TEST(files_keep_every_bit) {
     assert_int_equal(read->scene_count, 2);
     assert_string_equal(read->scenes[0], "single");
     assert_string_equal(read->scenes[1], "stack of ten");
-    dataset_destroy(read);
 }
 
 /* View and target define the width of rows. */
@@ -85,11 +85,10 @@ TEST(widths_are_those_of_view_and_target) {
         dataset.target = TARGET_POINTS;
         dataset.inputs = wide;
         dataset.changes = points;
-        Dataset *read = written_and_read(&dataset);
+        OWN(Dataset) *read = written_and_read(&dataset);
         assert_true(read->view == view && read->target == TARGET_POINTS);
         assert_memory_equal(read->inputs, wide, ROWS * (size_t)dataset_inputs(read) * sizeof(float));
         assert_memory_equal(read->changes, points, sizeof points);
-        dataset_destroy(read);
     }
 }
 
@@ -100,10 +99,9 @@ TEST(the_most_and_longest_scene_names_are_kept) {
         memset(dataset.scenes[s], 'a' + s, DATASET_NAME_SIZE - 1);
         dataset.scenes[s][DATASET_NAME_SIZE - 1] = '\0';
     }
-    Dataset *read = written_and_read(&dataset);
+    OWN(Dataset) *read = written_and_read(&dataset);
     assert_int_equal(read->scene_count, DATASET_MAX_SCENES);
     assert_string_equal(read->scenes[DATASET_MAX_SCENES - 1], dataset.scenes[DATASET_MAX_SCENES - 1]);
-    dataset_destroy(read);
 }
 
 /* The example with a context: one body moves, and the normal points up. */

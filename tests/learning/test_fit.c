@@ -4,8 +4,6 @@
 
 #include "learning/learning.h"
 
-#include <math.h>
-
 /* The bias corrections cancel the decay: with equal slopes every step has the length of the rate, less epsilon over the
    slope of it: 4e-8 here. */
 TEST(equal_slopes_make_steps_of_the_rate) {

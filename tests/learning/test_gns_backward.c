@@ -4,9 +4,6 @@
 
 #include "learning/gns_training.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Two boxes, one of which is static: with more, some unit of ReLU would switch within almost any step. */
 enum { FEW_BODIES = 2, PARTICLES = FEW_BODIES * BOX_PARTICLES };
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small complete trainings of gns: the same bits for any number of threads and however often they are interrupted. */
 #include "trainings.h"
+#include "owned.h"
 
 #include "learning/gns_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 static Scene *small_scene(void) {
@@ -43,7 +43,7 @@ static bool train(void *context, const char *path, const Progress *progress, Err
 }
 
 TEST(same_bits_for_any_threads_and_interruptions) {
-    GnsNet whole, parts;
+    OWN(GnsNet) whole, parts;
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);
     assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);
@@ -52,8 +52,6 @@ TEST(same_bits_for_any_threads_and_interruptions) {
     omp_set_num_threads(threads);
     assert_memory_equal(&whole.scales, &parts.scales, sizeof whole.scales);
     assert_memory_equal(whole.parameters, parts.parameters, (size_t)whole.layout.parameters * sizeof(float));
-    gns_net_free(&whole);
-    gns_net_free(&parts);
 }
 
 typedef struct Recorded {

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small complete learnings on the single box, and the method with what they learned. */
 #include "trainings.h"
+#include "owned.h"
 
 #include "learning/hybrid_training.h"
-
-#include <math.h>
 
 enum { LAUNCHES = 120 };
 
@@ -63,10 +62,10 @@ static void assert_same_memory(const HybridMemory *a, const HybridMemory *b) {
 }
 
 TEST(familiar_impacts_are_answered_within_the_tolerance) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     Counts counts;
     const HybridTraining training = training_of(&counts);
-    HybridMemory *memory = learn(scene, &training, NULL);
+    OWN(HybridMemory) *memory = learn(scene, &training, NULL);
     assert_int_equal(counts.launches, LAUNCHES);
     assert_int_equal(memory->launches, LAUNCHES);
     assert_int_equal(counts.added, memory->entry_count);
@@ -74,29 +73,25 @@ TEST(familiar_impacts_are_answered_within_the_tolerance) {
     assert_true(counts.grown > 20);
     assert_true(4 * counts.late_answered > counts.late);
     assert_true(counts.checked > 0 && counts.worst < 0.1);
-    hybrid_memory_destroy(memory);
-    scene_destroy(scene);
 }
 
 /* Each ends where the memory has no room for one more entry. */
 TEST(the_limit_holds_and_is_reported) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     Counts counts;
     HybridTraining training = training_of(&counts);
     training.limit = 40000;
-    HybridMemory *memory = learn(scene, &training, NULL);
+    OWN(HybridMemory) *memory = learn(scene, &training, NULL);
     assert_true(counts.full > 0);
     assert_true(hybrid_memory_bytes(memory) <= training.limit);
     assert_true(hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, 4) + 4096 > training.limit);
-    hybrid_memory_destroy(memory);
-    scene_destroy(scene);
 }
 
 TEST(an_interrupted_learning_is_continued_with_the_same_bits) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     Counts counts;
     HybridTraining training = training_of(&counts);
-    HybridMemory *whole = learn(scene, &training, NULL);
+    OWN(HybridMemory) *whole = learn(scene, &training, NULL);
     training.state_path = temporary_path("state.npz");
     counts.launches = 0;
     int left = 77;
@@ -104,7 +99,7 @@ TEST(an_interrupted_learning_is_continued_with_the_same_bits) {
     HybridMemory *part = learn(scene, &training, &progress);
     assert_int_equal(part->launches, 77);
     counts.launches = 77;
-    HybridMemory *rest = learn(scene, &training, NULL);
+    OWN(HybridMemory) *rest = learn(scene, &training, NULL);
     assert_same_memory(whole, rest);
     counts.launches = 0; /* another command begins again */
     training.command = "other";
@@ -112,10 +107,7 @@ TEST(an_interrupted_learning_is_continued_with_the_same_bits) {
     hybrid_memory_destroy(part);
     part = learn(scene, &training, NULL);
     assert_int_equal(counts.launches, 10);
-    hybrid_memory_destroy(whole);
     hybrid_memory_destroy(part);
-    hybrid_memory_destroy(rest);
-    scene_destroy(scene);
 }
 
 static Trajectory *run(const Scene *scene, const char *name, const char *path) {
@@ -134,10 +126,10 @@ static void assert_same_end(Trajectory *a, Trajectory *b) {
 
 /* net=off and an empty memory solve every step to convergence; a memory gives the same run each time, and another one. */
 TEST(the_method_without_its_memory_is_its_twin) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     Counts counts;
     const HybridTraining training = training_of(&counts);
-    HybridMemory *memory = learn(scene, &training, NULL);
+    OWN(HybridMemory) *memory = learn(scene, &training, NULL);
     const char *path = temporary_path("memory.npz");
     assert_ok(hybrid_memory_write(memory, path, &error), error);
     scene->frames = 120;
@@ -152,14 +144,10 @@ TEST(the_method_without_its_memory_is_its_twin) {
         Launch launch = launch_of(scene);
         launch.x = x;
         Scene launched = launch_scene(scene, &launch);
-        Trajectory *with = run(&launched, "hybrid", path), *without = run(&launched, twin, NULL);
+        OWN(Trajectory) *with = run(&launched, "hybrid", path), *without = run(&launched, twin, NULL);
         answered += trajectory_frame_hash(with, 120) != trajectory_frame_hash(without, 120);
-        trajectory_destroy(with);
-        trajectory_destroy(without);
     }
     assert_true(answered > 0);
-    hybrid_memory_destroy(memory);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

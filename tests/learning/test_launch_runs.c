@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "trainings.h"
+#include "owned.h"
 
 #include "learning/dataset.h"
-
-#include <math.h>
 
 /* Frames before the bomb have none. */
 TEST(poses_are_those_of_single_runs) {
@@ -11,14 +10,14 @@ TEST(poses_are_those_of_single_runs) {
     Method method;
     Launch launches[LAUNCHES];
     LaunchRuns runs;
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     scene->frames = 60;
     assert_ok(method_parse(&method, "engine", &error) && launches_for_training(scene, LAUNCHES, launches, &error),
               error);
     assert_ok(launch_runs_record(&runs, scene, &method, launches, LAUNCHES, NULL, &error), error);
     for (int i = 0; i < LAUNCHES; i++) {
         const Scene launched = launch_scene(scene, &launches[i]);
-        Trajectory *run = run_with(&launched, &method);
+        OWN(Trajectory) *run = run_with(&launched, &method);
         assert_int_equal(runs.bodies, run->bodies);
         assert_int_equal(runs.frames, run->frames);
         for (int frame = 0; frame < run->frames; frame++)
@@ -30,15 +29,13 @@ TEST(poses_are_those_of_single_runs) {
                 assert_memory_equal(&pose.position, &run->position[at], sizeof pose.position);
                 assert_memory_equal(&pose.angle, &run->angle[at], sizeof pose.angle);
             }
-        trajectory_destroy(run);
     }
     launch_runs_free(&runs);
-    scene_destroy(scene);
 }
 
 TEST(too_many_are_refused) {
     LaunchRuns runs;
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     const Method method = method_named("engine");
     const Launch own = launch_of(scene);
     scene->frames = 1000000;
@@ -47,7 +44,6 @@ TEST(too_many_are_refused) {
     scene->bomb.present = false;
     assert_refused(launch_runs_record(&runs, scene, &method, &own, 1, NULL, &error), "the scene has no bomb");
     launch_runs_free(&runs);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

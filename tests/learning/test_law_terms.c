@@ -4,8 +4,6 @@
 
 #include "learning/pair_training.h"
 
-#include <math.h>
-
 /* A bomb of 2 kg flies at 3 m/s to the right, at a box of 4 kg at rest; the points are 0.5 m above the centres. */
 static LawPair collision(void) {
     static const float context[PAIR_CONTEXT] = {

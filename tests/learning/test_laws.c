@@ -4,8 +4,6 @@
 
 #include "learning/pair_training_internal.h"
 
-#include <math.h>
-
 enum { ROWS = 2000 };
 
 /* A network without hidden layers and with weights 0: it predicts its biases for every row. */
@@ -48,20 +46,18 @@ static double added(const Dataset *dataset, const Network *network, const char *
 }
 
 TEST(predicting_the_labels_adds_nothing) {
-    Dataset *dataset = make_pushed_dataset(ROWS);
+    OWN(Dataset) *dataset = make_pushed_dataset(ROWS);
     /* Labels that violate every law, as with position correction and other pairs. */
     for (int r = 0; r < ROWS; r += 2)
         for (int k = 0; k < PAIR_CHANGES; k++) dataset->changes[r * PAIR_CHANGES + k] *= k < 3 ? -3.0f : -5.0f;
-    Network *network = make_constant(dataset);
+    OWN(Network) *network = make_constant(dataset);
     double half_slopes[PAIR_CHANGES * BLOCK_ROWS];
     assert_true(added(dataset, network, "all", dataset->changes, half_slopes) < 1e-10);
-    network_destroy(network);
-    dataset_destroy(dataset);
 }
 
 /* Predictions that are multiples of the label: the violations are known multiples of the labels' own size. */
 TEST(a_weight_of_one_makes_the_labels_own_size_one) {
-    Dataset *dataset = make_pushed_dataset(ROWS);
+    OWN(Dataset) *dataset = make_pushed_dataset(ROWS);
     for (int r = 0; r < ROWS; r++) { /* no static bodies, no spin */
         float *context = dataset->context + r * PAIR_CONTEXT, *change = dataset->changes + r * PAIR_CHANGES;
         const float j[2] = {context[CONTEXT_NORMAL], context[CONTEXT_NORMAL + 1]};
@@ -73,8 +69,8 @@ TEST(a_weight_of_one_makes_the_labels_own_size_one) {
             change[3 + k] = k < 2 ? 0.5f * (float)(r % 4 + 1) * j[k] : 0;
         }
     }
-    Network *network = make_constant(dataset);
-    float *predictions = calloc(ROWS * PAIR_CHANGES, sizeof *predictions);
+    OWN(Network) *network = make_constant(dataset);
+    FREED float *predictions = calloc(ROWS * PAIR_CHANGES, sizeof *predictions);
     assert_non_null(predictions);
     double half_slopes[PAIR_CHANGES * BLOCK_ROWS];
     /* Only b changes: a momentum of J is missing. */
@@ -88,15 +84,12 @@ TEST(a_weight_of_one_makes_the_labels_own_size_one) {
     /* Twice the impulse, four times the energy: an excess of three times the label's. */
     for (int i = 0; i < ROWS * PAIR_CHANGES; i++) predictions[i] = 2 * dataset->changes[i];
     assert_near(added(dataset, network, "energy", predictions, half_slopes), 9, 1e-4);
-    free(predictions);
-    network_destroy(network);
-    dataset_destroy(dataset);
 }
 
 /* A prediction of 0 changes no velocity: approaching pairs violate `approach`; no other law is violated. */
 TEST(violations_are_measured_on_the_test_rows) {
-    Dataset *dataset = make_pushed_dataset(ROWS);
-    Network *network = make_constant(dataset);
+    OWN(Dataset) *dataset = make_pushed_dataset(ROWS);
+    OWN(Network) *network = make_constant(dataset);
     for (int k = 0; k < PAIR_CHANGES; k++)
         network->biases[0][k] = -network->output.offset[k] * network->output.scale[k];
     double expected = 0, slope[PAIR_CHANGES];
@@ -120,8 +113,6 @@ TEST(violations_are_measured_on_the_test_rows) {
     assert_refused(laws_measure(dataset, network, &nothing, &error), "laws: error: the network has other inputs (x)");
     dataset->launch_test[4] = 0;
     assert_refused(laws_measure(dataset, NULL, &nothing, &error), "the dataset has no test rows");
-    network_destroy(network);
-    dataset_destroy(dataset);
 }
 
 static void keep_score(void *context, const TrainingScore *score) { *(TrainingScore *)context = *score; }
@@ -139,7 +130,7 @@ static Network *train(const Dataset *dataset, const char *laws, int iterations, 
 }
 
 TEST(a_law_in_the_loss_is_violated_less) {
-    Dataset *dataset = make_pushed_dataset(ROWS);
+    OWN(Dataset) *dataset = make_pushed_dataset(ROWS);
     TrainingScore score;
     LawNumbers without, with;
     Network *network = train(dataset, "none", 30, &score);
@@ -152,15 +143,14 @@ TEST(a_law_in_the_loss_is_violated_less) {
             fail_msg("%s: %g with it, %g without", laws_known[law].name, with.of[law], without.of[law]);
         network_destroy(network);
     }
-    dataset_destroy(dataset);
 }
 
 /* Scores exclude the laws, so that networks with and without them can be compared. */
 TEST(scores_exclude_the_laws) {
-    Dataset *dataset = make_pushed_dataset(ROWS);
+    OWN(Dataset) *dataset = make_pushed_dataset(ROWS);
     TrainingScore with, without, again;
     network_destroy(train(dataset, "none", 0, &without));
-    Network *network = train(dataset, "all", 0, &with);
+    OWN(Network) *network = train(dataset, "all", 0, &with);
     assert_near(with.train, without.train, 1e-12);
     assert_near(with.test, without.test, 1e-12);
     assert_true(with.constant_test == without.constant_test);
@@ -169,8 +159,6 @@ TEST(scores_exclude_the_laws) {
     assert_ok(training_score(dataset, network, "smooth-l1", &again, &error), error);
     assert_true(again.test < with.test && again.constant_test < with.constant_test);
     assert_refused(training_score(dataset, network, "l3", &again, &error), "'l3' is not a valid value");
-    network_destroy(network);
-    dataset_destroy(dataset);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -7,7 +7,6 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-#include <math.h>
 #include <omp.h>
 
 /* Sparse rows with capacity for dense ones. */
@@ -281,24 +280,6 @@ TEST(same_seed_same_bits) {
     assert_true(same(&first, &threaded));
     assert_true(same(&first, &with_zeros));
     assert_false(same(&first, &other));
-}
-
-/* In double, where the order of sums would show. */
-TEST(sums_do_not_depend_on_threads) {
-    enum { COLUMNS = 40, WIDTH = 2 * DIRECTIONS_BLOCK };
-    Table table = make_random(300, COLUMNS, 0.99, true);
-    double directions[COLUMNS * WIDTH], images[2][COLUMNS * WIDTH];
-    for (int i = 0; i < COLUMNS * WIDTH; i++) directions[i] = sin(i);
-    const int threads = omp_get_max_threads();
-    for (int i = 0; i < 2; i++) {
-        SparseCovariance covariance;
-        omp_set_num_threads(i + 1);
-        assert_ok(sparse_covariance_make(&covariance, &table.sparse, WIDTH, &error), error);
-        sparse_covariance_multiply(&covariance, directions, images[i]);
-        sparse_covariance_free(&covariance);
-    }
-    omp_set_num_threads(threads);
-    assert_memory_equal(images[0], images[1], sizeof images[0]);
 }
 
 TEST(the_largest_number_is_positive) {

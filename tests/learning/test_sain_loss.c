@@ -5,8 +5,6 @@
 #include "base/base.h"
 #include "learning/sain_training.h"
 
-#include <stdlib.h>
-
 enum { SAMPLES = 40, ROWS = 3 * SAMPLES };
 
 /* Any samples: body i has 1 to 5 rows. */

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of sain: the same bits however often it was interrupted. */
 #include "trainings.h"
+#include "owned.h"
 
 #include "learning/sain_training.h"
 #include "learning/scene_training.h"
 #include "methods/reference.h"
-
-#include <math.h>
 
 static Scene *scene;
 
@@ -41,13 +40,11 @@ static void assert_same(const SainNetworks *a, const SainNetworks *b) {
 }
 
 TEST(an_interrupted_training_has_the_same_bits) {
-    SainNetworks whole, resumed;
+    OWN(SainNetworks) whole, resumed;
     scene = scene_named("single");
     assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);
     assert_true(train_in_parts(train, &resumed, temporary_path("resumed.part"), 5, 4) > 2);
     assert_same(&whole, &resumed);
-    sain_networks_destroy(&whole);
-    sain_networks_destroy(&resumed);
     scene_destroy(scene);
 }
 
@@ -57,7 +54,7 @@ TEST(problems_without_a_solution_are_left_out_and_counted) {
     const SainLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 3, .rounds = 1};
     ImpactProblems problems = {.unconverged = 0};
     SainSamples samples = {.unconverged = 1};
-    Reference reference = {0};
+    OWN(Reference) reference = {0};
     assert_ok(sain_launches_record(&launches, &problems, NULL, &error), error);
     for (size_t i = 0; i < problems.count; i++) {
         assert_ok(reference_solve_to(&reference, &problems.items[i].problem, 1e-6, 120, &error), error);
@@ -68,7 +65,6 @@ TEST(problems_without_a_solution_are_left_out_and_counted) {
     assert_int_equal(samples.unconverged, 1 + 3 * 2);
     sain_samples_free(&samples);
     impact_problems_free(&problems);
-    reference_free(&reference);
     scene_destroy(scene);
 }
 

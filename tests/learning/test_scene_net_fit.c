@@ -2,7 +2,6 @@
 /* Fits to a few impacts of the stack. */
 #include "impacts.h"
 
-#include <math.h>
 #include <omp.h>
 
 enum { LAUNCHES = 3, SAMPLES = 24, SWEEPS = 6 };
@@ -97,23 +96,6 @@ TEST(the_first_step_has_the_size_of_the_rate) {
     assert_true(2 * (size_t)moved > network->parameter_count);
     free(before);
     end(&samples, network);
-}
-
-/* Enough samples to fill all parts of a batch and to need more than one batch. */
-TEST(same_bits_for_any_number_of_threads) {
-    SceneNetSamples samples[2];
-    SceneNet *networks[2];
-    const int threads = omp_get_max_threads();
-    for (int i = 0; i < 2; i++) {
-        omp_set_num_threads(1 + i);
-        networks[i] = begin_with(&samples[i], 24);
-        assert_true(samples[i].count > 130);
-        fit_to(networks[i], &samples[i], fit_of(2, 5, 0.01, true));
-    }
-    omp_set_num_threads(threads);
-    assert_memory_equal(networks[0]->parameters, networks[1]->parameters, networks[0]->parameter_count * sizeof(float));
-    assert_memory_equal(networks[0]->factors, networks[1]->factors, sizeof networks[0]->factors);
-    for (int i = 0; i < 2; i++) end(&samples[i], networks[i]);
 }
 
 TEST(a_loss_of_nan_is_an_error_naming_the_epoch) {

@@ -3,9 +3,6 @@
    outputs. */
 #include "impacts.h"
 
-#include <math.h>
-#include <omp.h>
-
 enum { LAUNCHES = 20 };
 
 static SceneNetSamples samples;
@@ -140,35 +137,6 @@ TEST(initial_outputs_are_near_0) {
         count += 2 * slots->slot_count;
     }
     assert_true(sum / count > 0.001 && sum / count < 0.2);
-}
-
-static SceneNet *make_again(uint64_t seed) {
-    Error error = {0};
-    SceneNet *made = scene_net_from_samples(&samples, &small_widths, seed, &error);
-    assert_ok(made != NULL, error);
-    return made;
-}
-
-static bool same_rows(const Projection *a, const Projection *b) {
-    return memcmp(a->rows, b->rows, (size_t)a->from * (size_t)a->to * sizeof(float)) == 0 &&
-           memcmp(a->centre, b->centre, (size_t)a->to * sizeof(float)) == 0;
-}
-
-static bool same_parameters(const SceneNet *a, const SceneNet *b) {
-    return memcmp(a->parameters, b->parameters, a->parameter_count * sizeof(float)) == 0;
-}
-
-TEST(same_seed_same_bits) {
-    const int threads = omp_get_max_threads();
-    omp_set_num_threads(threads == 1 ? 2 : 1);
-    SceneNet *same = make_again(1), *other = make_again(2);
-    omp_set_num_threads(threads);
-    assert_true(same_parameters(network, same));
-    assert_false(same_parameters(network, other));
-    assert_true(same_rows(&network->bomb_state, &same->bomb_state) && same_rows(&network->state, &same->state));
-    assert_true(same_rows(&network->present, &same->present) && same_rows(&network->warm, &same->warm));
-    scene_net_destroy(same);
-    scene_net_destroy(other);
 }
 
 TEST(samples_without_slots_are_refused) {

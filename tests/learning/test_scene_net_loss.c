@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The loss of scene-net on impacts of the stack, and its gradient against finite differences. */
 #include "impacts.h"
+#include "owned.h"
 
 #include "engine/uniform.h"
 #include "methods/reference.h"
 #include "learning/scene_training_internal.h"
-
-#include <math.h>
 
 enum { LAUNCHES = 4, SWEEPS = 6, OF_EACH_BLOCK = 6 };
 
@@ -111,13 +110,12 @@ static void check_byte(Trial *trial, const PackedRows *packed, const float *grad
     if (kept == INT8_MAX || kept == -INT8_MAX) return;
     packed->numbers[place] = (int8_t)(kept + 1);
     const double ahead = loss_of(trial);
-    uint8_t *taken = pieces_of(trial);
+    FREED uint8_t *taken = pieces_of(trial);
     packed->numbers[place] = (int8_t)(kept - 1);
     const double behind = loss_of(trial);
     packed->numbers[place] = kept;
     const double expected = 2 * (double)packed->units[place / packed->width] * (double)gradient[place];
     compare(trial, ahead, taken, behind, expected, 1e-6 * (1 + ahead), tally);
-    free(taken);
 }
 
 static void check_rows(Trial *trial, const PackedRows *packed, const float *gradient, uint32_t *seed, Tally *tally) {
@@ -159,11 +157,10 @@ static void check_factors(Trial *trial, const double *by_factors, Tally *tally) 
         const double kept = trial->factors[s];
         trial->factors[s] = kept + step;
         const double ahead = loss_of(trial);
-        uint8_t *taken = pieces_of(trial);
+        FREED uint8_t *taken = pieces_of(trial);
         trial->factors[s] = kept - step;
         compare(trial, ahead, taken, loss_of(trial), 2 * step * by_factors[s], 1e-9, tally);
         trial->factors[s] = kept;
-        free(taken);
     }
 }
 

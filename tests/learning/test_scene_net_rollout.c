@@ -1,37 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which steps of a scene's launches become samples. */
 #include "impacts.h"
+#include "owned.h"
 #include "equal_problems.h"
 
 #include "methods/residuals.h"
 
-#include <omp.h>
-
 enum { LAUNCHES = 6 };
 
-static void assert_same_samples(const SceneNetSamples *a, const SceneNetSamples *b) {
-    assert_int_equal(a->count, b->count);
-    for (int i = 0; i < a->count; i++) {
-        assert_int_equal(a->items[i].launch, b->items[i].launch);
-        assert_int_equal(a->items[i].since, b->items[i].since);
-        assert_equal_problems(&a->items[i].problem, &b->items[i].problem);
-    }
-}
-
-TEST(same_bits_for_any_number_of_threads) {
-    SceneNetSamples samples[2] = {{0}};
-    const int threads = omp_get_max_threads();
-    for (int i = 0; i < 2; i++) {
-        omp_set_num_threads(1 + i);
-        record_impacts(&samples[i], LAUNCHES, 0);
-    }
-    omp_set_num_threads(threads);
-    assert_same_samples(&samples[0], &samples[1]);
-    for (int i = 0; i < 2; i++) scene_net_samples_free(&samples[i]);
-}
-
 TEST(samples_are_appended_in_the_order_of_launch_and_step) {
-    SceneNetSamples samples = {0};
+    OWN(SceneNetSamples) samples = {0};
     record_impacts(&samples, LAUNCHES, 0);
     const int count = samples.count;
     record_impacts(&samples, LAUNCHES, 100);
@@ -47,7 +25,6 @@ TEST(samples_are_appended_in_the_order_of_launch_and_step) {
         assert_true(sample[-1].launch < sample->launch ||
                     (sample[-1].launch == sample->launch && sample[-1].since < sample->since));
     }
-    scene_net_samples_free(&samples);
 }
 
 static bool bomb_touches(const ContactProblem *problem) {
@@ -65,7 +42,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
     Error error = {0};
     Scene quiet = *scene;
     quiet.bomb.present = false;
-    World *world = world_of(&quiet);
+    OWN(World) *world = world_of(&quiet);
     int found = 0;
     for (int frame = 0, since = -1; since < IMPACT_STEPS - 1 && frame <= scene->frames; frame++) {
         if (frame == scene->bomb.frame) assert_ok(scene_add_bomb(scene, world, &error), error);
@@ -76,14 +53,13 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
         assert_int_equal(samples[found].since, since);
         assert_equal_problems(&samples[found++].problem, problem);
     }
-    world_destroy(world);
     return found;
 }
 
 TEST(samples_are_the_steps_with_a_large_residual) {
-    SceneNetSamples samples = {0};
+    OWN(SceneNetSamples) samples = {0};
     ContactSolver solver;
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     Launch launches[LAUNCHES];
     record_impacts(&samples, LAUNCHES, 0);
     throw_over_grid(scene, LAUNCHES, launches);
@@ -96,8 +72,6 @@ TEST(samples_are_the_steps_with_a_large_residual) {
     assert_int_equal(done, samples.count);
     assert_true(done < LAUNCHES * IMPACT_STEPS);
     solver.kind->destroy(solver.state);
-    scene_destroy(scene);
-    scene_net_samples_free(&samples);
 }
 
 static bool no_solver(void *context, ContactSolver *solver, Error *error) {
@@ -106,14 +80,13 @@ static bool no_solver(void *context, ContactSolver *solver, Error *error) {
 }
 
 TEST(a_solver_that_cannot_be_made_is_an_error) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     Launch launch = launch_of(scene);
     SceneNetSamples samples = {0};
     const SceneNetRollout rollout = {
         .scene = scene, .launches = &launch, .launch_count = 1, .steps = 1, .make_solver = no_solver};
     assert_refused(scene_net_rollout(&rollout, &samples, NULL, &error), "not available");
     assert_int_equal(samples.count, 0);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

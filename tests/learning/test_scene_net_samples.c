@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Samples: copies, labels of the reference, inputs of a network. */
 #include "impacts.h"
+#include "owned.h"
 
 #include <omp.h>
 
@@ -11,7 +12,7 @@ TEST(a_sample_is_a_copy) {
     ContactPoint contact = {.a = 0, .b = 1, .feature = 5};
     const ContactProblem problem = {
         .body_count = 2, .contact_count = 1, .bomb = 1, .bodies = bodies, .contacts = &contact};
-    SceneNetSamples samples = {0}, more = {0};
+    OWN(SceneNetSamples) samples = {0}, more = {0};
     for (int i = 0; i < 20; i++) assert_true(scene_net_samples_add(&samples, &problem, i, 2 * i));
     bodies[1].inv_mass = 9;
     contact.feature = 9;
@@ -27,28 +28,24 @@ TEST(a_sample_is_a_copy) {
         assert_int_equal(sample->problem.contacts[0].feature, i < 20 ? 5 : 9);
         assert_true(sample->problem.bodies[1].inv_mass == (i < 20 ? 2 : 9));
     }
-    scene_net_samples_free(&more);
-    scene_net_samples_free(&samples);
 }
 
 /* A launch without impacts has no samples; an impact may have no contacts. */
 TEST(empty_samples_can_be_moved) {
-    SceneNetSamples samples = {0}, none = {0};
+    OWN(SceneNetSamples) samples = {0}, none = {0};
     const ProblemBody body = {.inv_mass = 1};
     assert_true(scene_net_samples_move(&samples, &none));
     assert_int_equal(samples.count, 0);
     assert_true(scene_net_samples_add(&samples, &(ContactProblem){.body_count = 1, .bodies = &body}, 0, 0));
     assert_int_equal(samples.items[0].problem.contact_count, 0);
-    scene_net_samples_free(&samples);
-    scene_net_samples_free(&none);
 }
 
 TEST(labels_are_the_references) {
     const int threads = omp_get_max_threads();
-    Reference reference = {0};
+    OWN(Reference) reference = {0};
     for (int t = 1; t <= 2; t++) {
         omp_set_num_threads(t);
-        SceneNetSamples samples = labelled_impacts(LAUNCHES);
+        OWN(SceneNetSamples) samples = labelled_impacts(LAUNCHES);
         for (int i = 0; i < samples.count; i++) {
             const SceneNetSample *sample = &samples.items[i];
             const ContactProblem *problem = &sample->problem;
@@ -61,10 +58,8 @@ TEST(labels_are_the_references) {
             }
             assert_int_equal(sample->unrolled.contact_count, problem->contact_count);
         }
-        scene_net_samples_free(&samples);
     }
     omp_set_num_threads(threads);
-    reference_free(&reference);
 }
 
 static bool stop(void *context, double done, double total) {
@@ -103,7 +98,7 @@ static bool keep_step(void *context, int frame, const World *world, Error *error
 /* A box in a V that its friction holds apart from: steps with a solution and without. */
 TEST(samples_without_a_solution_are_left_out_and_counted) {
     Wedge wedge = {.solved = 0};
-    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
+    OWN(Scene) *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
     const Method engine = method_named("engine");
     assert_ok(simulate_observed(scene, &engine, &(StepObserver){keep_step, &wedge}, &error), error);
     const int all = wedge.samples.count;
@@ -120,17 +115,15 @@ TEST(samples_without_a_solution_are_left_out_and_counted) {
                             (size_t)sample->problem.body_count * sizeof *sample->reference);
         assert_true(i == 0 || sample->launch > sample[-1].launch);
     }
-    SceneNetSamples moved = {.unconverged = 2};
+    OWN(SceneNetSamples) moved = {.unconverged = 2};
     assert_true(scene_net_samples_move(&moved, &wedge.samples));
     assert_int_equal(moved.unconverged, 2 + all - wedge.solved);
-    scene_net_samples_free(&moved);
     reference_free(&wedge.reference);
-    scene_destroy(scene);
 }
 
 TEST(inputs_are_those_of_the_network) {
-    SceneNetSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
-    SceneNet *network = network_for(&shaped);
+    OWN(SceneNetSamples) shaped = labelled_impacts(LAUNCHES), samples = {0};
+    OWN(SceneNet) *network = network_for(&shaped);
     record_impacts(&samples, LAUNCHES, 0);
     assert_int_equal(samples.count, shaped.count);
     assert_ok(scene_net_samples_compute_inputs(&samples, 3, network, &error), error);
@@ -140,9 +133,6 @@ TEST(inputs_are_those_of_the_network) {
         assert_memory_equal(samples.items[i].inputs, shaped.items[i].inputs,
                             (size_t)scene_net_inputs(network) * sizeof(float));
     }
-    scene_net_destroy(network);
-    scene_net_samples_free(&samples);
-    scene_net_samples_free(&shaped);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small complete trainings: determinism, and what a stopped training keeps. */
 #include "impacts.h"
+#include "owned.h"
 
 #include "learning/scene_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 enum { ROUNDS = 2, SWEEPS = 4 };
@@ -35,7 +35,7 @@ static SceneNet *train(const Scene *scene, Scores *scores, const Progress *progr
 }
 
 TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     Scores scores[2];
     SceneNet *networks[2];
     const int threads = omp_get_max_threads();
@@ -63,7 +63,6 @@ TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
     for (int i = 0; i < scene_net_inputs(networks[0]); i++) /* the range of the samples, with a margin */
         assert_true(networks[0]->low[i] < networks[0]->high[i]);
     for (int i = 0; i < 2; i++) scene_net_destroy(networks[i]);
-    scene_destroy(scene);
 }
 
 /* Stops at a fraction of the total; progress never decreases. */
@@ -82,38 +81,27 @@ static bool stop_share(void *context, double done, double total) {
 
 /* Stopped in the first fit, in the labels after it, in the second fit. */
 TEST(a_stopped_training_keeps_the_rounds_so_far) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     static const double at[] = {0.27, 0.67, 0.87};
     for (int i = 0; i < 3; i++) {
         error = (Error){0};
         Scores scores;
         Stop stop = {.at = at[i]};
-        SceneNet *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
+        OWN(SceneNet) *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
         assert_ok(network != NULL, error);
         assert_int_equal(error.kind, ERROR_NONE);
         assert_int_equal(stop.calls_after, 0);
         assert_int_equal(scores.count, i < 2 ? 1 : 2);
         for (size_t p = 0; p < network->parameter_count; p++) assert_true(isfinite(network->parameters[p]));
-        scene_net_destroy(network);
     }
-    scene_destroy(scene);
 }
 
 TEST(a_training_stopped_before_the_first_network_fails) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     Scores scores;
     Stop stop = {.at = 0.1};
     assert_null(train(scene, &scores, &(Progress){stop_share, &stop}, &error));
     assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
-    scene_destroy(scene);
-}
-
-TEST(a_scene_without_a_bomb_is_refused) {
-    Scene *scene = scene_named("stack");
-    Scores scores;
-    scene->bomb.present = false;
-    assert_refused(train(scene, &scores, NULL, &error), "stack: error: has no bomb to launch");
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "learning/dataset.h"
 
@@ -49,9 +49,9 @@ static const unsigned held_out = 1u << 3 | 1u << 8 | 1u << 13 | 1u << 18;
 
 TEST(a_subset_has_the_rows_of_its_launches) {
     for (int context = 0; context < 2; context++) {
-        Dataset *dataset = make_dataset(context == 1);
+        OWN(Dataset) *dataset = make_dataset(context == 1);
         const bool keep[LAUNCHES] = {[0] = true, [8] = true, [17] = true, [19] = true};
-        Dataset *subset = dataset_subset(dataset, keep, &error);
+        OWN(Dataset) *subset = dataset_subset(dataset, keep, &error);
         assert_ok(subset != NULL, error);
         assert_true((subset->context != NULL) == (context == 1));
         assert_int_equal(check_rows(subset), held_out | 1u << 0 | 1u << 17);
@@ -63,8 +63,6 @@ TEST(a_subset_has_the_rows_of_its_launches) {
         assert_true(subset->rows == rows && subset->launches == LAUNCHES);
         assert_memory_equal(subset->launch_x, dataset->launch_x, LAUNCHES * sizeof(float));
         assert_memory_equal(subset->launch_test, dataset->launch_test, LAUNCHES);
-        dataset_destroy(subset);
-        dataset_destroy(dataset);
     }
 }
 
@@ -76,34 +74,30 @@ static int count_bits(unsigned bits) {
 
 /* More launches contain fewer; another seed draws others; 19 launches have rows, 4 of them held out. */
 TEST(launches_are_drawn_by_the_seed) {
-    Dataset *dataset = make_dataset(false);
+    OWN(Dataset) *dataset = make_dataset(false);
     unsigned last = held_out, first_of_seed[3];
     for (int count = 1; count <= 15; count++) {
-        Dataset *subset = dataset_draw_subset(dataset, count, 5, &error);
+        OWN(Dataset) *subset = dataset_draw_subset(dataset, count, 5, &error);
         assert_ok(subset != NULL, error);
         const unsigned found = check_rows(subset);
         assert_true((found & last) == last && count_bits(found) == count + 4);
         last = found;
-        dataset_destroy(subset);
     }
     for (uint64_t seed = 0; seed < 3; seed++) {
-        Dataset *subset = dataset_draw_subset(dataset, 5, seed + 1, &error);
+        OWN(Dataset) *subset = dataset_draw_subset(dataset, 5, seed + 1, &error);
         assert_ok(subset != NULL, error);
         first_of_seed[seed] = check_rows(subset);
-        dataset_destroy(subset);
     }
     assert_true(first_of_seed[0] != first_of_seed[1] && first_of_seed[1] != first_of_seed[2]);
-    dataset_destroy(dataset);
 }
 
 TEST(what_would_leave_nothing_is_refused) {
-    Dataset *dataset = make_dataset(false);
+    OWN(Dataset) *dataset = make_dataset(false);
     assert_refused(dataset_subset(dataset, (const bool[LAUNCHES]){[3] = true, [19] = true}, &error),
                    "no rows are left to train on");
     for (int count = -1; count <= 16; count += count == 0 ? 16 : 1) {
         assert_refused(dataset_draw_subset(dataset, count, 1, &error), "training launches requested; expected 1 to 15");
     }
-    dataset_destroy(dataset);
 }
 
 RUN_TESTS(NULL, NULL)

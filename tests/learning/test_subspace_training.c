@@ -2,10 +2,10 @@
 /* A small training: the same bits for any number of threads and however often it is interrupted; rows and components are
    those of the recorded launches. */
 #include "trainings.h"
+#include "owned.h"
 
 #include "learning/subspace_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 static Scene *short_scene(void) {
@@ -28,7 +28,7 @@ static bool train(void *context, const char *path, const Progress *progress, Err
 
 /* A report for each launch that is recorded, then one before each epoch. */
 TEST(the_bits_do_not_depend_on_threads_or_interruptions) {
-    SubspaceNet *one, *two;
+    OWN(SubspaceNet) * one, *two;
     scene = short_scene();
     omp_set_num_threads(1);
     assert_ok(train(&one, temporary_path("one.part"), NULL, &error), error);
@@ -38,8 +38,6 @@ TEST(the_bits_do_not_depend_on_threads_or_interruptions) {
     const SubspacePredictor *last = &one->predictors[one->shape.predictor_count - 1];
     assert_memory_equal(one->block, two->block,
                         (size_t)(last->last.biases + last->last.lanes - one->block) * sizeof(float));
-    subspace_net_destroy(one);
-    subspace_net_destroy(two);
     scene_destroy(scene);
 }
 
@@ -59,14 +57,13 @@ TEST(rows_are_the_recorded_poses) {
     assert_near(pose_row(&rows, 1, 0)[1], 4, 0);
     assert_near(pose_row(&rows, 1, 1)[7], sqrt(2.0 / 12), 1e-6);
     SubspaceTraining training = small(temporary_path("floor.part"));
-    SubspaceNet *net = subspace_train(scene, &training, NULL, &error);
+    OWN(SubspaceNet) *net = subspace_train(scene, &training, NULL, &error);
     assert_ok(net != NULL, error);
     SubspaceScore score;
     assert_ok(subspace_score(net, &net->predictors[0], &rows, &score, &error), error);
     assert_near(score.floor.rms, 0, 1e-5);
     assert_near(score.floor.frames, scene->frames, 0);
     assert_true(score.linear.rms > 0.01);
-    subspace_net_destroy(net);
     pose_rows_free(&rows);
     scene_destroy(scene);
 }

@@ -3,7 +3,6 @@
 
 #include "learning/pair_training.h"
 
-#include <math.h>
 #include <omp.h>
 
 enum { MAX_SCORES = 32 };
@@ -50,9 +49,9 @@ static double error_of(const Network *network, const Dataset *dataset, bool test
 }
 
 static void check_learns(const char *optimizer, int iterations, double factor) {
-    Dataset *dataset = make_taught_dataset(2000);
+    OWN(Dataset) *dataset = make_taught_dataset(2000);
     Scores scores;
-    Network *network = train(dataset, small(optimizer, iterations), &scores);
+    OWN(Network) *network = train(dataset, small(optimizer, iterations), &scores);
     const TrainingScore *first = &scores.items[0], *last = last_score(&scores);
     if (!(last->train < first->train / factor && last->test < first->test / factor &&
           last->test < last->constant_test / factor))
@@ -60,8 +59,6 @@ static void check_learns(const char *optimizer, int iterations, double factor) {
                  last->train, last->constant_test);
     assert_near(error_of(network, dataset, false), last->train, 0.01 * last->train);
     assert_near(error_of(network, dataset, true), last->test, 0.01 * last->test);
-    network_destroy(network);
-    dataset_destroy(dataset);
 }
 
 TEST(every_optimizer_learns_a_networks_outputs) {
@@ -74,7 +71,7 @@ TEST(every_optimizer_learns_a_networks_outputs) {
 /* Without a hidden layer and with linear outputs the loss is quadratic. Its minimum is 0 here, up to the rounding of
    targets to float32; Levenberg-Marquardt reaches it in a few steps and then stops without an error. */
 TEST(linear_problems_are_solved) {
-    Dataset *dataset = make_dataset(1000);
+    OWN(Dataset) *dataset = make_dataset(1000);
     for (int i = 0; i < 1000 * PAIR_CHANGES; i++) {
         const float *x = dataset->inputs + i / PAIR_CHANGES * PAIR_INPUTS;
         dataset->changes[i] = 2 * x[i % PAIR_CHANGES] - 3 * x[i % PAIR_CHANGES + 4] + 7;
@@ -82,7 +79,7 @@ TEST(linear_problems_are_solved) {
     Scores scores;
     const char *const names[] = {"lm", "bfgs"};
     for (int i = 0; i < 2; i++) {
-        Network *network =
+        OWN(Network) *network =
             train(dataset,
                   (TrainingOptions){
                       .layers = 1, .widths = {PAIR_INPUTS, PAIR_CHANGES}, .optimizer = names[i], .iterations = 1000},
@@ -94,26 +91,21 @@ TEST(linear_problems_are_solved) {
             (double)network->weights[0][0] * (double)network->input.scale[0] / (double)network->output.scale[0];
         assert_near(slope, 2, 1e-4);
         assert_int_equal(network->activations[0], ACTIVATION_LINEAR);
-        network_destroy(network);
     }
-    dataset_destroy(dataset);
 }
 
 TEST(networks_name_their_inputs_and_outputs) {
-    Dataset *dataset = make_taught_dataset(100);
+    OWN(Dataset) *dataset = make_taught_dataset(100);
     Scores scores;
-    Network *two = train(dataset, small("adam", 0), &scores);
+    OWN(Network) *two = train(dataset, small("adam", 0), &scores);
     assert_string_equal(two->inputs, pair_views[PAIR_RELATIVE].inputs);
     assert_string_equal(two->outputs, "dvx dvy");
     assert_true(two->activations[0] == ACTIVATION_SIGMOID && two->activations[1] == ACTIVATION_SIGMOID);
     TrainingOptions options = small("adam", 0);
     options.widths[2] = PAIR_CHANGES;
-    Network *six = train(dataset, options, &scores);
+    OWN(Network) *six = train(dataset, options, &scores);
     assert_string_equal(six->outputs, pair_output_names(PAIR_RELATIVE, TARGET_PAIR, PAIR_CHANGES));
     assert_true(six->activations[0] == ACTIVATION_SIGMOID && six->activations[1] == ACTIVATION_LINEAR);
-    network_destroy(six);
-    network_destroy(two);
-    dataset_destroy(dataset);
 }
 
 static bool same_numbers(const Network *a, const Network *b) {
@@ -123,59 +115,53 @@ static bool same_numbers(const Network *a, const Network *b) {
 /* No hidden layer, weights 0, inputs and outputs of mean 0: d loss / d bias = 2/6 bias for each of the six outputs, so
    a step at rate 1/2 leaves 5/6 of it. */
 TEST(gradient_descent_steps_at_its_rate) {
-    Dataset *dataset = make_dataset(1000);
+    OWN(Dataset) *dataset = make_dataset(1000);
     uint32_t sequence = 9;
     for (int i = 0; i < 1000 * PAIR_CHANGES; i++) dataset->changes[i] = next_number(&sequence);
     Scores scores;
     TrainingOptions options = {.layers = 1, .widths = {PAIR_INPUTS, PAIR_CHANGES}, .optimizer = "gd"};
-    Network *start = train(dataset, options, &scores);
+    OWN(Network) *start = train(dataset, options, &scores);
     for (int i = 0; i < PAIR_INPUTS * PAIR_CHANGES; i++) start->weights[0][i] = 0;
     for (int k = 0; k < PAIR_CHANGES; k++) start->biases[0][k] = 1;
     options.start = start;
     options.iterations = 3;
-    Network *network = train(dataset, options, &scores);
+    OWN(Network) *network = train(dataset, options, &scores);
     for (int k = 0; k < PAIR_CHANGES; k++) assert_near(network->biases[0][k], 125.0 / 216, 1e-5);
-    network_destroy(network);
-    network_destroy(start);
-    dataset_destroy(dataset);
 }
 
 TEST(options_set_activations_and_scaling) {
-    Dataset *dataset = make_taught_dataset(100);
+    OWN(Dataset) *dataset = make_taught_dataset(100);
     const char *const hidden[] = {"sigmoid", "tanh", "relu"};
     const Activation expected[] = {ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
     Scores scores;
-    Network *plain = train(dataset, small("adam", 5), &scores);
+    OWN(Network) *plain = train(dataset, small("adam", 5), &scores);
     for (int h = 0; h < 3; h++)
         for (int form = 0; form < 3; form++) {
             TrainingOptions options = small("adam", 5);
             options.hidden = hidden[h];
             options.output_activation = form == 0 ? "sigmoid" : "linear";
             options.scale = form == 2 ? "standard" : "minmax";
-            Network *network = train(dataset, options, &scores);
+            OWN(Network) *network = train(dataset, options, &scores);
             assert_int_equal(network->activations[0], expected[h]);
             assert_int_equal(network->activations[1], form == 0 ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR);
             /* The constant predictor's error is 1 only if the outputs are standardised. */
             assert_true((fabs(last_score(&scores)->constant_train - 1) < 1e-4) == (form == 2));
             assert_memory_equal(network->output_mean, plain->output_mean, 2 * sizeof(float));
             assert_true(same_numbers(network, plain) == (h == 0 && form == 0));
-            network_destroy(network);
         }
     TrainingOptions options = small("adam", 5);
     options.output_activation = "linear"; /* implies standard */
     network_destroy(train(dataset, options, &scores));
     assert_near(last_score(&scores)->constant_train, 1, 1e-4);
-    network_destroy(plain);
-    dataset_destroy(dataset);
 }
 
 /* Glorot: |weight| <= limit, variance limit^2 / 3; biases 0. */
 TEST(first_weights_are_glorots) {
-    Dataset *dataset = make_taught_dataset(100);
+    OWN(Dataset) *dataset = make_taught_dataset(100);
     Scores scores;
     TrainingOptions options = small("adam", 0);
     options.widths[1] = 200;
-    Network *network = train(dataset, options, &scores);
+    OWN(Network) *network = train(dataset, options, &scores);
     double limit = sqrt(6.0 / 210), sum = 0, squares = 0;
     for (int i = 0; i < 2000; i++) {
         double weight = (double)network->weights[0][i];
@@ -187,43 +173,35 @@ TEST(first_weights_are_glorots) {
     assert_near(sum / 2000, 0, 4 * limit / sqrt(6000));
     assert_near(squares / 2000, limit * limit / 3, 4 * limit * limit * sqrt(4.0 / 45 / 2000));
     for (int j = 0; j < 200; j++) assert_true(network->biases[0][j] == 0);
-    network_destroy(network);
-    dataset_destroy(dataset);
 }
 
 /* Enough rows for several threads. */
 TEST(same_seed_same_bits) {
-    Dataset *dataset = make_taught_dataset(6000);
+    OWN(Dataset) *dataset = make_taught_dataset(6000);
     Scores scores;
     const char *const names[] = {"adam", "bfgs", "gd", "lm"};
     int threads = omp_get_max_threads();
     for (int i = 0; i < 4; i++) {
         TrainingOptions options = small(names[i], 8);
         omp_set_num_threads(1);
-        Network *first = train(dataset, options, &scores);
+        OWN(Network) *first = train(dataset, options, &scores);
         omp_set_num_threads(2);
-        Network *same = train(dataset, options, &scores);
+        OWN(Network) *same = train(dataset, options, &scores);
         options.seed = 2;
-        Network *other = train(dataset, options, &scores);
+        OWN(Network) *other = train(dataset, options, &scores);
         options.seed = UINT64_C(1) << 32;
-        Network *high = train(dataset, options, &scores);
+        OWN(Network) *high = train(dataset, options, &scores);
         options.seed = 0;
-        Network *zero = train(dataset, options, &scores);
+        OWN(Network) *zero = train(dataset, options, &scores);
         assert_true(same_numbers(first, same));
         assert_false(same_numbers(first, other));
         assert_false(same_numbers(high, zero));
-        network_destroy(zero);
-        network_destroy(high);
-        network_destroy(other);
-        network_destroy(same);
-        network_destroy(first);
     }
     omp_set_num_threads(threads);
-    dataset_destroy(dataset);
 }
 
 TEST(scores_are_reported_as_in_the_papers_table) {
-    Dataset *dataset = make_taught_dataset(100);
+    OWN(Dataset) *dataset = make_taught_dataset(100);
     Scores scores;
     const int expected[] = {0, 10, 50, 100, 1000, 2000, 5000, 5001};
     network_destroy(train(dataset, small("adam", 5001), &scores));
@@ -233,7 +211,6 @@ TEST(scores_are_reported_as_in_the_papers_table) {
     assert_int_equal(scores.count, 1);
     network_destroy(train(dataset, small("lm", 10), &scores));
     assert_int_equal(scores.count, 2);
-    dataset_destroy(dataset);
 }
 
 /* Stops the training when iteration `context` is done. */
@@ -243,7 +220,7 @@ static bool stop_at(void *context, double done, double total) {
 }
 
 TEST(stopped_training_returns_the_best_so_far) {
-    Dataset *dataset = make_taught_dataset(500);
+    OWN(Dataset) *dataset = make_taught_dataset(500);
     const char *const names[] = {"adam", "bfgs", "gd", "lm"};
     for (int i = 0; i < 4; i++) {
         Scores scores = {0};
@@ -252,19 +229,17 @@ TEST(stopped_training_returns_the_best_so_far) {
         TrainingOptions options = small(names[i], 5000);
         options.on_score = keep_score;
         options.context = &scores;
-        Network *network = training_run(dataset, &options, &progress, &error);
+        OWN(Network) *network = training_run(dataset, &options, &progress, &error);
         assert_ok(network != NULL, error);
         assert_int_equal(last_score(&scores)->iteration, 7);
         assert_true(error_of(network, dataset, false) <= 1.0001 * last_score(&scores)->train);
         assert_true(last_score(&scores)->train < scores.items[0].train);
-        network_destroy(network);
     }
-    dataset_destroy(dataset);
 }
 
 /* Adam overshoots with a wide network; the returned network never gets worse with more iterations. */
 TEST(training_returns_the_best_and_not_the_last) {
-    Dataset *dataset = make_taught_dataset(500);
+    OWN(Dataset) *dataset = make_taught_dataset(500);
     double best = INFINITY;
     int overshot = 0;
     for (int stop = 0; stop < 12; stop++) {
@@ -274,37 +249,30 @@ TEST(training_returns_the_best_and_not_the_last) {
         options.widths[1] = 40;
         options.on_score = keep_score;
         options.context = &scores;
-        Network *network = training_run(dataset, &options, &progress, &error);
+        OWN(Network) *network = training_run(dataset, &options, &progress, &error);
         assert_ok(network != NULL, error);
         double found = error_of(network, dataset, false);
         assert_true(found <= 1.0001 * best);
         best = fmin(best, found);
         overshot += last_score(&scores)->train > 1.01 * found;
-        network_destroy(network);
     }
     assert_true(overshot > 0);
-    dataset_destroy(dataset);
 }
 
 TEST(training_continues_from_a_start_network) {
-    Dataset *dataset = make_taught_dataset(500), *wider = make_taught_dataset(500);
+    OWN(Dataset) *dataset = make_taught_dataset(500), *wider = make_taught_dataset(500);
     for (int i = 0; i < 500 * PAIR_INPUTS; i++) wider->inputs[i] *= 2;
     Scores scores;
-    Network *start = train(dataset, small("lm", 5), &scores);
+    OWN(Network) *start = train(dataset, small("lm", 5), &scores);
     double reached = last_score(&scores)->train;
     TrainingOptions options = small("lm", 5);
     options.start = start;
-    Network *more = train(dataset, options, &scores);
+    OWN(Network) *more = train(dataset, options, &scores);
     assert_near(scores.items[0].train, reached, 1e-3 * reached);
     assert_true(last_score(&scores)->train < reached);
-    Network *elsewhere = train(wider, options, &scores);
+    OWN(Network) *elsewhere = train(wider, options, &scores);
     assert_memory_equal(elsewhere->input.scale, start->input.scale, PAIR_INPUTS * sizeof(float));
     assert_memory_equal(elsewhere->output.offset, start->output.offset, 2 * sizeof(float));
-    network_destroy(elsewhere);
-    network_destroy(more);
-    network_destroy(start);
-    dataset_destroy(wider);
-    dataset_destroy(dataset);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -13,10 +13,9 @@ enum { SWEEPS = 20, NUMBERS_MAX = 2 * CONTACTS_MAX };
 /* Runs a scene with the engine; calls observe after each step. */
 static void observe_scene(const char *name, bool (*observe)(void *, int, const World *, Error *), void *context) {
     Error error = {0};
-    Scene *scene = scene_named(name);
+    OWN(Scene) *scene = scene_named(name);
     const Method engine = method_named("engine");
     assert_ok(simulate_observed(scene, &engine, &(StepObserver){observe, context}, &error), error);
-    scene_destroy(scene);
 }
 
 static void warm_start(const ContactProblem *problem, double *start) {
@@ -46,7 +45,7 @@ static void assert_equals_scalar(Unrolled *unrolled, const ContactProblem *probl
     double start[NUMBERS_MAX];
     float in_float[SWEEPS];
     UnrolledProblem rows;
-    ContactSolution expected = make_solution(problem), before = make_solution(problem);
+    OWN(ContactSolution) expected = make_solution(problem), before = make_solution(problem);
     for (int s = 0; s < sweeps; s++) in_float[s] = (float)factors[s];
     warm_start(problem, start);
     assert_true(unrolled_problem_make(&rows, problem));
@@ -54,8 +53,6 @@ static void assert_equals_scalar(Unrolled *unrolled, const ContactProblem *probl
     momentum_solve_scalar(problem, rows.visits, in_float, sweeps, &before, &expected);
     assert_same_solution(problem, unrolled, &expected, roundings * rounding_of(problem));
     unrolled_problem_free(&rows);
-    free_solution(&expected);
-    free_solution(&before);
 }
 
 static bool frame_equals_scalar(void *context, int frame, const World *world, Error *error) {
@@ -92,13 +89,12 @@ TEST(the_start_is_projected_into_the_cone) {
             outside += (double)contact->warm_tangent != start[2 * i + 1];
         }
         UnrolledProblem rows;
-        ContactSolution expected = make_solution(&random.problem);
+        OWN(ContactSolution) expected = make_solution(&random.problem);
         assert_true(unrolled_problem_make(&rows, &random.problem));
         assert_true(unrolled_run(&unrolled, &rows, start, NULL, 0));
         sequential_impulses_begin(&random.problem, &engine_options, &expected);
         assert_same_solution(&random.problem, &unrolled, &expected, 1e-4);
         unrolled_problem_free(&rows);
-        free_solution(&expected);
     }
     assert_true(outside > 100);
     unrolled_free(&unrolled);
@@ -143,12 +139,14 @@ static void free_case(Case *given) {
     unrolled_free(&given->unrolled);
 }
 
+OWNED_VALUE(Case, free_case)
+
 /* Between kinks the loss is quadratic in each number, so central differences are exact up to rounding. Returns false if
    there is a kink within the step. */
 static bool difference(Case *given, double *number, double step, double *slope) {
     const size_t pieces = (size_t)(given->sweeps + 1) * (size_t)given->rows.contact_count;
     const double kept = *number;
-    uint8_t *taken = malloc(pieces + 1);
+    FREED uint8_t *taken = malloc(pieces + 1);
     assert_non_null(taken);
     *number = kept + step;
     *slope = run_case(given);
@@ -157,7 +155,6 @@ static bool difference(Case *given, double *number, double step, double *slope) 
     *slope = (*slope - run_case(given)) / (2 * step);
     *number = kept;
     bool same = memcmp(taken, given->unrolled.pieces, pieces) == 0;
-    free(taken);
     return same;
 }
 
@@ -178,7 +175,7 @@ static void check(Case *given, double *number, double derivative, Tally *tally) 
 
 /* Kinks and numbers without effect must be few, or errors would go unnoticed. */
 static void assert_derivatives(const ContactProblem *problem, int sweeps, uint32_t *seed) {
-    Case given = make_case(problem, sweeps, seed);
+    OWN(Case) given = make_case(problem, sweeps, seed);
     double by_velocity[3 * BODIES_MAX], by_start[NUMBERS_MAX], by_factors[SWEEPS];
     for (int s = 0; s < sweeps; s++) by_factors[s] = 7;
     run_case(&given);
@@ -191,7 +188,6 @@ static void assert_derivatives(const ContactProblem *problem, int sweeps, uint32
     assert_true(of_start.moved * 4 > of_start.checked);
     /* The first factor has no effect: no sweep precedes it. */
     assert_int_equal(of_factors.moved, sweeps > 0 ? sweeps - 1 : 0);
-    free_case(&given);
 }
 
 /* At the bomb's first touch. */
@@ -226,7 +222,7 @@ TEST(without_sweeps_the_derivative_is_that_of_an_impulse) {
     uint32_t seed = 9;
     RandomProblem random;
     make_random(&random, &seed, 10, 0.2f, 1);
-    Case given = make_case(&random.problem, 0, &seed);
+    OWN(Case) given = make_case(&random.problem, 0, &seed);
     for (int i = 0; i < random.problem.contact_count; i++) {
         given.start[2 * i] = 1;
         given.start[2 * i + 1] = (random.contacts[i].friction = 0.5f) * 0.9;
@@ -250,7 +246,6 @@ TEST(without_sweeps_the_derivative_is_that_of_an_impulse) {
         }
         assert_near(by_start[i], sum, 1e-12);
     }
-    free_case(&given);
 }
 
 /* A pulling start is clamped to 0, so neither of its impulses has an effect. */
@@ -259,12 +254,11 @@ TEST(a_start_that_pulls_has_no_effect) {
     RandomProblem random;
     double by_start[NUMBERS_MAX];
     make_random(&random, &seed, 10, 0.2f, 1);
-    Case given = make_case(&random.problem, 0, &seed);
+    OWN(Case) given = make_case(&random.problem, 0, &seed);
     for (int i = 0; i < 2 * random.problem.contact_count; i++) given.start[i] = i % 2 == 0 ? -1 : i % 3 - 1;
     run_case(&given);
     unrolled_back(&given.unrolled, &given.rows, given.weights, by_start, NULL);
     for (int i = 0; i < 2 * random.problem.contact_count; i++) assert_near(by_start[i], 0, 0);
-    free_case(&given);
 }
 
 /* Impulses are equal and opposite: without static bodies, no start and no factor changes the sum of m v. */
@@ -277,12 +271,11 @@ TEST(total_momentum_is_conserved) {
         if (random.bodies[i].inv_mass <= 0) random.bodies[i].inv_mass = random.bodies[i].inv_inertia = 0.5f;
         mass[3 * i] = 1 / (double)random.bodies[i].inv_mass;
     }
-    Case given = make_case(&random.problem, SWEEPS, &seed);
+    OWN(Case) given = make_case(&random.problem, SWEEPS, &seed);
     run_case(&given);
     unrolled_back(&given.unrolled, &given.rows, mass, by_start, by_factors);
     for (int i = 0; i < 2 * random.problem.contact_count; i++) assert_near(by_start[i], 0, 1e-9);
     for (int s = 0; s < SWEEPS; s++) assert_near(by_factors[s], 0, 1e-9);
-    free_case(&given);
 }
 
 /* Earlier, larger problems and earlier backward passes do not change the result. */

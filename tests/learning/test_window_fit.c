@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Slopes through 32 predictions are finite differences of the loss; the stored predictor is the trained one. */
-#include "testing.h"
+#include "owned.h"
 
 #include "engine/uniform.h"
 #include "learning/subspace_training.h"
-
-#include <math.h>
 
 enum { LAUNCHES = 3, STATES = 40, COMPONENTS = 3, HIDDEN = 16 };
 
@@ -83,18 +81,18 @@ TEST(the_stored_predictor_is_the_trained_one) {
     WindowFit *fit = fit_of(&c);
     const WindowScales *scales = window_fit_scales(fit);
     const Network *shape = window_fit_shape(fit);
-    double *parameters = calloc((size_t)network_parameter_count(shape), sizeof *parameters);
+    FREED double *parameters = calloc((size_t)network_parameter_count(shape), sizeof *parameters);
     assert_non_null(parameters);
     window_fit_begin(fit, 4, parameters);
     NetworkBlock *block = network_block_create(shape, &error);
     assert_ok(block != NULL, error);
     const SubspaceShape sizes = {
         .bodies = 2, .components = COMPONENTS, .hidden = HIDDEN, .predictor_count = 1, .predictors = {COMPONENTS}};
-    SubspaceNet *net = subspace_net_create(&sizes, &error);
+    OWN(SubspaceNet) *net = subspace_net_create(&sizes, &error);
     assert_ok(net != NULL, error);
     for (int k = 0; k < COMPONENTS; k++) net->low[k] = -100, net->high[k] = 100;
     window_scales_store(&c.data, scales, parameters, &net->predictors[0]);
-    Subspace subspace;
+    OWN(Subspace) subspace;
     assert_ok(subspace_make(&subspace, net, &net->predictors[0], true, &error), error);
     const float last[] = {0.2f, 0.3f, -0.4f}, now[] = {0.25f, 0.2f, -0.5f}, launch[SUBSPACE_LAUNCH] = {1.5f, 2, 50, 50};
     for (int k = 0; k < COMPONENTS; k++) {
@@ -112,10 +110,7 @@ TEST(the_stored_predictor_is_the_trained_one) {
                     c.linear[k] * (double)now[k] + c.linear[COMPONENTS + k] * (double)last[k] +
                         scales->output[k] * block->values[3][k * BLOCK_ROWS],
                     1e-5);
-    subspace_free(&subspace);
-    subspace_net_destroy(net);
     network_block_destroy(block);
-    free(parameters);
     window_fit_destroy(fit);
 }
 

@@ -9,8 +9,6 @@
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
-#include <math.h>
-
 #define npz_archive_open bundle_archive_open
 #define npz_archive_close bundle_archive_close
 #define npz_archive_count bundle_archive_count
@@ -131,9 +129,8 @@ TEST(a_refused_launch_ends_the_run) {
 
 TEST(a_bundle_has_no_folder) {
     size_t size;
-    char *bundle = bundle_of("stack", &size);
+    FREED char *bundle = bundle_of("stack", &size);
     for (size_t i = 0; i + 7 < size; i++) assert_memory_not_equal(bundle + i, "scenes/", 7);
-    free(bundle);
 }
 
 TEST(every_method_can_be_live_but_two) {
@@ -163,7 +160,7 @@ TEST(damaged_bundles_do_no_harm) {
     size_t size;
     int opened = 0;
     const int rounds = 3000 / sampled(10);
-    unsigned char *bundle = bundle_of("stability/stack_height", &size);
+    FREED unsigned char *bundle = bundle_of("stability/stack_height", &size);
     uint64_t random = 1;
     for (int round = 0; round < rounds; round++) {
         const size_t length = round % 4 == 0 ? (size_t)random_below(&random, (int)size) : size;
@@ -179,7 +176,6 @@ TEST(damaged_bundles_do_no_harm) {
         live_close(scene);
     }
     assert_true(opened > rounds / 10 && opened < rounds);
-    free(bundle);
 }
 
 /* A bundle's numbers are little-endian. */

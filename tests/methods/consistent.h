@@ -5,8 +5,6 @@
 
 #include "engine/engine.h"
 
-#include <math.h>
-
 /* Velocities are those that the impulses make: b gets +, a gets -. */
 static inline void assert_consistent(const ContactProblem *problem, const ContactSolution *solution) {
     for (int i = 0; i < problem->body_count; i++) {

@@ -2,12 +2,10 @@
 /* Every sweep kernel of this processor against the scalar reference implementation. */
 #pragma once
 #include "momentum_scalar.h"
-#include "testing.h"
+#include "owned.h"
 
 #include "methods/momentum.h"
 #include "methods/sweeps.h"
-
-#include <math.h>
 
 /* As the engine sweeps. */
 static const SequentialOptions engine_options = {.accumulate = true, .warm = true};
@@ -26,6 +24,8 @@ static inline void free_solution(ContactSolution *solution) {
     free(solution->velocities);
     free(solution->impulses);
 }
+
+OWNED_VALUE(ContactSolution, free_solution)
 
 /* The rounding error of the largest velocity of a problem, m/s and rad/s: the unit of differences between solvers that
    perform the same operations in another order. */

@@ -6,8 +6,6 @@
 #include "base/base.h"
 #include "methods/steppers.h"
 
-#include <stdlib.h>
-
 enum { HEAP_BODIES = 7, HEAP_PARTICLES = HEAP_BODIES * BOX_PARTICLES };
 
 typedef struct ParticleHeap {

@@ -6,8 +6,6 @@
 #include "engine/uniform.h"
 #include "methods/interior_point_internal.h"
 
-#include <math.h>
-
 enum { NODES_MAX = 160, EDGES_MAX = 700, ROWS_MAX = 3 * NODES_MAX };
 
 typedef struct RandomBlocks {

@@ -6,8 +6,6 @@
 #include "engine/uniform.h"
 #include "worlds.h"
 
-#include <math.h>
-
 enum { BODIES_MAX = 80, CONTACTS_MAX = 500 };
 
 typedef struct RandomProblem {

@@ -20,16 +20,14 @@ static World *make_pyramid(void) {
 }
 
 static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char *text) {
-    World *world = make_pyramid();
+    OWN(World) *world = make_pyramid();
     allocations = 0;
-    ContactSolver solver = make_solver(kind, text);
+    OWN(ContactSolver) solver = make_solver(kind, text);
     run(world, &solver, 60);
     assert_true(allocations > 10);
     allocations = 0;
     run(world, &solver, 60);
     assert_int_equal(allocations, 0);
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 TEST(a_settled_pyramid_steps_without_allocating) {
@@ -45,34 +43,31 @@ TEST(a_settled_pyramid_steps_without_allocating) {
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */
 TEST(pair_networks_solve_without_allocating) {
-    World *world = make_pyramid();
-    ContactSolver engine = make_engine("");
+    OWN(World) *world = make_pyramid();
+    OWN(ContactSolver) engine = make_engine("");
     run(world, &engine, 10);
     const ContactProblem *problem = world_problem(world);
     ContactSolution solution = *world_solution(world);
     for (PairTarget target = TARGET_PAIR; target < PAIR_TARGETS; target++) {
         const PairView view = target == TARGET_IMPULSE ? PAIR_RELATIVE : PAIR_NEIGHBOURS;
         const ContactSolverKind *kind = target == TARGET_POINTS ? &solver_contact_net : &solver_pair_net;
-        ContactSolver solver =
-            make_network_solver(kind, constant_network(view, target, pair_change_count(target), six), 3);
+        OWN(ContactSolver)
+        solver = make_network_solver(kind, constant_network(view, target, pair_change_count(target), six), 3);
         allocations = 0;
         assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
         assert_int_equal(allocations > 0, target != TARGET_IMPULSE);
         allocations = 0;
         assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
         assert_int_equal(allocations, 0);
-        free_solver(&solver);
     }
-    free_solver(&engine);
-    world_destroy(world);
 }
 
 TEST(a_view_of_no_larger_problem_allocates_nothing) {
     static RandomProblem large, small;
     uint32_t seed = 1;
     SceneView view = {0};
-    SceneNet *network = make_scene_net_problem(&large, &seed, 20, 0.5f, 1);
-    SceneNet *smaller = make_scene_net_problem(&small, &seed, 12, 0.5f, 1);
+    OWN(SceneNet) *network = make_scene_net_problem(&large, &seed, 20, 0.5f, 1);
+    OWN(SceneNet) *smaller = make_scene_net_problem(&small, &seed, 12, 0.5f, 1);
     allocations = 0;
     assert_true(scene_view_take(&view, network, &large.problem));
     assert_true(allocations > 0);
@@ -82,18 +77,16 @@ TEST(a_view_of_no_larger_problem_allocates_nothing) {
     assert_true(scene_view_take(&view, network, &large.problem));
     assert_int_equal(allocations, 0);
     scene_view_free(&view);
-    scene_net_destroy(smaller);
-    scene_net_destroy(network);
 }
 
 TEST(a_network_of_a_scene_solves_without_allocating) {
     static RandomProblem random;
     uint32_t seed = 4;
-    ContactSolver solver;
+    OWN(ContactSolver) solver;
     BodyVelocity velocities[BODIES_MAX];
     ContactImpulse impulses[CONTACTS_MAX];
     ContactSolution solution = {velocities, impulses, 0, {0}};
-    SceneNet *network = make_scene_net_problem(&random, &seed, 20, 0.5f, 0.7f);
+    OWN(SceneNet) *network = make_scene_net_problem(&random, &seed, 20, 0.5f, 0.7f);
     random.problem.bomb = network->bomb;
     network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;
     network->sweeps = 6;
@@ -105,15 +98,13 @@ TEST(a_network_of_a_scene_solves_without_allocating) {
     allocations = 0;
     assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
     assert_int_equal(allocations, 0);
-    free_solver(&solver);
-    scene_net_destroy(network);
 }
 
 TEST(corrected_steps_allocate_nothing) {
     uint32_t seed = 1;
-    SainNetwork network;
+    OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 0.1f);
-    World *world = make_pyramid();
+    OWN(World) *world = make_pyramid();
     ContactSolver engine = make_engine(""), solver;
     run(world, &engine, 10);
     const ContactProblem *problem = world_problem(world);
@@ -127,8 +118,6 @@ TEST(corrected_steps_allocate_nothing) {
         free_solver(&solver);
     }
     free_solver(&engine);
-    world_destroy(world);
-    sain_network_destroy(&network);
 }
 
 RUN_TESTS(NULL, NULL)

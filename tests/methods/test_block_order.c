@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Orders of elimination: of graphs whose fill is known in closed form, and of large ones. Both ways to order are met:
    graphs of up to 128 nodes and larger ones. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/hash.h"
 #include "methods/block_lu.h"
@@ -23,9 +23,8 @@ static BlockLu analysed(int count, int edge_count) {
 }
 
 static int fill_of(int count, int edge_count) {
-    BlockLu lu = analysed(count, edge_count);
+    OWN(BlockLu) lu = analysed(count, edge_count);
     const int below = lu.below;
-    block_lu_free(&lu);
     return below - edge_count;
 }
 
@@ -89,11 +88,10 @@ static int make_wall(int side) {
 /* Row by row, side^3 blocks; the best orders have about 7.75 side^2 log2(side) (George 1973). */
 TEST(walls_fill_in_little) {
     for (int side = 8; side <= 128; side *= 2) {
-        BlockLu lu = analysed(side * side, make_wall(side));
+        OWN(BlockLu) lu = analysed(side * side, make_wall(side));
         int log2_of_side = 0;
         while (1 << log2_of_side < side) log2_of_side++;
         assert_true(lu.below < 8 * side * side * log2_of_side);
-        block_lu_free(&lu);
     }
 }
 
@@ -104,25 +102,22 @@ TEST(the_order_of_a_wall_is_the_same_everywhere) {
         uint64_t hash;
     } walls[] = {{10, UINT64_C(0x5aa126d689aabc27)}, {40, UINT64_C(0xb2cd2974447f7ab2)}};
     for (size_t i = 0; i < 2; i++) {
-        BlockLu lu = analysed(walls[i].side * walls[i].side, make_wall(walls[i].side));
+        OWN(BlockLu) lu = analysed(walls[i].side * walls[i].side, make_wall(walls[i].side));
         assert_int_equal(hash_xxh3(lu.position, (size_t)lu.count * sizeof *lu.position), walls[i].hash);
-        block_lu_free(&lu);
     }
 }
 
 /* An analysis after others, of any size, is that of a fresh start. */
 TEST(earlier_graphs_leave_no_trace) {
-    BlockLu used = {0};
+    OWN(BlockLu) used = {0};
     for (int side = 14; side >= 2; side -= 4) {
         const int count = side * side, edge_count = make_wall(side);
         assert_true(block_lu_analyse(&used, count, edges, edge_count));
-        BlockLu fresh = analysed(count, edge_count);
+        OWN(BlockLu) fresh = analysed(count, edge_count);
         assert_int_equal(used.below, fresh.below);
         assert_memory_equal(used.position, fresh.position, (size_t)count * sizeof *used.position);
         assert_memory_equal(used.row, fresh.row, (size_t)fresh.below * sizeof *used.row);
-        block_lu_free(&fresh);
     }
-    block_lu_free(&used);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -4,8 +4,6 @@
 
 #include "methods/steppers.h"
 
-#include <math.h>
-
 TEST(angles_are_those_of_the_maths_library) {
     for (int i = -1000; i <= 1000; i++) {
         const double angle = 3.14159 * i / 1000, length = 0.01 + (double)(i * i);

@@ -66,11 +66,10 @@ TEST(random_problems_stay_in_the_cone) {
     uint32_t seed = 5;
     for (int i = 0; i < 100; i++) {
         make_random(&random, &seed, 2 + i % 30, 0.3f, 1);
-        ContactSolution found = make_solution(&random.problem);
+        OWN(ContactSolution) found = make_solution(&random.problem);
         solve_with(&solver_closed_form, "damping=1", &random.problem, &found);
         assert_in_cone(&random.problem, found.impulses);
         assert_velocities_fit(&random.problem, &found);
-        free_solution(&found);
     }
 }
 
@@ -91,31 +90,28 @@ static World *make_stack(const char *settings, int boxes) {
     World *world = make_world();
     add_ground(world, 0.2f);
     for (int i = 0; i < boxes; i++) add_box(world, 3, 0.2f, vec2(0, 0.5f + 0.999f * (float)i));
-    ContactSolver solver = make_solver(&solver_closed_form, settings);
+    OWN(ContactSolver) solver = make_solver(&solver_closed_form, settings);
     run(world, &solver, 1200);
-    free_solver(&solver);
     return world;
 }
 
 /* The box sinks until the spring carries it: S (k (depth - fall) - damping fall) = fall. */
 TEST(a_box_at_rest_carries_its_weight) {
-    World *world = make_stack("stiffness=0.5,damping=0.075", 1);
+    OWN(World) *world = make_stack("stiffness=0.5,damping=0.075", 1);
     const ContactImpulse *impulses = world_solution(world)->impulses;
     assert_int_equal(world_problem(world)->contact_count, 2);
     assert_near(impulses[0].normal + impulses[1].normal, 3 * 10 * world_dt, 1e-4);
     assert_near(depth_below(world, 1), fall * (1 / on_ground - 0.575) / 0.5, 2e-5);
     assert_near(world_bodies(world)[1].velocity.y, 0, 1e-4);
-    world_destroy(world);
 }
 
 /* Where it fails: the overlap grows with the load, and more between boxes than on the ground. */
 TEST(a_stack_sinks_into_itself) {
     enum { BOXES = 3 };
-    World *world = make_stack("stiffness=0.5,damping=0", BOXES);
+    OWN(World) *world = make_stack("stiffness=0.5,damping=0", BOXES);
     assert_near(depth_below(world, 1), fall * (BOXES / on_ground - 0.5) / 0.5, 1e-4);
     for (int box = 2; box <= BOXES; box++)
         assert_near(depth_below(world, box), fall * (BOXES + 1 - box) / on_box / 0.5, 1e-4);
-    world_destroy(world);
 }
 
 RUN_TESTS(NULL, NULL)

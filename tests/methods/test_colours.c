@@ -5,6 +5,8 @@
 
 #include "methods/sweeps.h"
 
+OWNED_VALUE(Colours, colours_free)
+
 static bool moves(const ContactProblem *problem, int body) {
     return problem->bodies[body].inv_mass != 0 || problem->bodies[body].inv_inertia != 0;
 }
@@ -64,7 +66,7 @@ static void surfaces_stay_together(const ContactProblem *problem, const int32_t 
 
 TEST(an_order_has_few_colours) {
     static RandomProblem random;
-    Colours colours = {0};
+    OWN(Colours) colours = {0};
     uint32_t seed = 12;
     for (int i = 0; i < 200; i++) {
         make_random(&random, &seed, 2 + i % (BODIES_MAX - 1), i % 2 == 0 ? 0.4f : 0.05f, 2);
@@ -74,14 +76,13 @@ TEST(an_order_has_few_colours) {
         /* A pair shares its bodies with no more others than those have contacts. */
         assert_in_range(count_runs(&random.problem, colours.visits), 0, 2 * most_met(&random.problem) + 1);
     }
-    colours_free(&colours);
 }
 
 /* Ten boxes, one on the other: every second pair, then the others. */
 TEST(a_chain_has_two_colours) {
     enum { LINKS = 10 };
     static RandomProblem random;
-    Colours colours = {0};
+    OWN(Colours) colours = {0};
     uint32_t seed = 2;
     make_random(&random, &seed, LINKS + 1, 0, 1);
     for (int i = 0; i < LINKS; i++) {
@@ -93,14 +94,13 @@ TEST(a_chain_has_two_colours) {
     assert_true(colours_order(&colours, &random.problem));
     static const int32_t expected[LINKS] = {1, 3, 5, 7, 9, 0, 2, 4, 6, 8};
     assert_memory_equal(colours.visits, expected, sizeof expected);
-    colours_free(&colours);
 }
 
 /* On the ground, which no impulse moves, all lie at once; on a body that moves one after the other, and there are more of
    them than colours. */
 TEST(a_star_has_one_colour_or_more_than_there_are) {
     static RandomProblem random;
-    Colours colours = {0};
+    OWN(Colours) colours = {0};
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
     uint32_t seed = 3;
     float factors[10];
@@ -118,7 +118,6 @@ TEST(a_star_has_one_colour_or_more_than_there_are) {
         assert_momentum_kernels_agree(sweeps, &random.problem, true, factors, 10);
     }
     free_kernels(sweeps);
-    colours_free(&colours);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -198,12 +198,12 @@ TEST(what_is_not_finite_leaves_a_point_its_warm_start) {
 
 /* A box that touches the ground for three steps, each of which asks for as much again. */
 TEST(impulses_are_the_next_steps_warm_start) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_ground(world, 0.2f);
     add_box(world, 1, 0.2f, vec2(0, 0.4f));
     const float little[PAIR_POINT_CHANGES] = {0.02f, 0, 0.03f, 0};
-    ContactSolver solver =
-        make_network_solver(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, little), 1);
+    OWN(ContactSolver)
+    solver = make_network_solver(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, little), 1);
     for (int i = 1; i <= 3; i++) {
         run(world, &solver, 1);
         assert_int_equal(world_problem(world)->contact_count, 2);
@@ -211,8 +211,6 @@ TEST(impulses_are_the_next_steps_warm_start) {
         assert_near(world_solution(world)->impulses[0].normal, 0.02 * i, 1e-6);
         assert_near(world_solution(world)->impulses[1].normal, 0.03 * i, 1e-6);
     }
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The methods exec and exec-solver read what a program writes: answers with random damage end the run with a reason, or are
    numbers that an engine or a solver could have answered. The program is a shell that writes a file whatever it is asked. */
-#include "testing.h"
+#include "owned.h"
 
 #include "methods/adapter.h"
 #include "methods/methods.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
-
-#include <math.h>
 
 enum { FRAMES = 6, BODIES = 2, DAMAGES = 100, ANSWERS_MAX = 4096 };
 
@@ -88,17 +86,14 @@ static bool run_program(const char *name, const Answers *answers, float y, int f
     /* The number gives each run a process of its own. */
     snprintf(method_text, sizeof method_text, "%s:/bin/sh %s %s %d,step_limit=%d", name, shell, path, runs++, seconds);
     programs_allow(method_text);
-    char text[256];
-    snprintf(text, sizeof text,
-             "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: %d\nbodies:\n"
-             "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n"
-             "  - {size: [1, 1], mass: 1, position: [0, %g], friction: 0.2}\n",
-             frames, (double)y);
-    Scene *scene = scene_read(write_bytes(temporary_path("fall.yaml"), text, strlen(text)), error);
+    const char *text = printed("gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: %d\nbodies:\n"
+                               "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n"
+                               "  - {size: [1, 1], mass: 1, position: [0, %g], friction: 0.2}\n",
+                               frames, (double)y);
+    OWN(Scene) *scene = scene_read(write_bytes(temporary_path("fall.yaml"), text, strlen(text)), error);
     assert_ok(scene != NULL, *error);
     assert_ok(method_parse(&method, method_text, error), *error);
     const bool done = simulate_watched(scene, &method, &(RunWatch){.observer_count = 0}, error);
-    scene_destroy(scene);
     return done;
 }
 

@@ -4,8 +4,6 @@
 #include "methods/particle_heap.h"
 #include "allocations.h"
 
-#include <math.h>
-
 static BodyDef box_at(float x, float y) {
     return (BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {x, y}, .angle = 0.1f * y};
 }
@@ -23,13 +21,12 @@ static Scene scene_of(BodyDef *bodies, int count) {
 /* size: of the parameters, each uniform between -size and size. */
 static const char *write_net(float size, float strongest) {
     Error error = {0};
-    GnsNet net;
+    OWN(GnsNet) net;
     make_net(&net, 16, 2);
     for (int i = 0; i < net.layout.parameters; i++) net.parameters[i] *= size / 0.4f;
     net.scales.strongest = strongest;
     const char *path = temporary_path("net.npz");
     assert_ok(gns_net_write(&net, path, &error), error);
-    gns_net_free(&net);
     return path;
 }
 
@@ -42,9 +39,7 @@ typedef struct Run {
 static void begin(Run *run, BodyDef *bodies, int count, const char *settings, const char *net) {
     Error error = {0};
     Method method;
-    char text[METHOD_TEXT_SIZE];
-    snprintf(text, sizeof text, "gns%s", settings);
-    assert_ok(method_with_network(&method, text, net, &error), error);
+    assert_ok(method_with_network(&method, printed("gns%s", settings), net, &error), error);
     run->scene = scene_of(bodies, count);
     run->world = world_of(&run->scene);
     run->stepper = stepper_of(&run->scene, &method);

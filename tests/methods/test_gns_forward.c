@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The graph and the forward pass of gns. */
 #include "particle_heap.h"
+#include "owned.h"
 
 #include "methods/steppers.h"
 
-#include <string.h>
+OWNED_VALUE(GnsGraph, gns_graph_free)
 
 static void build(GnsGraph *graph, const ParticleHeap *heap, const GnsNet *net) {
     assert_true(gns_graph_build(graph, &heap->particles, &heap->ground, 1, &net->scales));
@@ -14,7 +15,7 @@ static void build(GnsGraph *graph, const ParticleHeap *heap, const GnsNet *net) 
 TEST(edges_are_those_of_all_pairs) {
     static ParticleHeap heap;
     GnsNet net;
-    GnsGraph graph = {.nodes = 0};
+    OWN(GnsGraph) graph = {.nodes = 0};
     make_heap(&heap, heap_order);
     make_net(&net, 16, 1);
     build(&graph, &heap, &net);
@@ -35,15 +36,14 @@ TEST(edges_are_those_of_all_pairs) {
         }
     assert_int_equal(found, graph.edges);
     assert_false(graph.beyond);
-    gns_graph_free(&graph);
     gns_net_free(&net);
 }
 
 /* Boxes in one place do not make a number of edges that grows with its square; a fast particle is clamped. */
 TEST(what_training_never_had_is_told) {
     static ParticleHeap heap;
-    GnsNet net;
-    GnsGraph graph = {.nodes = 0};
+    OWN(GnsNet) net;
+    OWN(GnsGraph) graph = {.nodes = 0};
     make_heap(&heap, heap_order);
     make_net(&net, 16, 1);
     heap.velocity[40][2].y = -1e30f;
@@ -55,19 +55,16 @@ TEST(what_training_never_had_is_told) {
     build(&graph, &heap, &net);
     assert_true(graph.beyond);
     assert_int_equal(graph.edges, HEAP_PARTICLES * GNS_NEIGHBOURS);
-    gns_graph_free(&graph);
-    gns_net_free(&net);
 }
 
 /* outputs[HEAP_PARTICLES, GNS_OUTPUTS] */
 static void predict(const ParticleHeap *heap, const GnsNet *net, const GnsKernels *kernels, bool tape, float *outputs) {
-    GnsGraph graph = {.nodes = 0};
+    OWN(GnsGraph) graph = {.nodes = 0};
     GnsPass pass = {.tape = tape, .kernels = kernels};
     build(&graph, heap, net);
     assert_true(gns_forward(&pass, &net->layout, net->parameters, &graph));
     memcpy(outputs, pass.outputs, HEAP_PARTICLES * GNS_OUTPUTS * sizeof *outputs);
     gns_pass_free(&pass);
-    gns_graph_free(&graph);
 }
 
 TEST(all_kernels_have_the_same_bits) {
@@ -77,7 +74,7 @@ TEST(all_kernels_have_the_same_bits) {
     kernels_list(list);
     make_heap(&heap, heap_order);
     for (int width = 16; width <= 48; width += 16) {
-        GnsNet net;
+        OWN(GnsNet) net;
         make_net(&net, width, 3);
         predict(&heap, &net, &list[0]->gns, false, first);
         assert_true(first[0] != first[1]);
@@ -86,7 +83,6 @@ TEST(all_kernels_have_the_same_bits) {
                 predict(&heap, &net, &list[k]->gns, tape == 1, other);
                 assert_memory_equal(first, other, sizeof first);
             }
-        gns_net_free(&net);
     }
 }
 
@@ -95,7 +91,7 @@ TEST(the_order_of_bodies_does_not_count) {
     static const int mixed[HEAP_BODIES] = {4, 2, 6, 0, 5, 3, 1};
     static ParticleHeap heap, other;
     static float first[HEAP_PARTICLES][GNS_OUTPUTS], second[HEAP_PARTICLES][GNS_OUTPUTS];
-    GnsNet net;
+    OWN(GnsNet) net;
     make_heap(&heap, heap_order);
     make_heap(&other, mixed);
     make_net(&net, 16, 4);
@@ -104,7 +100,6 @@ TEST(the_order_of_bodies_does_not_count) {
     for (int i = 0; i < HEAP_PARTICLES; i++)
         for (int k = 0; k < GNS_OUTPUTS; k++)
             assert_near(second[i][k], first[mixed[i / BOX_PARTICLES] * BOX_PARTICLES + i % BOX_PARTICLES][k], 1e-4);
-    gns_net_free(&net);
 }
 
 /* With M rounds, a particle hears of those at most M edges away. */
@@ -112,7 +107,7 @@ TEST(news_travels_one_edge_a_round) {
     static ParticleHeap heap, other;
     static float first[HEAP_PARTICLES * GNS_OUTPUTS], second[HEAP_PARTICLES * GNS_OUTPUTS];
     for (int rounds = 1; rounds <= 3; rounds++) {
-        GnsNet net;
+        OWN(GnsNet) net;
         make_heap(&heap, heap_order);
         for (int i = 0; i < HEAP_PARTICLES; i++) heap.position[i] = vec2(0.5f * (float)i, 0); /* a row */
         make_net(&net, 16, rounds);
@@ -125,7 +120,6 @@ TEST(news_travels_one_edge_a_round) {
             assert_int_equal(i <= rounds,
                              memcmp(first + (ptrdiff_t)i * GNS_OUTPUTS, second + (ptrdiff_t)i * GNS_OUTPUTS,
                                     GNS_OUTPUTS * sizeof *first) != 0);
-        gns_net_free(&net);
     }
 }
 

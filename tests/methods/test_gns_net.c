@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of gns. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/npz.h"
 #include "nets/kinds.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 TEST(what_is_written_is_read_again) {
-    GnsNet net, read;
+    OWN(GnsNet) net, read;
     const char *path = temporary_path("net.npz");
     assert_ok(gns_net_create(&net, 32, 3, &error), error);
     for (int i = 0; i < net.layout.parameters; i++) net.parameters[i] = (float)(i - 100) / 7;
@@ -25,8 +21,6 @@ TEST(what_is_written_is_read_again) {
     assert_memory_equal(&read.scales, &net.scales, sizeof net.scales);
     assert_memory_equal(&read.gravity, &net.gravity, sizeof net.gravity);
     assert_memory_equal(read.parameters, net.parameters, (size_t)net.layout.parameters * sizeof *net.parameters);
-    gns_net_free(&net);
-    gns_net_free(&read);
 }
 
 typedef struct File {
@@ -42,7 +36,7 @@ static const char *write_file(File of) {
     const int32_t shape[2] = {of.width, of.rounds};
     const float scales[5] = {of.scale, 1, 1, 1, 1}, gravity[2] = {0, -10};
     const GnsLayout layout = gns_layout(16, 1);
-    float *parameters = calloc((size_t)layout.parameters + 1, sizeof *parameters);
+    FREED float *parameters = calloc((size_t)layout.parameters + 1, sizeof *parameters);
     assert_non_null(parameters);
     parameters[7] = of.number;
     const NpzArray arrays[] = {{.name = "version", .type = NPZ_INT32, .data = &of.version},
@@ -53,15 +47,13 @@ static const char *write_file(File of) {
                                {"gravity", NPZ_FLOAT32, 1, {2}, gravity},
                                {"parameters", NPZ_FLOAT32, 1, {layout.parameters + of.extra}, parameters}};
     assert_ok(npz_write(path, arrays, sizeof arrays / sizeof *arrays, &error), error);
-    free(parameters);
     return path;
 }
 
 static void refuse(const char *path, const char *text) {
     Error error = {0};
-    GnsNet net;
+    OWN(GnsNet) net;
     assert_refused(gns_net_read(&net, path, &error), text);
-    gns_net_free(&net);
 }
 
 TEST(hostile_files_are_refused) {

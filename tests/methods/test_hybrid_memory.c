@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of the memory: who answers, with what, and how ellipsoids grow and shrink. */
 #include "memories.h"
-
-#include <math.h>
+#include "owned.h"
 
 TEST(entries_answer_inside_their_ball_and_for_their_contacts_only) {
-    HybridMemory *memory = make_memory();
+    OWN(HybridMemory) *memory = make_memory();
     float key[KEY] = {1, 2, 3};
     HybridQuery query = {7 + 4, 4, key};
     assert_int_equal(hybrid_memory_find(memory, &query), -1);
@@ -21,11 +20,10 @@ TEST(entries_answer_inside_their_ball_and_for_their_contacts_only) {
     assert_int_equal(hybrid_memory_find(memory, &query), -1);
     query = (HybridQuery){7 + 3, 3, key};
     assert_int_equal(hybrid_memory_nearest(memory, &query, 3), -1);
-    hybrid_memory_destroy(memory);
 }
 
 TEST(the_most_central_entry_answers) {
-    HybridMemory *memory = make_memory();
+    OWN(HybridMemory) *memory = make_memory();
     for (int i = 0; i < 200; i++) { /* the table of sets grows, too */
         const float key[KEY] = {(float)(i / 4)};
         add_entry(memory, i % 4, key, (float)i, 3, NULL, NULL);
@@ -37,12 +35,11 @@ TEST(the_most_central_entry_answers) {
         assert_int_equal(hybrid_memory_nearest(memory, &query, 3), i);
     }
     assert_int_equal(memory->set_count, 4);
-    hybrid_memory_destroy(memory);
 }
 
 /* Three entries of a linear map; the third interpolates between them. */
 TEST(a_linear_map_is_answered_exactly) {
-    HybridMemory *memory = make_memory();
+    OWN(HybridMemory) *memory = make_memory();
     const float along_x[KEY] = {1}, along_y[KEY] = {0, 1}, origin[KEY] = {0}, at[KEY] = {0.5f, -2};
     add_entry(memory, 2, along_x, 3, 1, NULL, NULL);
     add_entry(memory, 2, along_y, 5, 1, NULL, NULL);
@@ -57,7 +54,6 @@ TEST(a_linear_map_is_answered_exactly) {
         assert_near(impulses[i].normal, 1 + 2 * 0.5 + 4 * -2 + i, 1e-5);
         assert_near(impulses[i].tangent, 0.1 * (1 + 2 * 0.5 + 4 * -2 + i), 1e-5);
     }
-    hybrid_memory_destroy(memory);
 }
 
 /* The new point is on the border. Growth keeps all that was inside, a cut all that was outside; `reach` bounds all
@@ -65,7 +61,7 @@ TEST(a_linear_map_is_answered_exactly) {
 TEST(ellipsoids_grow_and_shrink_to_a_point) {
     uint32_t seed = 3;
     for (int run = 0; run < 50; run++) {
-        HybridMemory *memory = make_memory();
+        OWN(HybridMemory) *memory = make_memory();
         const float origin[KEY] = {0};
         add_entry(memory, 1, origin, 1, 1, NULL, NULL);
         for (int turn = 0; turn < 6; turn++) {
@@ -88,13 +84,12 @@ TEST(ellipsoids_grow_and_shrink_to_a_point) {
         }
         hybrid_memory_stretch(memory, 0, origin); /* nothing */
         assert_near(hybrid_memory_distance(memory, 0, origin), 0, 0);
-        hybrid_memory_destroy(memory);
     }
 }
 
 /* With rows of unit vectors: numbers along them are components, all others make the distance. */
 TEST(a_key_has_components_and_the_distance_from_their_space) {
-    HybridMemory *memory = make_memory();
+    OWN(HybridMemory) *memory = make_memory();
     float key[KEY], bomb[HYBRID_NUMBERS] = {1, 2, 3, 4, 5, 6}, others[2 * HYBRID_NUMBERS] = {0};
     memory->rows[3 * COMPONENTS] = memory->rows[8 * COMPONENTS + 1] = 1;
     memory->centre[8] = 10;
@@ -107,7 +102,6 @@ TEST(a_key_has_components_and_the_distance_from_their_space) {
     assert_near(key[6], 2, 0);
     assert_near(key[7], 3, 0);
     assert_near(key[8], 5, 1e-5);
-    hybrid_memory_destroy(memory);
 }
 
 /* A box of 2 m by 1 m at 60 Hz: an overlap of 1 m is pushed apart at 12 m/s. */

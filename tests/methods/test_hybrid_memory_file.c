@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Memory files: what is written is read again, and hostile files are refused with their reason. */
 #include "memories.h"
-
-#include <math.h>
+#include "owned.h"
 
 /* Two sets, three entries; the last has a neighbour. */
 static HybridMemory *make_three(void) {
@@ -19,10 +18,10 @@ static HybridMemory *make_three(void) {
 }
 
 TEST(what_is_written_is_read_again) {
-    HybridMemory *memory = make_three();
+    OWN(HybridMemory) *memory = make_three();
     const char *path = temporary_path("memory.npz");
     assert_ok(hybrid_memory_write(memory, path, &error), error);
-    HybridMemory *read = hybrid_memory_read(path, &error);
+    OWN(HybridMemory) *read = hybrid_memory_read(path, &error);
     assert_ok(read != NULL, error);
     assert_int_equal(read->entry_count, 3);
     assert_int_equal(read->set_count, 2);
@@ -38,8 +37,6 @@ TEST(what_is_written_is_read_again) {
     hybrid_memory_answer(memory, 2, key, one);
     hybrid_memory_answer(read, 2, key, two);
     assert_memory_equal(one, two, sizeof one);
-    hybrid_memory_destroy(read);
-    hybrid_memory_destroy(memory);
 }
 
 static void refuse(HybridMemory *memory, const char *text) {
@@ -78,9 +75,8 @@ TEST(hostile_files_are_refused) {
 }
 
 TEST(an_empty_memory_is_not_written) {
-    HybridMemory *memory = make_memory();
+    OWN(HybridMemory) *memory = make_memory();
     assert_refused(hybrid_memory_write(memory, temporary_path("empty.npz"), &error), "is empty");
-    hybrid_memory_destroy(memory);
 }
 
 RUN_TESTS(NULL, NULL)

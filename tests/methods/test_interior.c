@@ -13,10 +13,9 @@
 static Reference reference;
 
 static double error_of(const char *settings, const ContactProblem *problem, const ReferenceVelocity *expected) {
-    ContactSolution found = make_solution(problem);
+    OWN(ContactSolution) found = make_solution(problem);
     solve_with(&solver_interior, settings, problem, &found);
     const double error = solution_error(problem, found.velocities, expected).rms;
-    free_solution(&found);
     return error;
 }
 
@@ -90,14 +89,12 @@ TEST(impacts_of_a_pyramid_are_solved_to_the_tolerance) {
     } settings[] = {{"near=0.5", 0.5}, {"near=0.02", 0.02}, {"near=0.005", 0.005}};
     int fallbacks = 0;
     for (int i = 0; i < 15; i++) {
-        World *world = make_struck_pyramid(1 + i / 3);
+        OWN(World) *world = make_struck_pyramid(1 + i / 3);
         const ContactProblem *problem = next_problem(world);
-        ContactSolution found = make_solution(problem);
+        OWN(ContactSolution) found = make_solution(problem);
         solve_with(&solver_interior, settings[i % 3].text, problem, &found);
         fallbacks += found.fallbacks.by_sweeps;
         if (found.fallbacks.by_sweeps == 0) assert_true(residual_of(problem, &found) <= settings[i % 3].most + 1.1e-3);
-        free_solution(&found);
-        world_destroy(world);
     }
     assert_true(fallbacks <= 4);
 }
@@ -143,24 +140,23 @@ TEST(cone_and_velocities_fit) {
     for (int run = 0; run < 60; run++) {
         make_random(&random, &seed, 2 + run, 0.15f, 0);
         fit_masses(&random);
-        ContactSolution found = make_solution(&random.problem);
+        OWN(ContactSolution) found = make_solution(&random.problem);
         solve_with(&solver_interior, run % 2 == 0 ? "" : "near=1e-4", &random.problem, &found);
         assert_in_cone(&random.problem, found.impulses);
         assert_velocities_fit(&random.problem, &found);
-        free_solution(&found);
     }
 }
 
 /* The rounding of the velocities to float is all that is lost: 2^-24 of each. */
 TEST(momentum_is_exact) {
-    World *world = make_struck_stack(3);
+    OWN(World) *world = make_struck_stack(3);
     const ContactProblem *problem = next_problem(world);
     ContactProblem free = *problem;
     ProblemBody bodies[16];
     memcpy(bodies, problem->bodies, (size_t)problem->body_count * sizeof *bodies);
     bodies[0].inv_mass = bodies[0].inv_inertia = 1e-4f; /* a heavy floating ground */
     free.bodies = bodies;
-    ContactSolution found = make_solution(&free);
+    OWN(ContactSolution) found = make_solution(&free);
     solve_with(&solver_interior, "", &free, &found);
     double before[2] = {0}, after[2] = {0}, rounding = 0;
     for (int i = 0; i < free.body_count; i++) {
@@ -173,17 +169,13 @@ TEST(momentum_is_exact) {
         rounding += mass * fmax(fabs((double)v.x), fabs((double)v.y)) * ldexp(1, -24);
     }
     for (int k = 0; k < 2; k++) assert_near(after[k], before[k], rounding);
-    free_solution(&found);
-    world_destroy(world);
 }
 
 static uint64_t bits_of_a_run(int steps) {
-    World *world = make_struck_pyramid(0);
-    ContactSolver solver = make_solver(&solver_interior, "");
+    OWN(World) *world = make_struck_pyramid(0);
+    OWN(ContactSolver) solver = make_solver(&solver_interior, "");
     run(world, &solver, steps);
     const uint64_t hash = hash_xxh3(world_bodies(world), (size_t)world_body_count(world) * sizeof *world_bodies(world));
-    free_solver(&solver);
-    world_destroy(world);
     return hash;
 }
 
@@ -196,7 +188,7 @@ TEST(a_run_has_these_bits) {
 static const InteriorAttempt quick = {&interior_quick, 1e-3, 1e6, 100}, gentle = {&interior_gentle, 1e-7, 1e6, 100};
 
 static void kernels_agree(const ContactProblem *problem) {
-    Sweeps sweeps = {0};
+    OWN(Sweeps) sweeps = {0};
     Interior interior[2];
     memset(interior, 0, sizeof interior);
     const InteriorKernels *const kernels[2] = {&interior_scalar, interior_best()};
@@ -212,13 +204,12 @@ static void kernels_agree(const ContactProblem *problem) {
         interior_free(&interior[k]);
         free_solution(&found[k]);
     }
-    sweeps_free(&sweeps);
 }
 
 /* The sum of log(estimate / residual) over eight iterations. */
 static double log_of_estimates(const ContactProblem *problem) {
     const InteriorKernels *kernels = interior_best();
-    Sweeps sweeps = {0};
+    OWN(Sweeps) sweeps = {0};
     Interior interior = {0};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem) && sweeps_run(&sweeps, 2));
     assert_true(interior_load(&interior, kernels, &sweeps, problem));
@@ -230,7 +221,6 @@ static double log_of_estimates(const ContactProblem *problem) {
         sum += log((estimate + 1e-9) / (residual + 1e-9));
     }
     interior_free(&interior);
-    sweeps_free(&sweeps);
     return sum;
 }
 
@@ -255,40 +245,32 @@ TEST(kernels_have_the_bits_of_the_scalar_one) {
         fit_masses(&random);
         kernels_agree(&random.problem);
     }
-    World *world = make_struck_pyramid(2);
+    OWN(World) *world = make_struck_pyramid(2);
     kernels_agree(next_problem(world));
-    world_destroy(world);
 }
 
 /* The same problem gives the same bits whatever the solver has solved before. */
 TEST(earlier_problems_leave_no_trace) {
-    World *pyramid = make_struck_pyramid(2), *stack = make_struck_stack(3);
+    OWN(World) *pyramid = make_struck_pyramid(2), *stack = make_struck_stack(3);
     const ContactProblem *first = next_problem(pyramid), *second = next_problem(stack);
-    ContactSolution fresh = make_solution(second), used = make_solution(second), other = make_solution(first);
+    OWN(ContactSolution) fresh = make_solution(second), used = make_solution(second), other = make_solution(first);
     solve_with(&solver_interior, "", second, &fresh);
-    ContactSolver solver = make_solver(&solver_interior, "");
+    OWN(ContactSolver) solver = make_solver(&solver_interior, "");
     for (int i = 0; i < 2; i++) {
         assert_ok(solver.kind->solve(solver.state, first, &other, &error), error);
         assert_ok(solver.kind->solve(solver.state, second, &used, &error), error);
         assert_same_bits(second, &used, &fresh, "used");
     }
-    free_solver(&solver);
-    free_solution(&fresh);
-    free_solution(&used);
-    free_solution(&other);
-    world_destroy(pyramid);
-    world_destroy(stack);
 }
 
 TEST(without_contacts_bodies_keep_their_velocities) {
     const ProblemBody body = {.inv_mass = 1, .inv_inertia = 6, .velocity = {1, 2}, .angular_velocity = 3};
     const ContactProblem problem = {.body_count = 1, .bomb = -1, .dt = world_dt, .bodies = &body};
-    ContactSolution found = make_solution(&problem);
+    OWN(ContactSolution) found = make_solution(&problem);
     solve_with(&solver_interior, "", &problem, &found);
     const BodyVelocity expected = {{1, 2}, 3};
     assert_memory_equal(&found.velocities[0], &expected, sizeof expected);
     assert_int_equal(found.fallbacks.by_sweeps, 0);
-    free_solution(&found);
 }
 
 /* No impulse could change anything between static bodies: they are left out of the matrix and of the residual. */
@@ -300,46 +282,41 @@ TEST(two_static_bodies_are_no_obstacle) {
         {.a = 0, .b = 2, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1, .friction = 0.5f}};
     const ContactProblem problem = {
         .body_count = 3, .contact_count = 2, .bomb = -1, .dt = world_dt, .bodies = bodies, .contacts = contacts};
-    ContactSolution found = make_solution(&problem);
+    OWN(ContactSolution) found = make_solution(&problem);
     solve_with(&solver_interior, "near=1e-6", &problem, &found);
     assert_near(found.velocities[1].linear.y, -1, 0);
     assert_near(found.velocities[2].linear.y, 0, 1e-5);
     assert_near(found.impulses[1].normal, 1, 1e-5);
     assert_int_equal(found.fallbacks.by_sweeps, 0);
-    free_solution(&found);
 }
 
 /* A million to one. */
 TEST(a_huge_mass_ratio_is_solved) {
-    World *world = make_heavy_on_light(1e6f, 0.495f, 1.49f);
-    ContactSolver solver = make_solver(&solver_interior, "");
+    OWN(World) *world = make_heavy_on_light(1e6f, 0.495f, 1.49f);
+    OWN(ContactSolver) solver = make_solver(&solver_interior, "");
     run(world, &solver, 300);
     assert_near(world_bodies(world)[1].position.y, 0.49f, 0.01f);
     assert_near(world_bodies(world)[2].position.y, 1.48f, 0.02f);
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* Sweeps solve a problem with a NaN, and say so: with their bits, whatever these are. */
 TEST(a_nan_ends_in_the_fallback) {
-    World *world = make_struck_stack(3);
+    OWN(World) *world = make_struck_stack(3);
     ContactProblem problem = *next_problem(world);
     ContactPoint contacts[64];
     assert_in_range(problem.contact_count, 3, 64);
     memcpy(contacts, problem.contacts, (size_t)problem.contact_count * sizeof *contacts);
     contacts[2].bias = NAN;
     problem.contacts = contacts;
-    ContactSolution found = make_solution(&problem);
+    OWN(ContactSolution) found = make_solution(&problem);
     solve_with(&solver_interior, "", &problem, &found);
     assert_int_equal(found.fallbacks.by_sweeps, 1);
-    free_solution(&found);
-    world_destroy(world);
 }
 
 /* A box between two fixed ones, with opposite impulses that cancel: they do not change any velocity, but their rounding
    in float would. */
 static double residual_of_jam(float jam) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     for (int i = -1; i <= 1; i += 2)
         add_body(world, &(BodyDef){.size = {1, 1}, .fixed = true, .friction = 0.2f, .position = {(float)i, 0}});
     add_body(world, &(BodyDef){.size = {1.01f, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0}});
@@ -350,15 +327,13 @@ static double residual_of_jam(float jam) {
     for (int i = 0; i < 4; i++) contacts[i].warm_normal = jam;
     ContactProblem jammed = *problem;
     jammed.contacts = contacts;
-    Sweeps sweeps = {0};
+    OWN(Sweeps) sweeps = {0};
     Interior interior = {0};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), &jammed));
     assert_true(interior_load(&interior, interior_best(), &sweeps, &jammed));
     interior_iterate(&interior, interior_best(), &gentle, 10, 1, 20);
     const double residual = interior.residual;
     interior_free(&interior);
-    sweeps_free(&sweeps);
-    world_destroy(world);
     return residual;
 }
 
@@ -385,17 +360,14 @@ static World *make_boxes(int rows, bool stacks) {
 /* 820 boxes: in a pyramid they have 1,560 - 819 loops, in stacks none. The bits are those of sweeps with momentum. */
 TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
-        World *world = make_boxes(40, stacks);
+        OWN(World) *world = make_boxes(40, stacks);
         const ContactProblem *problem = next_problem(world);
-        ContactSolution found = make_solution(problem), swept = make_solution(problem);
+        OWN(ContactSolution) found = make_solution(problem), swept = make_solution(problem);
         solve_with(&solver_interior, "near=0.001", problem, &found);
         solve_with(&solver_momentum, "k=20,near=0.001,more=96", problem, &swept);
         assert_int_equal(found.fallbacks.by_sweeps, !stacks);
         const size_t size = (size_t)problem->body_count * sizeof *found.velocities;
         assert_int_equal(memcmp(found.velocities, swept.velocities, size) == 0, !stacks);
-        free_solution(&found);
-        free_solution(&swept);
-        world_destroy(world);
     }
 }
 

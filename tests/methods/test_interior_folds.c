@@ -35,11 +35,10 @@ static World *make_struck_wall(float x, float angle, int steps) {
 }
 
 static double error_of(const ContactSolverKind *kind, const char *settings, const ContactProblem *problem) {
-    ContactSolution found = make_solution(problem);
+    OWN(ContactSolution) found = make_solution(problem);
     solve_with(kind, settings, problem, &found);
     const double error = solution_error(problem, found.velocities, reference.velocities).rms;
     if (kind == &solver_interior) assert_velocities_fit(problem, &found);
-    free_solution(&found);
     return error;
 }
 
@@ -50,7 +49,7 @@ TEST(struck_walls_are_solved_better_than_by_sweeps_of_the_same_work) {
     int problems = 0;
     for (int i = -8; i <= 8; i += 2)
         for (int k = 0; k < 5; k++) {
-            World *world = make_struck_wall(0.5f * (float)i + 0.1f, 0.3f * (float)k, 1);
+            OWN(World) *world = make_struck_wall(0.5f * (float)i + 0.1f, 0.3f * (float)k, 1);
             const ContactProblem *problem = next_problem(world);
             assert_ok(reference_solve(&reference, problem, NULL, &error), error);
             if (reference_converged(&reference)) {
@@ -58,31 +57,28 @@ TEST(struck_walls_are_solved_better_than_by_sweeps_of_the_same_work) {
                 gain += log(error_of(&solver_momentum, "k=20,near=1e-9,more=176", problem) /
                             error_of(&solver_interior, "", problem));
             }
-            world_destroy(world);
         }
     if (problems < 40 || exp(gain / problems) < 1.2) fail_msg("%d problems, gain %g", problems, exp(gain / problems));
 }
 
 /* Position correction pushes the box out of both walls, which no impulses can. */
 TEST(a_step_without_a_solution_falls_back) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     for (int i = -1; i <= 1; i += 2)
         add_body(world, &(BodyDef){.size = {1, 3}, .fixed = true, .friction = 0.5f, .position = {(float)i, 0}});
     add_body(world, &(BodyDef){.size = {1.2f, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0}});
     const ContactProblem *problem = next_problem(world);
-    ContactSolution found = make_solution(problem);
+    OWN(ContactSolution) found = make_solution(problem);
     solve_with(&solver_interior, "near=0.001", problem, &found);
     assert_int_equal(found.fallbacks.by_sweeps, 1);
     assert_velocities_fit(problem, &found);
     for (int i = 0; i < problem->contact_count; i++) assert_true(found.impulses[i].normal < 1e3f);
-    free_solution(&found);
-    world_destroy(world);
 }
 
 /* After a problem of the same size that iterations solve: a softer impact. */
 TEST(a_hard_impact_allocates_nothing) {
     enum { BODIES_MAX = 64 };
-    World *world = make_struck_wall(-3.9f, 0.9f, 1);
+    OWN(World) *world = make_struck_wall(-3.9f, 0.9f, 1);
     const ContactProblem *struck = next_problem(world);
     ContactProblem calm = *struck;
     ProblemBody bodies[BODIES_MAX];
@@ -93,20 +89,17 @@ TEST(a_hard_impact_allocates_nothing) {
         bodies[i].angular_velocity *= 0.2f;
     }
     calm.bodies = bodies;
-    ContactSolution found = make_solution(struck);
-    ContactSolver solver = make_solver(&solver_interior, "near=0.001");
+    OWN(ContactSolution) found = make_solution(struck);
+    OWN(ContactSolver) solver = make_solver(&solver_interior, "near=0.001");
     assert_ok(solver.kind->solve(solver.state, &calm, &found, &error), error);
     allocations = 0;
     assert_ok(solver.kind->solve(solver.state, struck, &found, &error), error);
     assert_int_equal(allocations, 0);
-    free_solver(&solver);
-    free_solution(&found);
-    world_destroy(world);
 }
 
 /* The reference ends as soon as asked to. */
 TEST(the_path_ends_at_the_tolerance) {
-    World *world = make_struck_wall(2.1f, 0.3f, 1);
+    OWN(World) *world = make_struck_wall(2.1f, 0.3f, 1);
     const ContactProblem *problem = next_problem(world);
     assert_ok(reference_solve_to(&reference, problem, 0.01, INT_MAX, &error), error);
     const int rough = reference.factorizations;
@@ -116,12 +109,11 @@ TEST(the_path_ends_at_the_tolerance) {
     assert_ok(reference_solve_to(&reference, problem, 1e-9, 5, &error), error);
     assert_true(reference.factorizations <= 5 + 2);
     assert_true(reference.residual > 1e-9);
-    world_destroy(world);
 }
 
 /* A pyramid of 36 boxes of 1 kg, as steps by the method lead on after a box of `mass` has reached its top. Checks each. */
 static void strike_pyramid(float mass, double *work, int *by_sweeps) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     Error error = {0};
     add_ground(world, 0.5f);
     for (int row = 0; row < 8; row++)
@@ -130,7 +122,7 @@ static void strike_pyramid(float mass, double *work, int *by_sweeps) {
     add_body(
         world,
         &(BodyDef){.size = {1, 1}, .mass = mass, .friction = 0.5f, .position = {3.2f, 8.5f}, .velocity = {0, -14}});
-    ContactSolver solver = make_solver(&solver_interior, "");
+    OWN(ContactSolver) solver = make_solver(&solver_interior, "");
     *work = *by_sweeps = 0;
     for (int step = 0; step < 60; step++) {
         assert_ok(world_step(world, solver.kind->solve, solver.state, world_dt, &error), error);
@@ -138,8 +130,6 @@ static void strike_pyramid(float mass, double *work, int *by_sweeps) {
         *by_sweeps += world_solution(world)->fallbacks.by_sweeps;
     }
     for (int i = 1; i <= 36; i++) assert_true(world_bodies(world)[i].position.y > 0);
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* Measured by the boxes' own masses iterations begin far from what a heavy body passes on, and all steps of the impact end in

@@ -50,10 +50,9 @@ static void scale(Scaled *to, const ContactProblem *from, float mass, float spee
 
 static void expect_same_bits(const ContactProblem *problem, float mass, float speed) {
     static Scaled scaled;
-    char near[32];
     scale(&scaled, problem, mass, speed);
-    snprintf(near, sizeof near, "near=%.9g", 0.001 * (double)speed);
-    ContactSolution found = make_solution(problem), other = make_solution(problem);
+    const char *near = printed("near=%.9g", 0.001 * (double)speed);
+    OWN(ContactSolution) found = make_solution(problem), other = make_solution(problem);
     solve_with(&solver_interior, "near=0.001", problem, &found);
     solve_with(&solver_interior, near, &scaled.problem, &other);
     assert_int_equal(found.fallbacks.by_sweeps, other.fallbacks.by_sweeps);
@@ -65,8 +64,6 @@ static void expect_same_bits(const ContactProblem *problem, float mass, float sp
                      (double)speed, i, (double)w->linear.x, (double)w->linear.y, (double)v->linear.x,
                      (double)v->linear.y);
     }
-    free_solution(&found);
-    free_solution(&other);
 }
 
 /* A wall of bricks, `steps` steps after a box of `mass` has reached it. */
@@ -110,7 +107,7 @@ TEST(impacts_in_other_units_have_the_same_bits) {
     int struck = 0;
     for (int k = 0; k < 3; k++)
         for (int steps = 0; steps < 6; steps++) {
-            World *world = make_wall(masses[k], 20, steps);
+            OWN(World) *world = make_wall(masses[k], 20, steps);
             const ContactProblem *problem = next_problem(world);
             expect_same_bits(problem, 0x1p14f, 1);
             expect_same_bits(problem, 0x1p-14f, 1);
@@ -119,18 +116,16 @@ TEST(impacts_in_other_units_have_the_same_bits) {
                 expect_same_bits(problem, 0x1p-10f, 2);
                 struck++;
             }
-            world_destroy(world);
         }
     assert_true(struck >= 9);
 }
 
 TEST(rest_in_other_masses_has_the_same_bits) {
     for (int steps = 0; steps < 40; steps += 3) {
-        World *world = make_wall(40, 0, steps);
+        OWN(World) *world = make_wall(40, 0, steps);
         const ContactProblem *problem = next_problem(world);
         expect_same_bits(problem, 0x1p14f, 1);
         expect_same_bits(problem, 0x1p-14f, 1);
-        world_destroy(world);
     }
 }
 
@@ -138,12 +133,12 @@ TEST(rest_in_other_masses_has_the_same_bits) {
 static double moved_at_rest(int rows, float gravity, float dt) {
     Error error = {0};
     const WorldDef def = {.gravity = {0, -gravity}, .warm_starting = true, .position_correction = true};
-    World *world = world_create(&def, &error);
+    OWN(World) *world = world_create(&def, &error);
     assert_ok(world != NULL, error);
     add_ground(world, 0.5f);
     for (int row = 0; row < rows; row++)
         for (int i = row; i < rows; i++) add_box(world, 1, 0.5f, vec2((float)i - 0.5f * (float)row, 0.5f + (float)row));
-    ContactSolver solver = make_solver(&solver_interior, "");
+    OWN(ContactSolver) solver = make_solver(&solver_interior, "");
     Vec2 before[BODIES_MAX];
     const int count = world_body_count(world), steps = (int)(20 / dt), last = (int)(1 / dt);
     assert_in_range(count, 2, BODIES_MAX);
@@ -157,8 +152,6 @@ static double moved_at_rest(int rows, float gravity, float dt) {
         const Vec2 by = vec2_sub(world_bodies(world)[i].position, before[i]);
         most = fmax(most, hypot((double)by.x, (double)by.y));
     }
-    free_solver(&solver);
-    world_destroy(world);
     return most;
 }
 

@@ -13,10 +13,10 @@ static ContactSolver make_judged(const char *sweeps) {
 
 /* Semi-implicit Euler: after k steps v = -g k dt and y = y0 - g dt^2 k (k + 1) / 2. */
 TEST(a_free_box_falls_as_it_should) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 3, .position = {2, 50}, .velocity = {1.5f, 0}, .angular_velocity = 2});
-    ContactSolver solver = make_judged("");
+    OWN(ContactSolver) solver = make_judged("");
     const int k = 120;
     run(world, &solver, k);
     const Body *box = world_bodies(world);
@@ -25,8 +25,6 @@ TEST(a_free_box_falls_as_it_should) {
     assert_near(box->position.y, 50 - 10 * dt * dt * k * (k + 1) / 2, 1e-3f);
     assert_near(box->position.x, 2 + 1.5 * k * dt, 1e-4f);
     assert_near(box->angle, 2 * k * dt, 1e-4f);
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* Momentum and angular momentum about the origin of all bodies of a problem, before or after the solve. */
@@ -46,7 +44,7 @@ static void sum_momentum(const ContactProblem *problem, const BodyVelocity *afte
 
 /* Two boxes crash in the air, off centre, turning, rubbing: what one loses the other gains. */
 TEST(a_pair_impulse_keeps_momentum_and_angular_momentum) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_body(world, &(BodyDef){.size = {1, 2},
                                .mass = 3,
                                .friction = 0.6f,
@@ -59,7 +57,7 @@ TEST(a_pair_impulse_keeps_momentum_and_angular_momentum) {
                                .position = {1.3f, 10.4f},
                                .angle = 0.3f,
                                .velocity = {-6, 0}});
-    ContactSolver solver = make_judged("");
+    OWN(ContactSolver) solver = make_judged("");
     run(world, &solver, 1);
     const ContactProblem *problem = world_problem(world);
     const ContactSolution *solution = world_solution(world);
@@ -70,23 +68,19 @@ TEST(a_pair_impulse_keeps_momentum_and_angular_momentum) {
     sum_momentum(problem, NULL, before);
     sum_momentum(problem, solution->velocities, after);
     for (int i = 0; i < 3; i++) assert_near(before[i], after[i], 2e-4f);
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* A box of unit size on a slope of this angle under its own weight; friction of the pair is mu. How far it has
    slid after `steps`. */
 static float slide(float angle, float mu, int steps) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_body(world, &(BodyDef){.size = {100, 2}, .fixed = true, .friction = mu, .angle = angle});
     Vec2 up = mat22_rotation(angle).column2;
     Vec2 start = vec2_scale(1.5f - 0.005f, up);
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = mu, .position = start, .angle = angle});
-    ContactSolver solver = make_judged("");
+    OWN(ContactSolver) solver = make_judged("");
     run(world, &solver, steps);
     Vec2 moved = vec2_sub(world_bodies(world)[1].position, start);
-    free_solver(&solver);
-    world_destroy(world);
     return sqrtf(vec2_dot(moved, moved));
 }
 
@@ -104,10 +98,10 @@ TEST(a_box_slides_if_the_slope_is_steeper_than_the_friction_angle) {
 /* In a resting stack the normal impulses under box i carry the weight of all above: m g dt (n - i). */
 TEST(a_resting_stacks_impulses_carry_its_weight) {
     enum { BOXES = 5 };
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_ground(world, 0.2f);
     for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
-    ContactSolver solver = make_judged("k=30");
+    OWN(ContactSolver) solver = make_judged("k=30");
     run(world, &solver, 1200);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 2 * BOXES);
@@ -116,29 +110,25 @@ TEST(a_resting_stacks_impulses_carry_its_weight) {
         float weight = 2 * 10 * world_dt * (float)(BOXES - problem->contacts[i].a);
         assert_near(impulses[0].normal + impulses[1].normal, weight, 1e-3f * weight);
     }
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* Without restitution a box that lands stays down: normal impulse = m (v + g dt), so the momentum is gone. */
 TEST(a_landing_box_stops) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_ground(world, 0.2f);
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 4, .friction = 0.2f, .position = {0, 0.495f}, .velocity = {0, -3}});
-    ContactSolver solver = make_judged("");
+    OWN(ContactSolver) solver = make_judged("");
     run(world, &solver, 1);
     const ContactImpulse *impulses = world_solution(world)->impulses;
     assert_near(impulses[0].normal + impulses[1].normal, 4 * (3 + 10 * world_dt), 1e-4f);
     assert_near(world_bodies(world)[1].velocity.y, 0, 1e-5f);
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* Friction is an impulse of at most mu times the normal one: a fast box keeps sliding with v - mu (v_n + g dt). */
 TEST(friction_stays_in_its_cone) {
-    World *world = make_sliding_box();
-    ContactSolver solver = make_judged("k=200");
+    OWN(World) *world = make_sliding_box();
+    OWN(ContactSolver) solver = make_judged("k=200");
     run(world, &solver, 1);
     assert_near(world_bodies(world)[1].velocity.x, 9 - 0.5f * 10 * world_dt, 1e-4f);
     const ContactProblem *problem = world_problem(world);
@@ -146,22 +136,18 @@ TEST(friction_stays_in_its_cone) {
         const ContactImpulse *impulse = &world_solution(world)->impulses[i];
         assert_true(fabsf(impulse->tangent) <= problem->contacts[i].friction * impulse->normal + 1e-7f);
     }
-    free_solver(&solver);
-    world_destroy(world);
 }
 
 /* Each contact clamped by itself converges to less than the accumulated form; both must keep a box up. */
 TEST(the_form_without_accumulation_keeps_a_box_up) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_ground(world, 0.2f);
     add_box(world, 1, 0.2f, vec2(0, 0.5f));
-    ContactSolver engine = make_engine("accumulate=off");
+    OWN(ContactSolver) engine = make_engine("accumulate=off");
     run(world, &engine, 300);
     assert_near(world_bodies(world)[1].position.y, 0.5f, 0.02f);
     const ContactImpulse *impulses = world_solution(world)->impulses;
     assert_near(impulses[0].normal + impulses[1].normal, 10 * world_dt, 1e-3f);
-    free_solver(&engine);
-    world_destroy(world);
 }
 
 int main(void) {

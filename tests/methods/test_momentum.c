@@ -42,13 +42,13 @@ TEST(a_box_that_slides_stays_upright_and_stops) {
     for (int i = 0; i < 5; i++) {
         const float friction = 0.5f + 0.1f * (float)i;
         for (size_t k = 0; k < sizeof settings / sizeof *settings; k++) {
-            World *world = make_world();
+            OWN(World) *world = make_world();
             add_ground(world, friction);
             add_body(
                 world,
                 &(BodyDef){
                     .size = {1, 1}, .mass = 1, .friction = friction, .position = {-40, 0.5f}, .velocity = {10, 0}});
-            ContactSolver solver = make_solver(&solver_momentum, settings[k]);
+            OWN(ContactSolver) solver = make_solver(&solver_momentum, settings[k]);
             double turned = 0;
             for (int step = 0; step < 150; step++) {
                 run(world, &solver, 1);
@@ -59,8 +59,6 @@ TEST(a_box_that_slides_stays_upright_and_stops) {
             if (turned > (k == 0 ? 0.05 : 0.015) || fabs(slid - slides((double)friction, 150)) > 0.1)
                 fail_msg("friction %g, %s: slid %.3f m, not %.3f, turned by %.3f", (double)friction, settings[k], slid,
                          slides((double)friction, 150), turned);
-            free_solver(&solver);
-            world_destroy(world);
         }
     }
 }
@@ -156,13 +154,12 @@ TEST(more_sweeps_never_have_a_larger_residual_than_the_best_so_far) {
     const Method engine = method_named("engine");
     for (int s = 0; s < LONGEST; s++) course.factors[s] = momentum_factor_tuned(s, LONGEST);
     for (int seed = 0; course.problems < PROBLEMS; seed++) {
-        Scene *scene = random_structure(seed);
+        OWN(Scene) *scene = random_structure(seed);
         const float friction = 0.1f * (float)(seed % 31);
         for (int i = 0; i < scene->body_count; i++) scene->bodies[i].friction = friction;
         scene->bomb.body.friction = friction;
         course.name = scene->name;
         assert_ok(simulate_observed(scene, &engine, &(StepObserver){check_step, &course}, &error), error);
-        scene_destroy(scene);
     }
     assert_in_range(course.grew, PROBLEMS / 10, PROBLEMS);
     assert_true(exp(course.gain / PROBLEMS) < 0.5);
@@ -184,8 +181,8 @@ static World *make_struck_stack(bool beside) {
 }
 
 static void assert_islands_independent(const ContactSolverKind *kind, const char *settings) {
-    World *alone = make_struck_stack(false), *beside = make_struck_stack(true);
-    ContactSolver solver = make_solver(kind, settings), other = make_solver(kind, settings);
+    OWN(World) *alone = make_struck_stack(false), *beside = make_struck_stack(true);
+    OWN(ContactSolver) solver = make_solver(kind, settings), other = make_solver(kind, settings);
     for (int step = 0; step < 60; step++) {
         run(alone, &solver, 1);
         run(beside, &other, 1);
@@ -197,10 +194,6 @@ static void assert_islands_independent(const ContactSolverKind *kind, const char
                          step, i);
         }
     }
-    free_solver(&solver);
-    free_solver(&other);
-    world_destroy(alone);
-    world_destroy(beside);
 }
 
 TEST(islands_do_not_change_each_other) {
@@ -215,10 +208,10 @@ TEST(islands_do_not_change_each_other) {
    rounding errors. Alone, momentum would go on along what they changed by. */
 TEST(refreshed_velocities_keep_the_course) {
     enum { SWEEPS = 200, EVERY = 8 };
-    World *world = make_struck_stack(false);
-    ContactSolver engine = make_engine("");
+    OWN(World) *world = make_struck_stack(false);
+    OWN(ContactSolver) engine = make_engine("");
     float factors[SWEEPS];
-    Sweeps whole = {0}, parts = {0};
+    OWN(Sweeps) whole = {0}, parts = {0};
     for (int s = 0; s < SWEEPS; s++) factors[s] = momentum_factor_tuned(s, SWEEPS);
     for (int step = 0; step < 40; step++) {
         run(world, &engine, 1);
@@ -238,10 +231,6 @@ TEST(refreshed_velocities_keep_the_course) {
             assert_near(parts.bodies[i].y, whole.bodies[i].y, 0.02);
         }
     }
-    sweeps_free(&whole);
-    sweeps_free(&parts);
-    free_solver(&engine);
-    world_destroy(world);
 }
 
 /* Lanes have the bits of the pairs one by one: factors of groups, also below 0, what is measured, what is returned to. */
@@ -292,11 +281,10 @@ TEST(what_overflows_is_given_up) {
     random.contacts[40].mass_normal = 1e38f;
     static const char *const settings[] = {"k=10", "k=40", "k=5,near=0,more=40"};
     for (int i = 0; i < 3; i++) {
-        ContactSolution found = make_solution(&random.problem);
+        OWN(ContactSolution) found = make_solution(&random.problem);
         solve_with(&solver_momentum, settings[i], &random.problem, &found);
         for (int k = 0; k < random.problem.body_count; k++)
             assert_true(isfinite(found.velocities[k].linear.x) && isfinite(found.velocities[k].angular));
-        free_solution(&found);
     }
 }
 

@@ -18,8 +18,7 @@ TEST(without_its_network_a_method_says_what_the_data_were_on_average) {
         const ContactSolverKind *kind = target == TARGET_POINTS ? &solver_contact_net : &solver_pair_net;
         BodyVelocity silenced[3], network[3];
         ContactImpulse of_silenced[2], of_network[2];
-        char text[512];
-        snprintf(text, sizeof text, "%s,net=off", constant_network(view, target, cases[i].outputs, six));
+        const char *text = printed("%s,net=off", constant_network(view, target, cases[i].outputs, six));
         solve_by(kind, text, 4, &chain, silenced, of_silenced);
         const char *path = constant_network(view, target, cases[i].outputs, twice);
         solve_by(kind, path, 4, &chain, network, of_network);

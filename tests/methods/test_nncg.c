@@ -107,21 +107,17 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
     const int counts[] = {1, 2, 3, 10, 25};
     int begun_anew = 0;
     for (int c = 0; c < 5; c++) {
-        char text[16];
-        snprintf(text, sizeof text, "k=%d", counts[c]);
-        ContactSolver nncg = make_solver(&solver_nncg, text);
+        const char *text = printed("k=%d", counts[c]);
+        OWN(ContactSolver) nncg = make_solver(&solver_nncg, text);
         for (int i = 0; i < 60; i++) {
             int bodies = 2 + (7 * i) % (BODIES_MAX - 1);
             make_random(&random, &seed, bodies, i % 2 == 0 ? 0.5f : 4.0f / (float)bodies, 2);
             if (i % 5 == 0) calm_down(&random, &seed);
-            ContactSolution plain = make_solution(&random.problem), found = make_solution(&random.problem);
+            OWN(ContactSolution) plain = make_solution(&random.problem), found = make_solution(&random.problem);
             begun_anew += solve_plainly(&random.problem, counts[c], &plain);
             assert_ok(solver_nncg.solve(nncg.state, &random.problem, &found, &error), error);
             assert_same_bits(&random.problem, &found, &plain, text);
-            free_solution(&plain);
-            free_solution(&found);
         }
-        free_solver(&nncg);
     }
     assert_true(begun_anew > 10);
 }
@@ -130,10 +126,10 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
    weight on from box to box. */
 static float missing_weight(const ContactSolverKind *kind) {
     enum { BOXES = 10 };
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_ground(world, 0.2f);
     for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
-    ContactSolver solver = make_solver(kind, "k=60");
+    OWN(ContactSolver) solver = make_solver(kind, "k=60");
     run(world, &solver, 1);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 2 * BOXES);
@@ -143,8 +139,6 @@ static float missing_weight(const ContactSolverKind *kind) {
         float weight = 2 * 10 * world_dt * (float)(BOXES - problem->contacts[i].a);
         missing = fmaxf(missing, fabsf(impulses[0].normal + impulses[1].normal - weight) / weight);
     }
-    free_solver(&solver);
-    world_destroy(world);
     return missing;
 }
 

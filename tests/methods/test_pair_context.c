@@ -3,8 +3,6 @@
 
 #include "methods/pair.h"
 
-#include <math.h>
-
 /* A box of 4 kg on the ground with two points under it, then a bomb of 2 kg at one point of its side. */
 static const ProblemBody bodies[] = {
     {.position = {0, -5}},

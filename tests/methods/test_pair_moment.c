@@ -6,8 +6,6 @@
 #include "engine/uniform.h"
 #include "methods/pair.h"
 
-#include <math.h>
-
 enum { BODIES = 6, CONTACTS = 2 * BODIES * BODIES };
 
 typedef struct Example {

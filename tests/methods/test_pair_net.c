@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pair_networks.h"
 
-#include <math.h>
-
 /* A (mass 2, inertia 1/3) below B (mass 1), touching at B's lower corners and in nothing else. */
 static const ProblemBody bodies[3] = {
     {.position = {0, 0},
@@ -159,7 +157,7 @@ TEST(what_is_not_finite_never_reaches_a_body) {
 TEST(every_pair_gets_its_own_prediction) {
     Network *network = make_pair_network(PAIR_RELATIVE, TARGET_PAIR, PAIR_CHANGES);
     for (int i = 0; i < PAIR_INPUTS * PAIR_CHANGES; i++) network->weights[0][i] = (float)(i * i % 17) / 16 - 0.4f;
-    Network *kept = network_copy(network, &error);
+    OWN(Network) *kept = network_copy(network, &error);
     assert_ok(kept != NULL, error);
     const char *path = write_pair_network(network);
     ProblemBody three[3];
@@ -181,21 +179,6 @@ TEST(every_pair_gets_its_own_prediction) {
     }
     solve_by(&solver_pair_net, path, 1, &problem, found, (ContactImpulse[3]){{0}});
     assert_memory_equal(found, expected, sizeof found);
-    network_destroy(kept);
-}
-
-/* A network knows how it was trained to see a pair. */
-TEST(a_raw_network_sees_positions) {
-    Network *network = make_pair_network(PAIR_RAW, TARGET_PAIR, PAIR_CHANGES);
-    /* The change of a's velocity is b's position, that of b's a's. */
-    network->weights[0][0 * 12 + 2] = network->weights[0][1 * 12 + 3] = 1;
-    network->weights[0][3 * 12 + 0] = network->weights[0][4 * 12 + 1] = 1;
-    BodyVelocity v[3];
-    solve(write_pair_network(network), bodies, v);
-    assert_near(v[0].linear.x, 1 + 0.25, 1e-6);
-    assert_near(v[0].linear.y, 2 + 1, 1e-6);
-    assert_near(v[1].linear.x, 0, 1e-6);
-    assert_near(v[1].linear.y, -1, 1e-6);
 }
 
 /* Of view contact, after the warm start: the first input is then what that left of the approach. */
@@ -225,17 +208,15 @@ TEST(nothing_touches_nothing_happens) {
 
 /* For who looks at the world after the step; the next begins with none. */
 TEST(the_world_tells_what_momentum_a_step_made) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     for (int i = 0; i < 2; i++)
         add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .position = {0, 0.9f * (float)i}});
-    ContactSolver network = make_network_solver(&solver_pair_net, pair_constant(6, six), 1), engine = make_engine("");
+    OWN(ContactSolver)
+    network = make_network_solver(&solver_pair_net, pair_constant(6, six), 1), engine = make_engine("");
     run(world, &network, 1);
     assert_near(world_solution(world)->momentum_error, sqrt(5 * 5 + 7 * 7), 1e-5);
     run(world, &engine, 1);
     assert_near(world_solution(world)->momentum_error, 0, 0);
-    free_solver(&network);
-    free_solver(&engine);
-    world_destroy(world);
 }
 
 RUN_TESTS(NULL, NULL)

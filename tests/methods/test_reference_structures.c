@@ -41,20 +41,16 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 static Converged run_scene(const Scene *scene) {
     Error error = {0};
     Converged run = {0};
-    World *world = world_of(scene);
+    OWN(World) *world = world_of(scene);
     for (int i = 0; i < scene->frames; i++) assert_ok(world_step(world, solve, &run, scene->dt, &error), error);
     reference_free(&run.reference);
-    world_destroy(world);
     return run;
 }
 
 static Converged run_file(const char *name) {
-    char path[512];
-    snprintf(path, sizeof path, SOURCE_DIR "/tests/methods/scenes/%s.yaml", name);
-    Scene *scene = scene_from(path);
+    OWN(Scene) *scene = scene_from(printed(SOURCE_DIR "/tests/methods/scenes/%s.yaml", name));
     const Converged run = run_scene(scene);
     assert_int_equal(run.steps, scene->frames);
-    scene_destroy(scene);
     return run;
 }
 
@@ -65,10 +61,9 @@ TEST(masses_spread_by_a_million_converge) {
 
 static void assert_converges(const int *seeds, size_t count) {
     for (size_t i = 0; i < count; i++) {
-        Scene *scene = random_structure(seeds[i]);
+        OWN(Scene) *scene = random_structure(seeds[i]);
         const int failed = run_scene(scene).failed;
         if (failed > 0) fail_msg("%s: %d steps", scene->name, failed);
-        scene_destroy(scene);
     }
 }
 
@@ -93,33 +88,29 @@ TEST(a_step_without_a_solution_adds_no_energy) {
 
 /* A run tells how many of its steps did not converge, and the largest residual. */
 TEST(a_run_counts_steps_without_a_solution) {
-    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
+    OWN(Scene) *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
     const Method method = method_named("reference");
     NetworkFallbacks fallbacks = {0};
     assert_ok(simulate_watched(scene, &method, &(RunWatch){.fallbacks = &fallbacks}, &error), error);
     assert_int_equal(fallbacks.not_converged, run_scene(scene).failed);
     assert_true(fallbacks.residual > tight);
-    scene_destroy(scene);
 }
 
 /* The log of such a run bounds nothing from there on. */
 TEST(a_log_ends_at_the_first_step_without_a_solution) {
-    EnergyLog log = {0};
-    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
+    OWN(EnergyLog) log = {0};
+    OWN(Scene) *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
     const Method method = method_named("reference");
     assert_ok(energy_log_run(&log, scene, &method, &error), error);
     assert_true(log.unconverged > 0 && log.unconverged < scene->frames);
-    energy_log_free(&log);
-    scene_destroy(scene);
 }
 
 /* As they come, none chosen. */
 TEST(the_first_structures_converge) {
     int failed = 0;
     for (int seed = 0; seed < 60; seed += sampled(4)) {
-        Scene *scene = random_structure(seed);
+        OWN(Scene) *scene = random_structure(seed);
         failed += run_scene(scene).failed;
-        scene_destroy(scene);
     }
     assert_int_equal(failed, 0);
 }

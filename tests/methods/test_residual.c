@@ -6,8 +6,6 @@
 
 #include "methods/residual.h"
 
-#include <math.h>
-
 /* Two boxes side by side on the ground, two contacts each: the velocities of the boxes are those that the contacts have,
    but for their sign. */
 typedef struct Boxes {
@@ -42,17 +40,15 @@ static void make_boxes(Boxes *boxes, float left, float right) {
 static void assert_residual(const ContactProblem *problem, double residual) {
     for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
         if (!sweeps_can(kernel)) continue;
-        Sweeps sweeps = {0};
+        OWN(Sweeps) sweeps = {0};
         assert_true(sweeps_begin(&sweeps, kernel, problem, true));
         if (residual > 0) assert_true(residual_reaches(&sweeps, problem->contact_count, (float)(0.9999 * residual)));
         assert_false(residual_reaches(&sweeps, problem->contact_count, (float)(1.0001 * residual + 1e-5)));
-        sweeps_free(&sweeps);
     }
-    ContactSolution warm = make_solution(problem);
+    OWN(ContactSolution) warm = make_solution(problem);
     sequential_impulses_begin(problem, &engine_options, &warm);
     if (residual > 0) assert_true(residual_reaches_scalar(problem, &warm, (float)(0.9999 * residual)));
     assert_false(residual_reaches_scalar(problem, &warm, (float)(1.0001 * residual + 1e-5)));
-    free_solution(&warm);
 }
 
 TEST(the_residual_is_the_root_of_the_mean_square_over_contacts) {
@@ -112,26 +108,13 @@ TEST(random_problems_have_the_residual_of_the_definition) {
     }
 }
 
-/* Sweeps bring it down, and a network that is asked afterwards sees it. */
-TEST(sweeps_reduce_the_residual) {
-    Boxes boxes;
-    Sweeps sweeps = {0};
-    make_boxes(&boxes, -3, -4);
-    assert_true(sweeps_begin(&sweeps, sweeps_best_kernel(), &boxes.problem, true));
-    assert_true(residual_reaches(&sweeps, 4, 3));
-    assert_true(sweeps_run(&sweeps, 100));
-    assert_false(residual_reaches(&sweeps, 4, 1e-3f));
-    sweeps_free(&sweeps);
-}
-
 /* Between 0.9999 and 1.0001 of this. */
 static void assert_with_friction(const ContactProblem *problem, double residual) {
-    Sweeps sweeps = {0};
+    OWN(Sweeps) sweeps = {0};
     assert_true(sweeps_begin(&sweeps, sweeps_best_kernel(), problem, true));
     if (residual > 0)
         assert_true(residual_of_visits_reaches(&sweeps, problem->contact_count, (float)(0.9999 * residual)));
     assert_false(residual_of_visits_reaches(&sweeps, problem->contact_count, (float)(1.0001 * residual + 1e-6)));
-    sweeps_free(&sweeps);
 }
 
 /* Both boxes slide at 7 m/s. Without a normal impulse that is no error. With one of 1 N s, friction of 0.2 N s may brake
@@ -148,10 +131,9 @@ TEST(slip_counts_as_far_as_friction_can_brake_it) {
     assert_with_friction(&boxes.problem, 0);
     boxes.contacts[2].mass_normal = NAN;
     boxes.contacts[2].bias = NAN;
-    Sweeps sweeps = {0};
+    OWN(Sweeps) sweeps = {0};
     assert_true(sweeps_begin(&sweeps, sweeps_best_kernel(), &boxes.problem, true));
     assert_true(residual_of_visits_reaches(&sweeps, 4, 1e6f));
-    sweeps_free(&sweeps);
 }
 
 /* Before any impulse, in any direction. */

@@ -5,8 +5,6 @@
 
 #include "worlds.h"
 
-#include <math.h>
-
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 /* Sweeps enough to converge. */
@@ -34,9 +32,9 @@ static World *make_crash(void) {
 
 /* The chain's impulse needs many sweeps; then all must have found the same velocities. */
 TEST(all_meet_the_plain_sweeps) {
-    World *world = make_crash();
+    OWN(World) *world = make_crash();
     const ContactProblem *problem = world_problem(world);
-    ContactSolution plain = make_solution(problem), found = make_solution(problem);
+    OWN(ContactSolution) plain = make_solution(problem), found = make_solution(problem);
     sequential_impulses_solve(problem, &engine_options, 100000, &plain);
     solve_with(&solver_engine, "k=10", problem, &found);
     assert_true(fabsf(found.velocities[0].linear.y - plain.velocities[0].linear.y) > 0.1f);
@@ -44,21 +42,17 @@ TEST(all_meet_the_plain_sweeps) {
         solve_with(converged[r].kind, converged[r].text, problem, &found);
         assert_velocities(found.velocities, plain.velocities, problem->body_count, 5e-3);
     }
-    free_solution(&plain);
-    free_solution(&found);
-    world_destroy(world);
 }
 
 /* After any number of sweeps: the last thing done is a sweep, not an extrapolation. */
 TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
-    World *world = make_crash();
+    OWN(World) *world = make_crash();
     const ContactProblem *problem = world_problem(world);
-    ContactSolution found = make_solution(problem);
+    OWN(ContactSolution) found = make_solution(problem);
     double before[2], after[2];
     linear_momentum(problem, NULL, before);
     for (int k = 1; k <= 40; k++) {
-        char text[32];
-        snprintf(text, sizeof text, "k=%d", k);
+        const char *text = printed("k=%d", k);
         for (size_t rival = 0; rival < COUNT(sweepers); rival++) {
             solve_with(sweepers[rival], text, problem, &found);
             linear_momentum(problem, found.velocities, after);
@@ -67,32 +61,28 @@ TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
             assert_consistent(problem, &found);
         }
     }
-    free_solution(&found);
-    world_destroy(world);
 }
 
 /* Contacts never pull: a box that flies up from the ground keeps its velocity. */
 TEST(a_box_that_leaves_the_ground_is_not_held) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_ground(world, 0.5f);
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {2, 3}});
     run_engine(world, "", 1);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 2);
-    ContactSolution found = make_solution(problem);
+    OWN(ContactSolution) found = make_solution(problem);
     for (size_t i = 0; i < COUNT(sweepers); i++) {
         solve_with(sweepers[i], "k=20", problem, &found);
         for (int c = 0; c < 2; c++) assert_true(found.impulses[c].normal == 0 && found.impulses[c].tangent == 0);
         assert_true(found.velocities[1].linear.x == 2);
     }
-    free_solution(&found);
-    world_destroy(world);
 }
 
 /* Without the warm start it matters no more what the problem says of it. */
 TEST(a_cold_engine_starts_from_zero) {
-    World *world = make_world();
+    OWN(World) *world = make_world();
     add_ground(world, 0.2f);
     for (int i = 0; i < 5; i++) add_box(world, 1, 0.2f, vec2(0, 0.5f + (float)i));
     run_engine(world, "", 60);
@@ -102,16 +92,12 @@ TEST(a_cold_engine_starts_from_zero) {
     memcpy(contacts, cold.contacts, (size_t)cold.contact_count * sizeof *contacts);
     for (int i = 0; i < cold.contact_count; i++) contacts[i].warm_normal = contacts[i].warm_tangent = 0;
     cold.contacts = contacts;
-    ContactSolution off = make_solution(&cold), on = make_solution(&cold), of_cold = make_solution(&cold);
+    OWN(ContactSolution) off = make_solution(&cold), on = make_solution(&cold), of_cold = make_solution(&cold);
     solve_with(&solver_engine, "k=3,warm=off", world_problem(world), &off);
     solve_with(&solver_engine, "k=3", world_problem(world), &on);
     solve_with(&solver_engine, "k=3", &cold, &of_cold);
     assert_same_bits(&cold, &off, &of_cold, "warm=off");
     assert_memory_not_equal(off.impulses, on.impulses, (size_t)cold.contact_count * sizeof *on.impulses);
-    free_solution(&off);
-    free_solution(&on);
-    free_solution(&of_cold);
-    world_destroy(world);
 }
 
 RUN_TESTS(NULL, NULL)

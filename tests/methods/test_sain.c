@@ -34,32 +34,28 @@ TEST(without_its_network_it_is_the_engine) {
     static RandomProblem random;
     static const char *const forms[] = {"on", "off", "shuffled"};
     uint32_t seed = 5;
-    SainNetworks networks;
+    OWN(SainNetworks) networks;
     const char *path = temporary_path("sain.npz");
     make_sain_networks(&networks, &seed, 1);
     assert_ok(sain_networks_write(&networks, path, &error), error);
     for (int run = 0; run < RUNS; run++) {
-        char settings[256];
         fill_heap(&random, &seed, run);
-        ContactSolution found = make_solution(&random.problem), engine = make_solution(&random.problem);
+        OWN(ContactSolution) found = make_solution(&random.problem), engine = make_solution(&random.problem);
         solve_with(&solver_engine, "k=10", &random.problem, &engine);
-        snprintf(settings, sizeof settings, "network=%s,net=off,engine=%s", path, forms[run % 3]);
+        const char *settings = printed("network=%s,net=off,engine=%s", path, forms[run % 3]);
         solve_with(&solver_sain, settings, &random.problem, &found);
         assert_same_bits(&random.problem, &found, &engine, "net=off");
-        free_solution(&found);
-        free_solution(&engine);
     }
-    sain_networks_destroy(&networks);
 }
 
 /* Impulses stay those of the engine, velocities do not; without an engine there are no impulses. */
 TEST(a_network_corrects_velocities_only) {
     static RandomProblem random;
     uint32_t seed = 6;
-    SainNetwork network;
+    OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 0.5f);
     fill_heap(&random, &seed, 8);
-    ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
+    OWN(ContactSolution) engine = make_solution(&random.problem), found = make_solution(&random.problem);
     solve_with(&solver_engine, "k=10", &random.problem, &engine);
     const size_t impulses = (size_t)random.problem.contact_count * sizeof *engine.impulses;
     for (SainForm form = 0; form < SAIN_FORMS; form++) {
@@ -75,9 +71,6 @@ TEST(a_network_corrects_velocities_only) {
         assert_int_equal(found.fallbacks.not_finite, 0);
         assert_int_equal(found.fallbacks.beyond_training, 0);
     }
-    free_solution(&engine);
-    free_solution(&found);
-    sain_network_destroy(&network);
 }
 
 /* Closed form: the sum of mass times correction. */
@@ -87,7 +80,7 @@ TEST(created_momentum_is_that_of_the_corrections) {
     SainNetwork network;
     make_sain_network(&network, &seed, 0.5f);
     fill_heap(&random, &seed, 9);
-    ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
+    OWN(ContactSolution) engine = make_solution(&random.problem), found = make_solution(&random.problem);
     solve_with(&solver_engine, "k=10", &random.problem, &engine);
     solve_by(&network, SAIN_WITH_ENGINE, &random.problem, &found);
     double sum = 0;
@@ -97,8 +90,6 @@ TEST(created_momentum_is_that_of_the_corrections) {
         sum += hypot((double)change.x, (double)change.y) / (double)random.bodies[i].inv_mass;
     }
     assert_near(found.momentum_error, sum, 1e-4 * sum);
-    free_solution(&engine);
-    free_solution(&found);
     sain_network_destroy(&network);
 }
 
@@ -111,7 +102,7 @@ TEST(states_beyond_training_are_left_to_the_engine) {
     for (int run = 0; run < RUNS; run++) {
         fill_heap(&random, &seed, run);
         if (random.problem.contact_count == 0) continue;
-        ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
+        OWN(ContactSolution) engine = make_solution(&random.problem), found = make_solution(&random.problem);
         solve_with(&solver_engine, "k=10", &random.problem, &engine);
         solve_by(&network, SAIN_WITH_ENGINE, &random.problem, &found);
         assert_same_bits(&random.problem, &found, &engine, "beyond training");
@@ -119,8 +110,6 @@ TEST(states_beyond_training_are_left_to_the_engine) {
         solve_by(&network, SAIN_ALONE, &random.problem, &found);
         assert_int_equal(found.fallbacks.beyond_training, 1);
         assert_true(is_finite(&random.problem, &found));
-        free_solution(&engine);
-        free_solution(&found);
     }
     sain_network_destroy(&network);
 }
@@ -129,21 +118,19 @@ TEST(states_beyond_training_are_left_to_the_engine) {
 TEST(useless_answers_are_discarded) {
     static RandomProblem random;
     uint32_t seed = 9;
-    SainNetwork network;
+    OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 1e38f);
     int discarded = 0;
     for (int run = 0; run < RUNS; run++) {
         fill_heap(&random, &seed, run);
-        ContactSolution found = make_solution(&random.problem);
+        OWN(ContactSolution) found = make_solution(&random.problem);
         for (SainForm form = 0; form < SAIN_FORMS; form++) {
             solve_by(&network, form, &random.problem, &found);
             assert_true(is_finite(&random.problem, &found));
             discarded += found.fallbacks.not_finite;
         }
-        free_solution(&found);
     }
     assert_true(discarded > 20);
-    sain_network_destroy(&network);
 }
 
 TEST(settings_are_checked) {

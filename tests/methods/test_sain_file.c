@@ -3,11 +3,9 @@
 #include "made.h"
 #include "sain_networks.h"
 
-#include <math.h>
-
 TEST(a_file_keeps_every_bit) {
     uint32_t seed = 8;
-    SainNetworks written, read;
+    OWN(SainNetworks) written, read;
     make_sain_networks(&written, &seed, 2);
     const char *path = temporary_path("sain.npz");
     assert_ok(sain_networks_write(&written, path, &error), error);
@@ -23,8 +21,6 @@ TEST(a_file_keeps_every_bit) {
         assert_memory_equal(a->body_high, b->body_high, sizeof a->body_high);
         assert_memory_equal(a->limit, b->limit, sizeof a->limit);
     }
-    sain_networks_destroy(&written);
-    sain_networks_destroy(&read);
 }
 
 static void refuse(const char *path, const char *reason) {
@@ -36,16 +32,15 @@ static void refuse(const char *path, const char *reason) {
 
 TEST(other_files_are_refused) {
     const int widths[] = {10, 10, 2};
-    Network *pair = network_sized(2, widths);
+    OWN(Network) *pair = network_sized(2, widths);
     const char *path = temporary_path("pair.npz");
     assert_ok(network_write(pair, path, &error), error);
     refuse(path, "kind");
-    network_destroy(pair);
 }
 
 TEST(numbers_out_of_range_are_refused) {
     uint32_t seed = 8;
-    SainNetworks networks;
+    OWN(SainNetworks) networks;
     const char *path = temporary_path("bad.npz");
     make_sain_networks(&networks, &seed, 1);
     float *const bad[] = {networks.forms[0].relation->weights[0] + 5, networks.forms[2].object->input.scale + 1,
@@ -59,7 +54,6 @@ TEST(numbers_out_of_range_are_refused) {
         refuse(path, names[i]);
         *bad[i] = kept;
     }
-    sain_networks_destroy(&networks);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a relation network sees does not depend on the numbers of the bodies, or on the tilt of the scene. */
 #include "sain_networks.h"
+#include "owned.h"
+
+OWNED_VALUE(SainView, sain_view_free)
 
 enum { BODIES = 12, PAIRS = 16 };
 
@@ -84,7 +87,7 @@ static void renumber(Problem *to, const Problem *from) {
 
 /* Velocities of all bodies, the answers added. */
 static void answer(const Problem *p, const SainNetwork *network, SainForm form, BodyVelocity *velocities) {
-    SainView view = {0};
+    OWN(SainView) view = {0};
     SainAnswers answers = {0};
     for (int i = 0; i < BODIES; i++) velocities[i] = p->engine[i];
     assert_true(sain_view_make(&view, &p->problem, form == SAIN_ALONE ? NULL : p->engine, form));
@@ -94,14 +97,13 @@ static void answer(const Problem *p, const SainNetwork *network, SainForm form, 
         assert_true(answers.known[b]);
         velocities[view.bodies[b].body] = sain_corrected(&view.bodies[b], answers.outputs + b * SAIN_OUTPUTS);
     }
-    sain_view_free(&view);
     sain_answers_free(&answers);
 }
 
 TEST(numbers_of_bodies_do_not_matter) {
     static Problem problem, other;
     uint32_t seed = 3;
-    SainNetwork network;
+    OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 0.4f);
     /* Not shuffled: whose change a body is shown depends on the numbers. */
     for (SainForm form = SAIN_WITH_ENGINE; form <= SAIN_ALONE; form++) {
@@ -116,7 +118,6 @@ TEST(numbers_of_bodies_do_not_matter) {
             assert_near(first[i].angular, second[BODIES - 1 - i].angular, 3e-4);
         }
     }
-    sain_network_destroy(&network);
 }
 
 /* Quarter turns of the world leave each box's frame where it was, so a box must be seen from a frame that turns with
@@ -125,7 +126,7 @@ TEST(answers_turn_with_the_scene) {
     static Problem problem;
     uint32_t seed = 4;
     const float angle = 0.4f;
-    SainNetwork network;
+    OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 0.4f);
     network.body_low[0] = -FLT_MAX;
     for (int h = 0; h < SAIN_HIDDEN; h++) /* the tilt itself is an input */
@@ -143,12 +144,11 @@ TEST(answers_turn_with_the_scene) {
             assert_near(after[i].angular, before[i].angular, 5e-4);
         }
     }
-    sain_network_destroy(&network);
 }
 
 TEST(answers_reach_their_target) {
     static Problem problem;
-    SainView view = {0};
+    OWN(SainView) view = {0};
     fill(&problem, 1);
     for (SainForm form = 0; form < SAIN_FORMS; form++) {
         assert_true(sain_view_make(&view, &problem.problem, problem.engine, form));
@@ -164,13 +164,12 @@ TEST(answers_reach_their_target) {
             assert_near(velocity.angular, 3, 1e-4);
         }
     }
-    sain_view_free(&view);
 }
 
 /* Each moving body is shown the change of another one, and all changes are shown. */
 TEST(shuffling_permutes_changes) {
     static Problem problem;
-    SainView view = {0};
+    OWN(SainView) view = {0};
     int same = 0, found = 0;
     fill(&problem, 2);
     assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_SHUFFLED));
@@ -186,15 +185,14 @@ TEST(shuffling_permutes_changes) {
     }
     assert_int_equal(found, BODIES - 1);
     assert_int_equal(same, 0);
-    sain_view_free(&view);
 }
 
 /* What touches nothing is not seen; a problem without contacts has no receivers. */
 TEST(an_empty_problem_is_seen) {
     static Problem problem;
-    SainView view = {0};
+    OWN(SainView) view = {0};
     SainAnswers answers = {0};
-    SainNetwork network;
+    OWN(SainNetwork) network;
     uint32_t seed = 1;
     fill(&problem, 2);
     make_sain_network(&network, &seed, 1);
@@ -202,9 +200,7 @@ TEST(an_empty_problem_is_seen) {
     assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_WITH_ENGINE));
     assert_int_equal(view.body_count, 0);
     assert_true(sain_answer(&answers, &network, &view, true));
-    sain_view_free(&view);
     sain_answers_free(&answers);
-    sain_network_destroy(&network);
 }
 
 RUN_TESTS(NULL, NULL)

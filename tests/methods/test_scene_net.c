@@ -5,7 +5,6 @@
 #include "known.h"
 
 #include <float.h>
-#include <math.h>
 
 /* What impulses make of a body, and m/s, the sum of all that was done to it. */
 typedef struct Gained {
@@ -66,10 +65,9 @@ TEST(momentum_and_cones_are_kept) {
 
 static void refuse(Known *known, const char *text) {
     Error error = {0};
-    ContactSolver solver;
+    OWN(ContactSolver) solver;
     assert_ok(scene_net_make(&solver, known->network, near_aim, &error), error);
     assert_refused(solver.kind->solve(solver.state, &known->random.problem, &known->found, &error), text);
-    free_solver(&solver);
 }
 
 TEST(another_scene_is_refused) {

@@ -7,8 +7,6 @@
 #include "methods/residual.h"
 #include "methods/stopping.h"
 
-#include <math.h>
-
 enum { MORE = 48, CALM_MORE = 24 };
 
 static void put_warm_impulses_into_the_cone(RandomProblem *random) {
@@ -55,10 +53,9 @@ static int sweep_until(Known *known, const float *factors, int count, float near
 
 static int sweep_from_the_warm_start(Known *known) {
     const ContactProblem *problem = &known->random.problem;
-    Sweeps sweeps = {0};
+    OWN(Sweeps) sweeps = {0};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
     assert_true(residual_reaches(&sweeps, problem->contact_count, known->network->gate));
-    sweeps_free(&sweeps);
     return sweep_until(known, known->network->factors, AFTER, near_aim, MORE);
 }
 

@@ -3,8 +3,6 @@
 #include "made.h"
 #include "sanitized.h"
 
-#include <math.h>
-
 enum { TILES = 60, PLATES = 40 };
 
 static const char *const mended[] = {
@@ -31,14 +29,13 @@ static Slide slide(const char *method, float width, float speed, float friction,
     bodies[tiles] =
         (BodyDef){.size = {0.8f, 0.8f}, .mass = 1, .position = start, .velocity = {speed, 0}, .friction = friction};
     const Scene scene = scene_of_bodies(bodies, tiles + 1, frames);
-    Trajectory *run = run_by(&scene, method);
+    OWN(Trajectory) *run = run_by(&scene, method);
     Slide found = {0, 0};
     for (int frame = 0; frame <= frames; frame++) {
         const Vec2 position = run->position[frame * (tiles + 1) + tiles];
         found.x = (double)position.x - (double)start.x;
         found.high = fmax(found.high, (double)position.y - (double)start.y);
     }
-    trajectory_destroy(run);
     return found;
 }
 
@@ -81,12 +78,11 @@ TEST(thin_plates_stay_in_their_places) {
             (BodyDef){.size = {2, 0.03f}, .mass = 1, .position = {0, 0.03f * ((float)i - 0.5f)}, .friction = 0.5f};
     const Scene scene = scene_of_bodies(bodies, PLATES + 1, 120);
     for (int m = 0; m < 3; m++) {
-        Trajectory *run = run_by(&scene, converging[m]);
+        OWN(Trajectory) *run = run_by(&scene, converging[m]);
         const Vec2 *last = &run->position[scene.frames * (PLATES + 1)];
         for (int i = 1; i <= PLATES; i++)
             if (fabs((double)last[i].y - 0.03 * (i - 0.5)) > 0.01)
                 fail_msg("%s: plate %d at %g m", converging[m], i, (double)last[i].y);
-        trajectory_destroy(run);
     }
 }
 

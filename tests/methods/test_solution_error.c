@@ -5,8 +5,6 @@
 #include "methods/sweeps.h"
 #include "methods/reference.h"
 
-#include <math.h>
-
 enum { BODIES = 3 };
 
 /* Ground, and two boxes which the impulses of the step have stopped: they came with 10 m/s and 1 m/s. */
@@ -69,39 +67,6 @@ TEST(nothing_that_moves_is_no_error) {
     SolutionError found = solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference);
     assert_true(found.rms == 0);
     assert_int_equal(found.counted, 0);
-}
-
-/* The engine's error in a stack that has just landed falls with its sweeps, and grows with what is added to it. */
-TEST(more_sweeps_rank_better_and_a_perturbed_solution_worse) {
-    World *world = make_world();
-    add_ground(world, 0.2f);
-    for (int i = 0; i < 5; i++) add_box(world, 1, 0.2f, vec2(0, 0.49f + (float)i));
-    ContactSolver engine = make_engine("k=3");
-    run(world, &engine, 1);
-    const ContactProblem *landed = world_problem(world);
-    Reference solved = {0};
-    Error failure = {0};
-    assert_ok(reference_solve(&solved, landed, NULL, &failure), failure);
-    BodyVelocity velocities[6];
-    ContactImpulse impulses[32];
-    ContactSolution solution = {velocities, impulses, 0, {0}};
-    double last = INFINITY;
-    for (int sweeps = 1; sweeps <= 256; sweeps *= 4) {
-        sequential_impulses_solve(landed, &(SequentialOptions){.accumulate = true, .warm = true}, sweeps, &solution);
-        double now = solution_error(landed, velocities, solved.velocities).rms;
-        assert_true(now < last);
-        last = now;
-    }
-    for (int i = 0; i < 5; i++) {
-        velocities[3].linear.x += 0.1f;
-        double now = solution_error(landed, velocities, solved.velocities).rms;
-        assert_true(now > last);
-        last = now;
-    }
-    assert_near(last, 0.5 / sqrt(5), 2e-3);
-    reference_free(&solved);
-    free_solver(&engine);
-    world_destroy(world);
 }
 
 RUN_TESTS(NULL, NULL)

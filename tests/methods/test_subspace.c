@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Projection, prediction and reconstruction in closed form. */
-#include "testing.h"
+#include "owned.h"
 
 #include "engine/uniform.h"
 #include "subspace_nets.h"
-
-#include <math.h>
 
 static const float launch[SUBSPACE_LAUNCH] = {3, 0, 0, 50};
 
@@ -22,7 +20,7 @@ static void fill(float *numbers, int count, uint32_t *seed) {
 
 /* Of a turned basis: its rows are orthonormal, so all components give all numbers back. */
 TEST(all_components_lose_nothing) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     uint32_t seed = 3;
     float numbers[TEST_NUMBERS];
     for (int k = 0; k < TEST_NUMBERS; k += 2) {
@@ -32,39 +30,33 @@ TEST(all_components_lose_nothing) {
     }
     fill(net->rest, TEST_NUMBERS, &seed);
     fill(numbers, TEST_NUMBERS, &seed);
-    Subspace subspace = begin(net, 1, true);
+    OWN(Subspace) subspace = begin(net, 1, true);
     subspace_start(&subspace, numbers, numbers);
     assert_near(subspace.now[0], 0.6 * (double)(numbers[0] - net->rest[0]) + 0.8 * (double)(numbers[1] - net->rest[1]),
                 1e-6);
     subspace_reconstruct(&subspace);
     for (int j = 0; j < TEST_NUMBERS; j++) assert_near(subspace.numbers[j], numbers[j], 1e-6);
-    subspace_free(&subspace);
-    subspace_net_destroy(net);
 }
 
 TEST(few_components_keep_their_share) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     const float numbers[TEST_NUMBERS] = {1, 2, 3, 4, 5, 6, 7, 8};
-    Subspace subspace = begin(net, 0, true);
+    OWN(Subspace) subspace = begin(net, 0, true);
     subspace_start(&subspace, numbers, numbers);
     subspace_reconstruct(&subspace);
     for (int j = 0; j < TEST_NUMBERS; j++) assert_near(subspace.numbers[j], j < 4 ? j + 1 : 0, 0);
-    subspace_free(&subspace);
-    subspace_net_destroy(net);
 }
 
 TEST(the_linear_term_goes_on) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0}, now[TEST_NUMBERS] = {1, -2, 0.5f, 4, 0, 0, 0.25f, 1};
-    Subspace subspace = begin(net, 1, false);
+    OWN(Subspace) subspace = begin(net, 1, false);
     subspace_start(&subspace, last, now);
     for (int step = 2; step <= 9; step++) {
         const SubspaceReport report = subspace_step(&subspace, launch);
         assert_int_equal(report.beyond + report.not_finite, 0);
         for (int k = 0; k < TEST_NUMBERS; k++) assert_near(subspace.now[k], (float)step * now[k], 1e-5);
     }
-    subspace_free(&subspace);
-    subspace_net_destroy(net);
 }
 
 static void random_weights(SubspaceNet *net, const SubspacePredictor *predictor) {
@@ -87,7 +79,7 @@ static void layer(const SubspaceLayer *from, const double *in, double *out, bool
 }
 
 TEST(the_network_is_its_equation) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     const SubspacePredictor *predictor = &net->predictors[1];
     const float last[TEST_NUMBERS] = {0.1f, 0.2f, 0.3f}, now[TEST_NUMBERS] = {0.4f, -0.1f, 0.2f};
     double in[2 * TEST_NUMBERS + SUBSPACE_LAUNCH], first[ROW_LANES], second[ROW_LANES], out[ROW_LANES];
@@ -100,20 +92,18 @@ TEST(the_network_is_its_equation) {
     layer(&predictor->first, in, first, true);
     layer(&predictor->second, first, second, true);
     layer(&predictor->last, second, out, false);
-    Subspace subspace = begin(net, 1, true);
+    OWN(Subspace) subspace = begin(net, 1, true);
     subspace_start(&subspace, last, now);
     subspace_step(&subspace, launch);
     for (int k = 0; k < TEST_NUMBERS; k++)
         assert_near(subspace.now[k], 2 * (double)now[k] - (double)last[k] + out[k], 1e-4);
-    subspace_free(&subspace);
-    subspace_net_destroy(net);
 }
 
 /* A network of zeros has the bits of its twin. */
 TEST(without_a_correction_both_are_one) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0.1f, 0.2f, 0.3f, 7, 11}, now[TEST_NUMBERS] = {0.4f, -0.1f, 0.2f, 7.1f, 11.3f};
-    Subspace with = begin(net, 1, true), without = begin(net, 1, false);
+    OWN(Subspace) with = begin(net, 1, true), without = begin(net, 1, false);
     subspace_start(&with, last, now);
     subspace_start(&without, last, now);
     for (int i = 0; i < 20; i++) {
@@ -121,17 +111,14 @@ TEST(without_a_correction_both_are_one) {
         subspace_step(&without, launch);
         assert_memory_equal(with.now, without.now, TEST_NUMBERS * sizeof *with.now);
     }
-    subspace_free(&with);
-    subspace_free(&without);
-    subspace_net_destroy(net);
 }
 
 TEST(components_stay_in_their_range) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0}, now[TEST_NUMBERS] = {1, -1};
     net->high[0] = 2.5f;
     net->low[1] = -1.5f;
-    Subspace subspace = begin(net, 1, true);
+    OWN(Subspace) subspace = begin(net, 1, true);
     subspace_start(&subspace, last, now);
     SubspaceReport report = subspace_step(&subspace, launch);
     assert_int_equal(report.beyond, 1);
@@ -139,33 +126,28 @@ TEST(components_stay_in_their_range) {
     report = subspace_step(&subspace, launch);
     assert_int_equal(report.beyond, 2);
     assert_near(subspace.now[0], 2.5, 0);
-    subspace_free(&subspace);
-    subspace_net_destroy(net);
 }
 
 TEST(what_is_not_finite_stays) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0}, now[TEST_NUMBERS] = {1, 2};
     SubspacePredictor *predictor = &net->predictors[1];
     predictor->last.biases[0] = 3e38f;
     predictor->linear[0] = 3e38f;
-    Subspace subspace = begin(net, 1, true);
+    OWN(Subspace) subspace = begin(net, 1, true);
     subspace_start(&subspace, last, now);
     const SubspaceReport report = subspace_step(&subspace, launch);
     assert_int_equal(report.not_finite, 1);
     assert_near(subspace.now[0], 1, 0);
     assert_near(subspace.now[1], 4, 0);
-    subspace_free(&subspace);
-    subspace_net_destroy(net);
 }
 
 TEST(a_predictor_of_at_most_so_many_is_chosen) {
-    SubspaceNet *net = subspace_net_by_hand(0);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(0);
     assert_int_equal(subspace_net_choose(net, 2)->components, 4);
     assert_int_equal(subspace_net_choose(net, 7)->components, 4);
     assert_int_equal(subspace_net_choose(net, 8)->components, 8);
     assert_int_equal(subspace_net_choose(net, 128)->components, 8);
-    subspace_net_destroy(net);
 }
 
 RUN_TESTS(NULL, NULL)

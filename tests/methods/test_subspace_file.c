@@ -1,21 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written is read; what does not fit is refused with file and reason. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/npz.h"
 #include "subspace_nets.h"
 
-#include <math.h>
-
 TEST(what_is_written_is_read) {
     const char *path = temporary_path("net.npz");
-    SubspaceNet *net = subspace_net_by_hand(3);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(3);
     net->physics = 0x123456789abcdef;
     strcpy(net->command, "twinbox train");
     for (int i = 0; i < 9; i++) net->before[i] = (float)i;
     net->predictors[1].last.rows[5] = 0.25f;
     assert_ok(subspace_net_write(net, path, &error), error);
-    SubspaceNet *read = subspace_net_read(path, &error);
+    OWN(SubspaceNet) *read = subspace_net_read(path, &error);
     assert_ok(read != NULL, error);
     assert_memory_equal(&read->shape, &net->shape, sizeof net->shape);
     assert_true(read->physics == net->physics);
@@ -24,8 +22,6 @@ TEST(what_is_written_is_read) {
     assert_near(read->before[8], 8, 0);
     assert_near(read->predictors[1].last.rows[5], 0.25, 0);
     assert_near(read->basis[subspace_lanes(TEST_NUMBERS) + 1], 1, 0);
-    subspace_net_destroy(read);
-    subspace_net_destroy(net);
 }
 
 static void refuse(const SubspaceNet *net, const char *reason) {
@@ -36,7 +32,7 @@ static void refuse(const SubspaceNet *net, const char *reason) {
 }
 
 TEST(bad_numbers_are_refused) {
-    SubspaceNet *net = subspace_net_by_hand(2);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(2);
     net->low[3] = 5000;
     refuse(net, "low: number 3 is 5000, above its high, 1000");
     net->low[3] = 0;
@@ -45,12 +41,11 @@ TEST(bad_numbers_are_refused) {
     net->before[2] = 0;
     net->predictors[0].first.rows[1] = INFINITY;
     refuse(net, "first_rows_0: number 1 is inf; it must be finite");
-    subspace_net_destroy(net);
 }
 
 /* The arrays are those of the true shape; only the sizes lie. */
 TEST(sizes_that_do_not_fit_are_refused) {
-    SubspaceNet *net = subspace_net_by_hand(2);
+    OWN(SubspaceNet) *net = subspace_net_by_hand(2);
     const SubspaceShape shape = net->shape;
     net->shape.hidden = 24;
     refuse(net, "24 hidden units");
@@ -60,7 +55,6 @@ TEST(sizes_that_do_not_fit_are_refused) {
     net->shape = shape;
     net->shape.bodies = 100000;
     assert_refused(subspace_shape_check(&net->shape, "file", &error), "file: error: 100000 bodies");
-    subspace_net_destroy(net);
 }
 
 TEST(another_kind_is_refused) {

@@ -5,8 +5,6 @@
 #include "methods/subspace_nets.h"
 #include "methods/steppers.h"
 
-#include <math.h>
-
 static const float dt = 1 / 60.0f;
 
 static Scene *single;
@@ -97,23 +95,18 @@ TEST_WITH(another_world_starts_from_its_poses, make, destroy) {
     launch.x = -2;
     const Scene other = launch_scene(single, &launch);
     const Method method = method_of(net, single, "subspace");
-    Stepper *both = stepper_of(single, &method), *alone = stepper_of(single, &method);
-    World *first = world_of(single), *second = world_of(&other), *expected = world_of(&other);
+    OWN(Stepper) *both = stepper_of(single, &method), *alone = stepper_of(single, &method);
+    OWN(World) *first = world_of(single), *second = world_of(&other), *expected = world_of(&other);
     for (int frame = 1; frame <= 3; frame++) step_world(both, first, single, frame);
     for (int frame = 4; frame <= 6; frame++) step_world(both, second, &other, frame);
     for (int frame = 1; frame <= 3; frame++) step_world(alone, expected, &other, frame);
     assert_memory_equal(world_bodies(second), world_bodies(expected), 3 * sizeof(Body));
-    stepper_destroy(both);
-    stepper_destroy(alone);
-    world_destroy(first);
-    world_destroy(second);
-    world_destroy(expected);
 }
 
 TEST_WITH(before_the_bomb_the_recorded_run_is_repeated, make, destroy) {
     single->bomb.frame = 5;
     single->frames = 5;
-    SubspaceNet *recorded = subspace_net_by_hand(3);
+    OWN(SubspaceNet) *recorded = subspace_net_by_hand(3);
     for (int i = 0; i < 9; i++) recorded->before[i] = 0.5f * (float)i;
     recorded->before[1] = 4; /* the box's height at the start */
     const Method method = method_of(recorded, single, "subspace");
@@ -126,16 +119,14 @@ TEST_WITH(before_the_bomb_the_recorded_run_is_repeated, make, destroy) {
     watch = run(single, &method, NULL);
     assert_near(watch.bodies[0].position.y, 3.5, 0);
     assert_near(watch.bodies[0].velocity.y, 0, 0);
-    subspace_net_destroy(recorded);
 }
 
 TEST_WITH(a_recorded_run_begins_where_the_scene_does, make, destroy) {
-    SubspaceNet *recorded = subspace_net_by_hand(1);
+    OWN(SubspaceNet) *recorded = subspace_net_by_hand(1);
     recorded->before[1] = 4 / 2;
     const Method method = method_of(recorded, single, "subspace");
     assert_refused(simulate_watched(single, &method, &(RunWatch){0}, &error),
                    "before: body 1 is at (0, 2) m after a step, but starts at (0, 4) m");
-    subspace_net_destroy(recorded);
 }
 
 /* As `twinbox check` runs a scene. */
@@ -185,7 +176,7 @@ static void refuse(const Method *method, const Scene *scene, const char *reason)
 
 TEST_WITH(what_does_not_fit_is_refused, make, destroy) {
     Method method = method_of(net, single, "subspace");
-    Scene *stack = scene_named("stack");
+    OWN(Scene) *stack = scene_named("stack");
     refuse(&method, stack, "the network is for scene single with 2 bodies that move; scene stack has 11");
     single->bodies[1].mass = 20;
     refuse(&method, single, "by_hand.npz: error: the network is for scene single; bodies, bomb, gravity or time");
@@ -199,7 +190,6 @@ TEST_WITH(what_does_not_fit_is_refused, make, destroy) {
     assert_ok(method_parse(&method, "subspace", &error), error);
     single->network_count = 0;
     refuse(&method, single, "the scene names no network for it");
-    scene_destroy(stack);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -5,8 +5,6 @@
 #include "random_problem.h"
 #include "worlds.h"
 
-#include <math.h>
-
 TEST(random_problems_have_the_bits_of_the_plain_text) {
     static RandomProblem random;
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
@@ -53,7 +51,7 @@ TEST(a_run_in_parts_has_the_bits_of_one) {
         if (i % 5 == 0) calm_down(&random, &seed);
         float factors[SWEEPS];
         for (int k = 0; k < SWEEPS; k++) factors[k] = fabsf(any_number(&seed, 0.7f));
-        ContactSolution whole = make_solution(&random.problem), found = make_solution(&random.problem);
+        OWN(ContactSolution) whole = make_solution(&random.problem), found = make_solution(&random.problem);
         for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
             if (!sweeps_can(kernel)) continue;
             assert_true(sweeps_begin_coloured(&sweeps[kernel], kernel, &random.problem));
@@ -66,8 +64,6 @@ TEST(a_run_in_parts_has_the_bits_of_one) {
             assert_true(sweeps_end(&sweeps[kernel], &found));
             assert_same_bits(&random.problem, &found, &whole, "in parts");
         }
-        free_solution(&whole);
-        free_solution(&found);
     }
     free_kernels(sweeps);
 }
@@ -96,14 +92,11 @@ TEST(momentum_of_factor_zero_has_the_bits_of_the_engine) {
     uint32_t seed = 6;
     for (int i = 0; i < 100; i++) {
         make_random(&random, &seed, 10 + i % 60, 0.1f, 2.0f);
-        ContactSolution engine = make_solution(&random.problem), before = make_solution(&random.problem);
-        ContactSolution momentum = make_solution(&random.problem);
+        OWN(ContactSolution) engine = make_solution(&random.problem), before = make_solution(&random.problem);
+        OWN(ContactSolution) momentum = make_solution(&random.problem);
         sequential_impulses_solve(&random.problem, &engine_options, 17, &engine);
         momentum_solve_scalar(&random.problem, as_given, zeros, 17, &before, &momentum);
         assert_same_bits(&random.problem, &momentum, &engine, "factors 0");
-        free_solution(&engine);
-        free_solution(&before);
-        free_solution(&momentum);
     }
 }
 
@@ -146,9 +139,9 @@ TEST(what_overflows_has_the_bits_of_the_plain_text) {
     uint32_t seed = 11;
     make_random(&random, &seed, 60, 0.1f, 1);
     random.contacts[40].mass_normal = 1e38f;
-    ContactSolution plain = make_solution(&random.problem), fast = make_solution(&random.problem);
+    OWN(ContactSolution) plain = make_solution(&random.problem), fast = make_solution(&random.problem);
     sequential_impulses_solve(&random.problem, &engine_options, 10, &plain);
-    ContactSolver engine = make_engine("");
+    OWN(ContactSolver) engine = make_engine("");
     assert_true(engine.kind->solve(engine.state, &random.problem, &fast, &error));
     int lost = 0;
     for (int i = 0; i < random.problem.body_count; i++) {
@@ -158,9 +151,6 @@ TEST(what_overflows_has_the_bits_of_the_plain_text) {
     assert_in_range(lost, 1, random.problem.body_count);
     assert_memory_equal(fast.velocities, plain.velocities,
                         (size_t)random.problem.body_count * sizeof *plain.velocities);
-    free_solver(&engine);
-    free_solution(&plain);
-    free_solution(&fast);
 }
 
 TEST(one_by_one_works_everywhere) {

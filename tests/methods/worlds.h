@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small worlds, made by hand, and the engine to run them. */
 #pragma once
-#include "testing.h"
+#include "owned.h"
 
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -43,6 +43,8 @@ static inline void assert_settings_refused(const ContactSolverKind *kind, const 
 static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_engine, text); }
 
 static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
+
+OWNED_VALUE(ContactSolver, free_solver)
 
 /* Solves a problem by a solver made for this once. */
 static inline void solve_with(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,

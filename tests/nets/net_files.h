@@ -4,8 +4,6 @@
 #include "made.h"
 #include "files.h"
 
-#include <math.h>
-
 enum { NET_ARRAYS_MAX = 40 };
 
 typedef struct NetArrays {

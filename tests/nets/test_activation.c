@@ -5,7 +5,6 @@
 #include "nets/nets.h"
 
 #include <float.h>
-#include <math.h>
 
 static float from_bits(uint32_t bits) {
     float x;

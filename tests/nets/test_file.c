@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "net_files.h"
+#include "owned.h"
 #include "networks.h"
 
 static Network *example(void) {
@@ -28,7 +29,7 @@ static bool is_read(const char *path, Error *error) {
 }
 
 TEST(files_keep_every_bit) {
-    Network *network = example(), *read = network_read(write_network(network), &error);
+    OWN(Network) *network = example(), *read = network_read(write_network(network), &error);
     assert_ok(read != NULL, error);
     assert_int_equal(read->layers, 2);
     assert_memory_equal(read->widths, network->widths, 3 * sizeof(int));
@@ -40,18 +41,15 @@ TEST(files_keep_every_bit) {
     assert_string_equal(read->outputs, network->outputs);
     assert_string_equal(read->target, "net");
     assert_string_equal(read->command, network->command);
-    network_destroy(read);
-    network_destroy(network);
 }
 
 TEST(every_array_is_needed_and_checked) {
-    Network *network = example();
+    OWN(Network) *network = example();
     assert_file_is_checked(is_read, write_network(network), "network", NETWORK_VERSION);
-    network_destroy(network);
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    Network *network = example();
+    OWN(Network) *network = example();
     struct {
         float *number, bad;
         const char *name;
@@ -66,7 +64,6 @@ TEST(numbers_out_of_range_are_refused) {
         refuse_file(is_read, write_network(network), cases[i].name);
         *cases[i].number = kept;
     }
-    network_destroy(network);
 }
 
 TEST(sizes_and_words_that_do_not_fit_are_refused) {
@@ -85,27 +82,24 @@ TEST(sizes_and_words_that_do_not_fit_are_refused) {
                  {{"activations", NPZ_TEXT, 0, {0}, "softmax"}, "activation 0"},
                  {{"activations", NPZ_TEXT, 0, {0}, ""}, "0 activations for 1 layers"},
                  {{"activations", NPZ_TEXT, 0, {0}, "linear linear"}, "more activations"}};
-    Network *network = make_network(1, (const int[]){2, 1}, (const Activation[]){ACTIVATION_LINEAR});
+    OWN(Network) *network = make_network(1, (const int[]){2, 1}, (const Activation[]){ACTIVATION_LINEAR});
     NetArrays arrays = read_arrays(write_network(network));
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         refuse_file(is_read, write_with(&arrays, cases[i].changed), cases[i].text);
     free_arrays(&arrays);
-    network_destroy(network);
 }
 
 TEST(every_activation_has_its_word) {
     const Activation all[] = {ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
-    Network *network = make_network(4, (const int[]){2, 2, 2, 2, 2}, all);
+    OWN(Network) *network = make_network(4, (const int[]){2, 2, 2, 2, 2}, all);
     NetArrays arrays = read_arrays(write_network(network));
-    Network *read = network_read(write_text(&arrays, "activations", "linear sigmoid tanh relu"), &error);
+    OWN(Network) *read = network_read(write_text(&arrays, "activations", "linear sigmoid tanh relu"), &error);
     assert_ok(read != NULL, error);
     assert_memory_equal(read->activations, all, sizeof all);
     for (size_t i = 0; i < arrays.count; i++)
         if (strcmp(arrays.items[i].name, "activations") == 0)
             assert_string_equal(arrays.items[i].data, "linear sigmoid tanh relu");
     free_arrays(&arrays);
-    network_destroy(read);
-    network_destroy(network);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "networks.h"
+#include "owned.h"
 
 #include "nets/kernels.h"
-
-#include <math.h>
 
 enum { USED_ROWS = 5 }; /* of the block */
 
@@ -38,6 +37,8 @@ static void free_case(Case *made) {
     free(made->parameters);
     free(made->factors);
 }
+
+OWNED_VALUE(Case, free_case)
 
 static double loss(Case *made) {
     network_forward(made->block, made->parameters);
@@ -76,8 +77,8 @@ static int count_active(const Case *made) {
    be wrong: as many values are active on both sides of each step. Slopes that are not 0 are counted, or a lost term would
    go unseen; below its kink a rectifier has none. */
 static void check_gradient(int layers, const int *widths, const Activation *activations) {
-    Case made = make_case(layers, widths, activations);
-    double *gradient = calloc((size_t)made.count, sizeof *gradient);
+    OWN(Case) made = make_case(layers, widths, activations);
+    FREED double *gradient = calloc((size_t)made.count, sizeof *gradient);
     assert_non_null(gradient);
     add_gradient(&made, gradient);
     const double step = 1e-5;
@@ -96,8 +97,6 @@ static void check_gradient(int layers, const int *widths, const Activation *acti
         slopes += fabs(slope) > 1e-6;
     }
     assert_true(active > 0 ? slopes > made.count / 2 : slopes == made.count);
-    free(gradient);
-    free_case(&made);
 }
 
 /* Each input is shifted in one row. */
@@ -105,8 +104,8 @@ TEST(slopes_of_the_inputs_are_the_finite_difference) {
     const int widths[] = {3, 5, 2};
     const Activation activations[] = {ACTIVATION_TANH, ACTIVATION_LINEAR};
     const double step = 1e-5;
-    Case made = make_case(2, widths, activations);
-    double *gradient = calloc((size_t)made.count, sizeof *gradient);
+    OWN(Case) made = make_case(2, widths, activations);
+    FREED double *gradient = calloc((size_t)made.count, sizeof *gradient);
     static double slopes[3 * BLOCK_ROWS];
     assert_non_null(gradient);
     add_gradient(&made, gradient);
@@ -123,8 +122,6 @@ TEST(slopes_of_the_inputs_are_the_finite_difference) {
             assert_near(slopes[i * BLOCK_ROWS + r], slope, 1e-8);
             assert_true((fabs(slope) > 1e-6) == (r < USED_ROWS));
         }
-    free(gradient);
-    free_case(&made);
 }
 
 TEST(backward_is_the_finite_difference) {
@@ -145,30 +142,29 @@ TEST(backward_is_the_finite_difference) {
 
 /* Where a sum is exactly 0, the slope taken is 0. */
 TEST(the_rectifiers_slope_at_its_kink_is_zero) {
-    Case made = make_case(2, (const int[]){2, 2, 1}, (const Activation[]){ACTIVATION_RELU, ACTIVATION_LINEAR});
+    OWN(Case) made = make_case(2, (const int[]){2, 2, 1}, (const Activation[]){ACTIVATION_RELU, ACTIVATION_LINEAR});
     double gradient[16] = {0};
     for (int p = 0; p < 6; p++) made.parameters[p] = 0; /* weights and biases of the hidden layer */
     add_gradient(&made, gradient);
     for (int p = 0; p < 8; p++) assert_true(gradient[p] == 0);
     assert_true(gradient[8] != 0); /* the output's bias */
-    free_case(&made);
 }
 
 TEST(gradients_add_up) {
-    Case made = make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
+    OWN(Case) made = make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
     double once[64] = {0}, twice[64] = {0};
     assert_true(made.count <= 64);
     add_gradient(&made, once);
     add_gradient(&made, twice);
     add_gradient(&made, twice);
     for (int p = 0; p < made.count; p++) assert_true(twice[p] == 2 * once[p]);
-    free_case(&made);
 }
 
 /* Training and inference are the same function, one in double, the other in float32. */
 TEST(forward_agrees_with_predict) {
-    Case made = make_case(3, (const int[]){4, 6, 5, 2},
-                          (const Activation[]){ACTIVATION_TANH, ACTIVATION_SIGMOID, ACTIVATION_LINEAR});
+    OWN(Case)
+    made = make_case(3, (const int[]){4, 6, 5, 2},
+                     (const Activation[]){ACTIVATION_TANH, ACTIVATION_SIGMOID, ACTIVATION_LINEAR});
     for (int p = 0; p < made.count; p++) made.parameters[p] = (double)made.network->weights[0][p];
     network_forward(made.block, made.parameters);
     for (int r = 0; r < BLOCK_ROWS; r++) {
@@ -177,7 +173,6 @@ TEST(forward_agrees_with_predict) {
         network_predict(made.network, input, scratch, output);
         for (int k = 0; k < 2; k++) assert_near(made.block->values[3][k * BLOCK_ROWS + r], output[k], 1e-6);
     }
-    free_case(&made);
 }
 
 TEST(dot_sums_every_row_once) {
@@ -197,9 +192,9 @@ static void gradient_by(const Kernels *kernels, Case *made, double *gradient) {
 }
 
 TEST(all_instruction_sets_give_the_same_bits) {
-    Case made =
-        make_case(4, (const int[]){10, 9, 7, 5, 2},
-                  (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU, ACTIVATION_LINEAR});
+    OWN(Case)
+    made = make_case(4, (const int[]){10, 9, 7, 5, 2},
+                     (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU, ACTIVATION_LINEAR});
     double expected[256] = {0};
     assert_true(made.count <= 256);
     gradient_by(&kernels_scalar, &made, expected);
@@ -213,7 +208,6 @@ TEST(all_instruction_sets_give_the_same_bits) {
         assert_memory_equal(gradient, expected, sizeof gradient);
         assert_true(list[k]->dot(y, y + BLOCK_ROWS) == expected_dot);
     }
-    free_case(&made);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -5,7 +5,6 @@
 #include "nets/kernels.h"
 
 #include <float.h>
-#include <math.h>
 
 enum { COUNT = 40, WIDTH = 48 };
 

@@ -1,31 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "networks.h"
+#include "owned.h"
 
 #include "nets/kernels.h"
 
-#include <math.h>
-
 static void predict(const Network *network, const float *input, float *output) {
-    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch);
+    FREED float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch);
     assert_non_null(scratch);
     network_predict(network, input, scratch, output);
-    free(scratch);
 }
 
 TEST(a_new_network_is_zero_with_identity_normalisation) {
-    Network *network = network_sized(2, (const int[]){3, 5, 2});
+    OWN(Network) *network = network_sized(2, (const int[]){3, 5, 2});
     const float input[3] = {1, -2, 3};
     float output[2] = {7, 7};
     predict(network, input, output);
     assert_int_equal(network_parameter_count(network), 5 * 4 + 2 * 6);
     assert_int_equal(network_scratch_width(network), 5);
     assert_true(output[0] == 0 && output[1] == 0);
-    network_destroy(network);
 }
 
 /* hidden = tanh(2 x - y + 0.25), output = (3 hidden - 1) / 4 + 10 with x, y = (inputs - (1, 2)) * (0.5, 3) */
 TEST(two_layers_in_closed_form) {
-    Network *network =
+    OWN(Network) *network =
         make_network(2, (const int[]){2, 1, 1}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
     const float numbers[] = {2, -1, 0.25f, 3, -1};
     memcpy(network->weights[0], numbers, sizeof numbers);
@@ -37,38 +34,34 @@ TEST(two_layers_in_closed_form) {
     predict(network, input, &output);
     double hidden = tanh(2 * 0.5 - 0.75 + 0.25);
     assert_near(output, (3 * hidden - 1) / 4 + 10, 1e-6);
-    network_destroy(network);
 }
 
 /* weights[j, i] goes from input i to output j. */
 TEST(weights_are_stored_row_by_row) {
-    Network *network = make_network(1, (const int[]){3, 2}, (const Activation[]){ACTIVATION_LINEAR});
+    OWN(Network) *network = make_network(1, (const int[]){3, 2}, (const Activation[]){ACTIVATION_LINEAR});
     const float numbers[] = {1, 10, 100, 1000, 10000, 100000, 0.5f, 0.25f}, input[3] = {1, 2, 3};
     memcpy(network->weights[0], numbers, sizeof numbers);
     float output[2];
     predict(network, input, output);
     assert_true(output[0] == 321.5f && output[1] == 321000.25f);
-    network_destroy(network);
 }
 
 /* From the bias on, inputs rising, in float32: 0.5 is lost in 1e8, the 1 that comes after it is not. Any
    other order, or a wider sum, gives 0, 0.5 or 1.5. */
 TEST(sums_start_from_the_bias_and_rise) {
-    Network *network = make_network(1, (const int[]){3, 1}, (const Activation[]){ACTIVATION_LINEAR});
+    OWN(Network) *network = make_network(1, (const int[]){3, 1}, (const Activation[]){ACTIVATION_LINEAR});
     const float numbers[] = {1e8f, -1e8f, 1, 0.5f}, input[3] = {1, 1, 1};
     memcpy(network->weights[0], numbers, sizeof numbers);
     float output;
     predict(network, input, &output);
     assert_true(output == 1);
-    network_destroy(network);
 }
 
 static float activated(Activation activation, float x) {
-    Network *network = make_network(1, (const int[]){1, 1}, &activation);
+    OWN(Network) *network = make_network(1, (const int[]){1, 1}, &activation);
     network->weights[0][0] = 1, network->biases[0][0] = 0;
     float output;
     predict(network, &x, &output);
-    network_destroy(network);
     return output;
 }
 
@@ -129,7 +122,7 @@ static void assert_as_row_by_row(const Network *network, const Batch *batch) {
 }
 
 static void check_batches(int layers, const int *widths, const Activation *activations) {
-    Network *network = make_network(layers, widths, activations);
+    OWN(Network) *network = make_network(layers, widths, activations);
     for (int i = 0; i < widths[0]; i++) network->input.offset[i] = 0.1f * (float)i, network->input.scale[i] = 0.7f;
     for (int k = 0; k < widths[layers]; k++) network->output.offset[k] = -0.3f, network->output.scale[k] = 0.11f;
     const int rows[] = {1, 2, 3, 63, 64, 65, 200};
@@ -150,7 +143,6 @@ static void check_batches(int layers, const int *widths, const Activation *activ
         }
         free_batch(&batch);
     }
-    network_destroy(network);
 }
 
 TEST(a_batch_has_the_bits_of_single_rows_whatever_the_instructions) {
@@ -164,11 +156,11 @@ TEST(a_batch_has_the_bits_of_single_rows_whatever_the_instructions) {
 }
 
 TEST(a_copy_has_numbers_of_its_own) {
-    Network *network =
+    OWN(Network) *network =
         make_network(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH});
     network->output.offset[1] = 5, network->input.scale[2] = 3;
     strcpy(network->inputs, "x y z");
-    Network *copy = network_copy(network, &error);
+    OWN(Network) *copy = network_copy(network, &error);
     assert_ok(copy != NULL, error);
     const float input[3] = {0.5f, -0.25f, 1};
     float before[2], after[2];
@@ -177,8 +169,6 @@ TEST(a_copy_has_numbers_of_its_own) {
     predict(copy, input, after);
     assert_memory_equal(before, after, sizeof before);
     assert_string_equal(copy->inputs, "x y z");
-    network_destroy(copy);
-    network_destroy(network);
 }
 
 static void refuse(int layers, const int *widths, const char *text) {

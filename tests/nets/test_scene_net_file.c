@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written is read; what holds no network of scene-net, or an impossible one, is refused with place and reason. */
 #include "net_files.h"
+#include "owned.h"
 #include "scene_net_layers.h"
-
-#include "python.h"
 
 static SceneNet *example(void) {
     uint32_t seed = 1;
@@ -46,54 +45,14 @@ static SceneNet *written_and_read(const SceneNet *network) {
 
 TEST(files_keep_every_bit) {
     const int sweeps[] = {3, 0, SCENE_NET_SWEEPS_MAX};
-    SceneNet *network = example();
+    OWN(SceneNet) *network = example();
     for (int i = 0; i < 3; i++) {
         network->sweeps = sweeps[i];
         for (int f = 3; f < SCENE_NET_SWEEPS_MAX; f++) network->factors[f] = f < sweeps[i] ? 0.01f * (float)f : 0;
         for (int f = sweeps[i]; f < 3; f++) network->factors[f] = 0;
-        SceneNet *read = written_and_read(network);
+        OWN(SceneNet) *read = written_and_read(network);
         assert_same(read, network);
-        scene_net_destroy(read);
     }
-    scene_net_destroy(network);
-}
-
-/* Numbers that rise through all of a matrix say where NumPy has each of them. */
-TEST(numpy_sees_the_shapes) {
-    SceneNet *network = example();
-    for (int i = 0; i < 2 * FIVE_SLOTS * 64; i++) network->rows[i] = (float)i;
-    for (int i = 0; i < 24 * 16; i++) network->state.rows[i] = (float)i;
-    for (int i = 0; i < 112 * 64; i++) network->first.rows[i] = (float)i;
-    const char *path = temporary_path("numpy.npz");
-    assert_ok(scene_net_write(network, path, &error), error);
-    scene_net_destroy(network);
-    run_python("import sys, numpy as np\n"
-               "f = np.load(sys.argv[1], allow_pickle=False)\n"
-               "want = {'version': (), 'kind': (), 'scene': (), 'command': (), 'body_count': (), 'bomb': (),\n"
-               "  'sweeps': (), 'slot_a': (9,), 'slot_b': (9,), 'slot_feature': (9,),\n"
-               "  'bomb_state_rows': (6, 16), 'bomb_state_centre': (16,), 'state_rows': (24, 16),\n"
-               "  'state_centre': (16,), 'present_rows': (9, 32), 'present_centre': (32,), 'warm_rows': (18, 48),\n"
-               "  'warm_centre': (48,), 'first_rows': (112, 64), 'first_biases': (64,), 'second_rows': (64, 64),\n"
-               "  'second_biases': (64,), 'last_rows': (18, 64), 'last_biases': (18,), 'scale': (9,), 'cap': (9,),\n"
-               "  'low': (112,), 'high': (112,), 'gate': (), 'bomb_inv_mass': (),\n"
-               "  'factors': (3,)}\n"
-               "assert f.files == list(want), f.files\n"
-               "kinds = dict(version='i', body_count='i', bomb='i', sweeps='i', slot_a='i', slot_b='i',\n"
-               "  slot_feature='u', kind='U', scene='U', command='U')\n"
-               "for name, shape in want.items():\n"
-               "    assert f[name].shape == shape, (name, f[name].shape)\n"
-               "    assert f[name].dtype.kind == kinds.get(name, 'f'), (name, f[name].dtype)\n"
-               "assert (f['version'], f['kind'], f['body_count'], f['bomb']) == (2, 'scene-net', 5, 3)\n"
-               "assert (f['sweeps'], f['gate'], f['scene']) == (3, np.float32(0.1), 'pyramid \\u00e4')\n"
-               "assert f['command'] == 'twinbox train pyramid.yaml -o net.npz'\n"
-               "slots = [tuple(map(int, s)) for s in zip(f['slot_a'], f['slot_b'], f['slot_feature'])]\n"
-               "assert slots == [(0, 2, 7), (0, 2, 9), (0, 4, 0), (1, 2, 3), (1, 2, 4), (1, 2, 5),\n"
-               "  (1, 2, 2**32 - 1), (2, 3, 1), (2, 4, 7)], slots\n"
-               "for name in 'last_rows', 'state_rows', 'first_rows':\n"
-               "    a = f[name]\n"
-               "    assert (a == np.arange(a.size).reshape(a.shape)).all(), name\n"
-               "assert (f['factors'] == np.array([0, 0.7, 2], 'f4')).all()\n",
-               path);
 }
 
 static bool is_read(const char *path, Error *error) {
@@ -106,11 +65,10 @@ static bool is_read(const char *path, Error *error) {
 static NetArrays two_slots(void) {
     Error error = {0};
     uint32_t seed = 1;
-    SceneNet *network =
+    OWN(SceneNet) *network =
         make_scene_net(&(SceneNetShape){2, 1, 2, 16, 16, 16, 32}, (const Slot[]){{0, 1, 4}, {0, 1, 6}}, &seed);
     const char *path = temporary_path("two.npz");
     assert_ok(scene_net_write(network, path, &error), error);
-    scene_net_destroy(network);
     return read_arrays(path);
 }
 
@@ -120,15 +78,14 @@ TEST(every_array_is_needed_and_checked) {
     assert_ok(scene_net_write(network, path, &error), error);
     scene_net_destroy(network);
     size_t size;
-    char *bytes = read_whole(path, &size);
+    FREED char *bytes = read_whole(path, &size);
     assert_file_is_checked(is_read, path, "scene-net", SCENE_NET_NETWORK_VERSION);
     bytes[size / 2] ^= 1; /* inside a matrix */
     refuse_file(is_read, write_bytes(temporary_path("flipped.npz"), bytes, size), "damaged");
-    free(bytes);
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    SceneNet *network = example();
+    OWN(SceneNet) *network = example();
     const char *path = temporary_path("bad.npz");
     struct {
         float *number, bad;
@@ -149,7 +106,6 @@ TEST(numbers_out_of_range_are_refused) {
         *cases[i].number = kept;
         refuse_file(is_read, path, cases[i].text);
     }
-    scene_net_destroy(network);
 }
 
 TEST(sizes_and_slots_out_of_bounds_are_refused) {

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene_net_layers.h"
-
-#include <math.h>
+#include "owned.h"
 
 enum { BODIES = 5, STATE = SLOT_BODY_NUMBERS * (BODIES - 1), INPUTS = ROW_LANES + 16 + 32 + 48, HIDDEN = 64 };
 
 /* A view with its arrays; of all slots, unless a test changes it. */
-typedef struct Scene {
+typedef struct SeenScene {
     float bomb[SLOT_BODY_NUMBERS], state[STATE], ones[FIVE_SLOTS], warm[2 * FIVE_SLOTS];
     int32_t slots[FIVE_SLOTS], impulses[2 * FIVE_SLOTS];
     SceneNetView view;
-} Scene;
+} SeenScene;
 
-static void see(Scene *scene, int count, const int32_t *slots) {
+static void see(SeenScene *scene, int count, const int32_t *slots) {
     for (int i = 0; i < count; i++) {
         scene->slots[i] = slots[i];
         scene->ones[i] = 1;
@@ -24,7 +23,7 @@ static void see(Scene *scene, int count, const int32_t *slots) {
 
 static const int32_t all_slots[FIVE_SLOTS] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, few_slots[] = {7, 1, 4};
 
-static void make_scene(Scene *scene, uint32_t *seed) {
+static void make_scene(SeenScene *scene, uint32_t *seed) {
     fill(scene->bomb, SLOT_BODY_NUMBERS, -1, 1, seed);
     fill(scene->state, STATE, -1, 1, seed);
     fill(scene->warm, 2 * FIVE_SLOTS, 0, 1, seed);
@@ -35,7 +34,7 @@ static void make_scene(Scene *scene, uint32_t *seed) {
 TEST(every_slot_is_found_and_no_other) {
     const uint32_t features[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, UINT32_MAX - 1, UINT32_MAX};
     uint32_t seed = 1;
-    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
+    OWN(SceneNet) *network = make_scene_net(&five_shape, five_slots, &seed);
     int found = 0;
     for (int a = 0; a < BODIES; a++)
         for (int b = 0; b < BODIES; b++)
@@ -47,13 +46,12 @@ TEST(every_slot_is_found_and_no_other) {
                 found++;
             }
     assert_int_equal(found, FIVE_SLOTS);
-    scene_net_destroy(network);
 }
 
 TEST(a_new_network_is_zero_and_has_its_own_slots) {
     Slot slots[FIVE_SLOTS];
     memcpy(slots, five_slots, sizeof slots);
-    SceneNet *network = scene_net_create(&five_shape, slots, &error);
+    OWN(SceneNet) *network = scene_net_create(&five_shape, slots, &error);
     assert_ok(network != NULL, error);
     memset(slots, 0, sizeof slots);
     assert_memory_equal(network->slots, five_slots, sizeof five_slots);
@@ -64,7 +62,6 @@ TEST(a_new_network_is_zero_and_has_its_own_slots) {
     for (size_t p = 0; p < network->parameter_count; p++) assert_true(network->parameters[p] == 0);
     for (int i = 0; i < FIVE_SLOTS; i++) assert_true(network->scale[i] == 0 && network->cap[i] == 0);
     for (int i = 0; i < INPUTS; i++) assert_true(network->low[i] == 0 && network->high[i] == 0);
-    scene_net_destroy(network);
 }
 
 /* Small whole numbers: every sum of them is exact. */
@@ -87,9 +84,9 @@ static void centre(Projection *projection, const int32_t *index, const float *nu
 }
 
 TEST(what_lies_at_the_centre_projects_to_zero) {
-    Scene scene;
+    SeenScene scene;
     uint32_t seed = 3;
-    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
+    OWN(SceneNet) *network = make_scene_net(&five_shape, five_slots, &seed);
     make_scene(&scene, &seed);
     see(&scene, 3, few_slots);
     make_whole(scene.bomb, SLOT_BODY_NUMBERS);
@@ -108,7 +105,6 @@ TEST(what_lies_at_the_centre_projects_to_zero) {
     for (int i = INPUTS - 48; i < INPUTS; i++) moved |= inputs[i] != 0;
     for (int i = 0; i < INPUTS - 48; i++) assert_true(inputs[i] == 0);
     assert_true(moved);
-    scene_net_destroy(network);
 }
 
 static double *project(const Projection *projection, const int32_t *index, const float *numbers, int count,
@@ -151,9 +147,9 @@ static const double rounding = 1e-5;
 
 TEST(a_prediction_is_the_formula) {
     uint32_t seed = 4;
-    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
+    OWN(SceneNet) *network = make_scene_net(&five_shape, five_slots, &seed);
     for (int test = 0; test < 20; test++) {
-        Scene scene;
+        SeenScene scene;
         float inputs[INPUTS], first[HIDDEN], second[HIDDEN], outputs[2 * FIVE_SLOTS];
         double exact_inputs[INPUTS], exact[2 * FIVE_SLOTS];
         make_scene(&scene, &seed);
@@ -165,14 +161,13 @@ TEST(a_prediction_is_the_formula) {
         for (int i = 0; i < 2 * scene.view.slot_count; i++)
             assert_near(outputs[i], exact[2 * scene.slots[i / 2] + i % 2], rounding);
     }
-    scene_net_destroy(network);
 }
 
 /* For the same inputs, each alone and in any company. */
 TEST(a_slot_does_not_mind_the_others) {
-    Scene scene;
+    SeenScene scene;
     uint32_t seed = 5;
-    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
+    OWN(SceneNet) *network = make_scene_net(&five_shape, five_slots, &seed);
     float inputs[INPUTS], first[HIDDEN], second[HIDDEN], all[2 * FIVE_SLOTS], few[6], one[2];
     make_scene(&scene, &seed);
     scene_net_look(network, &scene.view, inputs);
@@ -186,14 +181,13 @@ TEST(a_slot_does_not_mind_the_others) {
         assert_memory_equal(one, &all[2 * slot], sizeof one);
         assert_true(one[0] != 0 && one[0] != one[1]);
     }
-    scene_net_destroy(network);
 }
 
 /* A step without contacts. */
 TEST(no_slots_are_none) {
-    Scene scene;
+    SeenScene scene;
     uint32_t seed = 6;
-    SceneNet *network = make_scene_net(&five_shape, five_slots, &seed);
+    OWN(SceneNet) *network = make_scene_net(&five_shape, five_slots, &seed);
     float inputs[INPUTS], first[HIDDEN], second[HIDDEN], none = 5;
     make_scene(&scene, &seed);
     see(&scene, 0, NULL);
@@ -202,7 +196,6 @@ TEST(no_slots_are_none) {
         assert_true(inputs[ROW_LANES + network->state.to + c] == -network->present.centre[c]);
     scene_net_predict(network, inputs, &scene.view, first, second, &none);
     assert_true(none == 5);
-    scene_net_destroy(network);
 }
 
 static void refuse(SceneNetShape shape, const Slot *slots, const char *text) {

@@ -7,7 +7,7 @@
 
 /* Without its network gns falls: as its teacher until something touches, and then through the ground, g t^2 / 2. */
 TEST(without_its_network_boxes_fall_away) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     GnsRollout rollout;
     assert_ok(gns_rollout_run(&rollout, scene, "none.npz", "net=off", &error), error);
     assert_int_equal(rollout.boxes, 2);
@@ -17,7 +17,6 @@ TEST(without_its_network_boxes_fall_away) {
     assert_near(rollout.moved, 1, 0);
     assert_near(rollout.moved_teacher, 1, 0);
     assert_refused(gns_rollout_run(&rollout, scene, "none.npz", "", &error), "none.npz: error: ");
-    scene_destroy(scene);
 }
 
 /* Of the five claims, in their order. */

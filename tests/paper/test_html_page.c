@@ -5,9 +5,8 @@
 
 static void write_picture(const char *name) {
     Error error = {0};
-    Image *image = image_sized(5, 3);
+    OWN(Image) *image = image_sized(5, 3);
     assert_ok(image_write_png(image, temporary_path(name), NULL, 0, &error), error);
-    image_destroy(image);
 }
 
 static char *write_page(const char *markdown) {
@@ -23,15 +22,13 @@ static char *write_page(const char *markdown) {
 }
 
 static void expect_within(const char *markdown, const char *expected) {
-    char *page = write_page(markdown);
+    FREED char *page = write_page(markdown);
     if (strstr(page, expected) == NULL) fail_msg("the page lacks \"%s\":\n%s", expected, page);
-    free(page);
 }
 
 static void expect_without(const char *markdown, const char *unwanted) {
-    char *page = write_page(markdown);
+    FREED char *page = write_page(markdown);
     if (strstr(page, unwanted) != NULL) fail_msg("the page has \"%s\":\n%s", unwanted, page);
-    free(page);
 }
 
 TEST(headings_make_title_and_contents) {

@@ -5,7 +5,6 @@
 #include "learning/hybrid_training.h"
 #include "paper/paper_internal.h"
 
-#include <math.h>
 #include <time.h>
 
 /* The clock counts: reading it takes a microsecond more than its overhead, so each solution takes one. */

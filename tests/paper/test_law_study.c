@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "paper/paper_internal.h"
-
-#include <math.h>
 
 static Dataset *record(bool context) {
     Error error = {0};
@@ -25,7 +23,7 @@ static LawRow run(const Dataset *dataset, const char *laws, double weight, uint6
 
 /* The engine's impulses are equal and opposite and within the cone, by construction. */
 TEST(the_engine_keeps_what_it_keeps) {
-    Dataset *dataset = record(true);
+    OWN(Dataset) *dataset = record(true);
     LawRow labels;
     assert_ok(law_study_run(dataset, &(LawStudy){.laws = NULL}, &labels, NULL, &error), error);
     assert_int_equal(labels.laws, LAW_SET_ENGINE);
@@ -33,11 +31,10 @@ TEST(the_engine_keeps_what_it_keeps) {
     assert_near(labels.violation[LAW_MOMENTUM], 0, 1e-3);
     assert_near(labels.violation[LAW_CONE], 0, 1e-3);
     assert_true(labels.violation[LAW_ENERGY] >= 0 && labels.violation[LAW_APPROACH] >= 0);
-    dataset_destroy(dataset);
 }
 
 TEST(a_heavy_law_is_broken_less) {
-    Dataset *dataset = record(true);
+    OWN(Dataset) *dataset = record(true);
     const LawRow none = run(dataset, "none", 10, 1), cone = run(dataset, "cone", 10, 1),
                  again = run(dataset, "cone", 10, 1), other = run(dataset, "cone", 10, 2);
     assert_true(cone.violation[LAW_CONE] < 0.7 * none.violation[LAW_CONE]);
@@ -45,7 +42,6 @@ TEST(a_heavy_law_is_broken_less) {
     assert_true(none.test > 0 && none.test < 2 * none.constant);
     assert_memory_equal(&cone, &again, sizeof cone);
     assert_true(cone.test != other.test);
-    dataset_destroy(dataset);
 }
 
 static bool stop(void *context, double done, double total) {
@@ -55,7 +51,7 @@ static bool stop(void *context, double done, double total) {
 
 TEST(what_is_not_whole_does_not_count) {
     LawRow result;
-    Dataset *dataset = record(true), *without = record(false);
+    OWN(Dataset) *dataset = record(true), *without = record(false);
     const Progress progress = {stop, NULL};
     LawStudy study = {.laws = "all", .weight = 1, .seed = 1, .iterations = 60};
     assert_false(law_study_run(dataset, &study, &result, &progress, &error));
@@ -63,8 +59,6 @@ TEST(what_is_not_whole_does_not_count) {
     assert_refused(law_study_run(without, &study, &result, NULL, &error), "--context");
     study.laws = "gravity";
     assert_refused(law_study_run(dataset, &study, &result, NULL, &error), "'gravity' is not a law");
-    dataset_destroy(without);
-    dataset_destroy(dataset);
 }
 
 RUN_TESTS(NULL, NULL)

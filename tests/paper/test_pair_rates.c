@@ -5,8 +5,6 @@
 
 #include "paper/paper_internal.h"
 
-#include <math.h>
-
 static const Sampling sampling = {.after = 20, .rest = 60};
 
 /* Sampled from one launch of the stack. */

@@ -55,8 +55,7 @@ TEST(threads_rate_alike) {
     write_table(paper_rates_write, 3, three);
     assert_string_equal(one, three);
     for (int i = 0; i < NETWORKS + 1; i++) {
-        char beginning[64];
-        snprintf(beginning, sizeof beginning, "rates:%s,single,", i < NETWORKS ? networks[i].name : "warm-start");
+        const char *beginning = printed("rates:%s,single,", i < NETWORKS ? networks[i].name : "warm-start");
         assert_int_equal(count_lines(one, beginning), RATE_DEFINITIONS * RATE_PHASES);
     }
 }

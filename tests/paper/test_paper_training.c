@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A network has its name only when it is whole, and its figures are numbers. */
-#include "testing.h"
+#include "owned.h"
 
 #include "allocations.h"
 #include "paper/paper_internal.h"
-
-#include <math.h>
 
 static const PaperDataSize size = {.swept = "-2:2:1"};
 static PaperNetwork network;
@@ -35,7 +33,7 @@ static bool stop_after(void *context, double done, double total) {
 
 /* Trains until the report after the first `most` stops it. */
 static bool train(int most, Limit *limit, Error *error) {
-    char *lines = NULL;
+    FREED char *lines = NULL;
     size_t used;
     FILE *out = open_memstream(&lines, &used);
     *limit = (Limit){.most = most};
@@ -43,7 +41,6 @@ static bool train(int most, Limit *limit, Error *error) {
     const bool done = paper_training_write(&plan, &part, out, &progress, error);
     assert_int_equal(fclose(out), 0);
     if (done) assert_null(strstr(lines, "nan"));
-    free(lines);
     return done;
 }
 
@@ -63,7 +60,7 @@ TEST(a_training_that_is_stopped_leaves_no_network) {
 }
 
 TEST(lines_know_their_network) {
-    char *lines = NULL;
+    FREED char *lines = NULL;
     size_t used;
     bool there;
     FILE *out = open_memstream(&lines, &used);
@@ -81,12 +78,11 @@ TEST(lines_know_their_network) {
     assert_int_equal(remove(network_path()), 0);
     assert_ok(paper_training_whole(&plan, &part, lines, &there, &error), error);
     assert_false(there);
-    free(lines);
 }
 
 TEST(without_memory_there_is_no_accuracy) {
     const Dataset *dataset = paper_dataset(&plan.datasets, &network, &error);
-    Network *trained = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
+    OWN(Network) *trained = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
     double accuracy = -1;
     assert_ok(dataset != NULL && trained != NULL, error);
     failing_allocation = 1;
@@ -95,7 +91,6 @@ TEST(without_memory_there_is_no_accuracy) {
     error = (Error){0};
     assert_ok(paper_accuracy(trained, dataset, &accuracy, &error), error);
     assert_true(accuracy >= 0 && accuracy <= 1);
-    network_destroy(trained);
 }
 
 RUN_TESTS(begin, end)

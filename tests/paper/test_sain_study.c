@@ -4,8 +4,6 @@
 
 #include "paper/paper_internal.h"
 
-#include <math.h>
-
 /* The same part twice: the same rows, one for each form and scene. */
 TEST(a_part_is_repeatable) {
     static char texts[2][2048];

@@ -5,8 +5,6 @@
 #include "paper/paper_internal.h"
 #include "studies/piece_tables.h"
 
-#include <math.h>
-
 static void describe(void *context, int64_t piece, PieceInfo *info) {
     (void)context, (void)piece;
     snprintf(info->name, sizeof info->name, "single");

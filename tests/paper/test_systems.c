@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
 #include "tables.h"
+#include "owned.h"
 
 #include "paper/paper_internal.h"
 #include "sanitized.h"
 #include "studies/piece_tables.h"
-
-#include <math.h>
 
 typedef struct DoubleRow {
     double launches, error;
@@ -101,7 +100,7 @@ TEST(parts_and_scores_are_done_once) {
     Pieces done;
     do_parts(&done, false);
     assert_int_equal(parts_written, 2);
-    CsvTable first, again;
+    OWN(CsvTable) first, again;
     assert_ok(csv_table_read_from(&first, folder(), &system_score_layout, &error), error);
     do_parts(&done, true); /* as after an interruption */
     assert_int_equal(parts_written, 2);
@@ -111,8 +110,6 @@ TEST(parts_and_scores_are_done_once) {
         const SystemScoreRow *a = first.rows, *b = again.rows;
         assert_near(b[i].us_step, a[i].us_step, 0); /* the same measurement, not another */
     }
-    csv_table_free(&first);
-    csv_table_free(&again);
 }
 
 static const SystemScoreRow *score(const CsvTable *scores, const char *method) {
@@ -120,7 +117,7 @@ static const SystemScoreRow *score(const CsvTable *scores, const char *method) {
 }
 
 TEST(scores_are_those_of_runs_beside_the_engine_s) {
-    CsvTable scores;
+    OWN(CsvTable) scores;
     write_study();
     assert_ok(csv_table_read_from(&scores, folder(), &system_score_layout, &error), error);
     assert_int_equal(scores.count, 5); /* engine, momentum, interior, the system, its ablation */
@@ -134,11 +131,10 @@ TEST(scores_are_those_of_runs_beside_the_engine_s) {
     assert_near(engine->fallback_share, 0, 0);
     assert_true(net->fallback_share >= 0 && net->fallback_share <= 1);
     assert_true(net->us_step > 0 && net->us_step_engine > 0);
-    csv_table_free(&scores);
 }
 
 TEST(claims_follow_from_tables_and_scores) {
-    CsvTable claims;
+    OWN(CsvTable) claims;
     write_study();
     assert_ok(system_claims_write(systems, folder(), &error), error);
     assert_ok(csv_table_read_from(&claims, folder(), &claim_layout, &error), error);
@@ -149,7 +145,6 @@ TEST(claims_follow_from_tables_and_scores) {
     assert_string_equal(rows[0].figure, "5 m/s"); /* half of ten launches */
     assert_int_equal(rows[0].holds, CLAIM_YES);
     assert_string_equal(rows[1].figure, "below 1000 s, – s, – s");
-    csv_table_free(&claims);
 }
 
 TEST(rules_have_two_limits) {

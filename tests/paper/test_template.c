@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "paper/report_internal.h"
 
@@ -15,7 +15,7 @@ static void write_tables(void) {
 
 static void expect_filled(const char *template, const char *expected) {
     Error error = {0};
-    char *text;
+    FREED char *text;
     size_t size;
     write_tables();
     FILE *out = open_memstream(&text, &size);
@@ -23,7 +23,6 @@ static void expect_filled(const char *template, const char *expected) {
     assert_ok(template_fill(template, temporary_folder, "values.csv", out, &error), error);
     fclose(out);
     assert_string_equal(text, expected);
-    free(text);
 }
 
 TEST(values_are_filled_in) {

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 
 #include "learning/dataset.h"
 #include "paper/paper_internal.h"
-
-#include <math.h>
 
 static Dataset *record(const char *scene, PairView view) {
     Error error = {0};
@@ -43,7 +41,7 @@ static double constant_by_hand(const Dataset *dataset) {
 }
 
 TEST(errors_stand_beside_the_constant) {
-    Dataset *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
+    OWN(Dataset) *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
     assert_ok(drawn != NULL, error);
     const Dataset *const data[] = {NULL, NULL, pyramid};
     /* An untrained network predicts anything; a trained one, with inputs of the contact, beats the constant predictor. */
@@ -53,15 +51,13 @@ TEST(errors_stand_beside_the_constant) {
     assert_true(begun.constant == trained.constant);
     if (!(trained.error < 0.9 * begun.error && trained.error < begun.constant))
         fail_msg("%g to %g, %g", begun.error, trained.error, begun.constant);
-    dataset_destroy(drawn);
-    dataset_destroy(pyramid);
 }
 
 /* After 0 iterations, a network with transfer differs from one from scratch only by its normalisation, which is that of
    its first stage. It does not differ if that stage had the same rows. */
 TEST(the_first_stage_decides_the_units) {
-    Dataset *elsewhere = record(single, PAIR_RELATIVE), *pyramid = record(stack, PAIR_RELATIVE);
-    Dataset *drawn = dataset_draw_subset(pyramid, 2, 5, &error);
+    OWN(Dataset) *elsewhere = record(single, PAIR_RELATIVE), *pyramid = record(stack, PAIR_RELATIVE);
+    OWN(Dataset) *drawn = dataset_draw_subset(pyramid, 2, 5, &error);
     assert_ok(drawn != NULL, error);
     const Dataset *const same[] = {drawn, elsewhere, pyramid}, *const other[] = {elsewhere, drawn, pyramid};
     TransferStudy study = {.seed = 5, .launches = 2};
@@ -70,16 +66,13 @@ TEST(the_first_stage_decides_the_units) {
     const TransferRow from_same = run(same, study), from_other = run(other, study);
     assert_true(from_same.error == scratch.error && from_same.constant == scratch.constant);
     assert_true(from_other.error != scratch.error && from_other.constant == scratch.constant);
-    dataset_destroy(drawn);
-    dataset_destroy(pyramid);
-    dataset_destroy(elsewhere);
 }
 
 /* By any view; the same again, and something else for each way of getting there. */
 TEST(stages_follow_each_other) {
     for (int i = 0; i < 2; i++) {
         const PairView view = i == 0 ? PAIR_RELATIVE : PAIR_CONTACT;
-        Dataset *first = record(single, view), *pyramid = record(stack, view);
+        OWN(Dataset) *first = record(single, view), *pyramid = record(stack, view);
         const Dataset *const data[] = {first, pyramid, pyramid}, *const changed[] = {first, first, pyramid};
         TransferStudy study = {.seed = 2, .launches = 4, .iterations = 20};
         const TransferRow scratch = run(data, study);
@@ -88,8 +81,6 @@ TEST(stages_follow_each_other) {
         assert_memory_equal(&transfer, &again, sizeof again);
         assert_true(transfer.error != scratch.error && transfer.error != other.error);
         assert_true(transfer.constant == scratch.constant);
-        dataset_destroy(pyramid);
-        dataset_destroy(first);
     }
 }
 
@@ -100,7 +91,7 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(what_cannot_be_run_is_refused) {
-    Dataset *pyramid = record(stack, PAIR_RELATIVE), *other = record(single, PAIR_RAW);
+    OWN(Dataset) *pyramid = record(stack, PAIR_RELATIVE), *other = record(single, PAIR_RAW);
     const Dataset *const data[] = {pyramid, pyramid, pyramid}, *const mixed[] = {other, pyramid, pyramid};
     TransferRow result;
     int stages = 0;
@@ -113,8 +104,6 @@ TEST(what_cannot_be_run_is_refused) {
     assert_false(transfer_study_run(data, &study, &result, &progress, &error));
     assert_error(error, ERROR_INTERRUPTED, "training: error: stopped");
     assert_refused(transfer_study_run(mixed, &study, &result, NULL, &error), "trained on other inputs");
-    dataset_destroy(other);
-    dataset_destroy(pyramid);
 }
 
 RUN_TESTS(NULL, NULL)

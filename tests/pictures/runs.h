@@ -3,8 +3,6 @@
 #pragma once
 #include "made.h"
 
-#include <math.h>
-
 enum { GROUND_BODY, FIRST_BOX, SECOND_BOX, BOMB_BODY, RUN_BODIES };
 
 static inline Vec2 *run_position(Trajectory *run, int frame, int body) {

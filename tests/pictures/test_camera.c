@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What must be in view, and what must not affect it. */
-#include "testing.h"
+#include "owned.h"
 
 #include "pictures/picture.h"
 #include "pictures/runs.h"
@@ -76,7 +76,7 @@ TEST_WITH(a_body_that_flies_off_changes_nothing, make, destroy) {
 
 /* What a frame without marks draws depends on no later frame, in any panel: neither camera nor texts. */
 TEST_WITH(no_mark_of_frame_0_moves, make, destroy) {
-    Trajectory *other = run_make("pair-net", 12);
+    OWN(Trajectory) *other = run_make("pair-net", 12);
     const Trajectory *panels[] = {run, other, run};
     for (int count = 1; count <= 3; count++) {
         Drawing drawings[2] = {{0}, {0}};
@@ -97,7 +97,6 @@ TEST_WITH(no_mark_of_frame_0_moves, make, destroy) {
         assert_memory_equal(a->glyphs, b->glyphs, a->glyph_count * sizeof *a->glyphs);
         for (int i = 0; i < 2; i++) drawing_free(&drawings[i]);
     }
-    trajectory_destroy(other);
 }
 
 /* What falls over near in half of the runs is in view; in one of three it counts for nothing, nor does a sag. */
@@ -284,7 +283,7 @@ TEST_WITH(a_look_sets_the_view, make, destroy) {
 
 /* What a network does counts for no panel; a box that stands elsewhere in its run does, if it is not far away. */
 TEST_WITH(the_start_of_all_panels_counts, make, destroy) {
-    Trajectory *network = run_make("pair-net", 12);
+    OWN(Trajectory) *network = run_make("pair-net", 12);
     const Trajectory *panels[] = {run, network};
     Picture calm, wild;
     for (float away = 4; away < 5000; away *= 1000) {
@@ -298,7 +297,6 @@ TEST_WITH(the_start_of_all_panels_counts, make, destroy) {
     for (int frame = 5; frame < 12; frame++) *run_position(network, frame, FIRST_BOX) = vec2(1e4F, 1e6F);
     assert_ok(picture_plan(&wild, panels, 2, 1280, 720, &error), error);
     assert_memory_equal(&calm.camera, &wild.camera, sizeof calm.camera);
-    trajectory_destroy(network);
 }
 
 TEST_WITH(wild_numbers_leave_a_camera, make, destroy) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A caption has the method's name as on the command line, then what its description states. */
-#include "testing.h"
+#include "owned.h"
 
 #include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
@@ -17,7 +17,7 @@ static const MethodDescription *describe(const char *method) {
 static void assert_caption(const char *method, bool described, const char *name, const char *note) {
     Error error = {0};
     Picture picture;
-    Trajectory *run = run_make(method, 2);
+    OWN(Trajectory) *run = run_make(method, 2);
     const RenderOptions options = {.describe = described ? describe : NULL};
     char found_name[CAPTION_TEXT_SIZE], found_note[CAPTION_TEXT_SIZE];
     assert_ok(picture_plan(&picture, (const Trajectory *[]){run}, 1, 640, 360, &error), error);
@@ -26,7 +26,6 @@ static void assert_caption(const char *method, bool described, const char *name,
     assert_string_equal(found_name, name);
     assert_string_equal(found_note, note);
     picture_free(&picture);
-    trajectory_destroy(run);
 }
 
 TEST(a_description_gives_the_caption) {

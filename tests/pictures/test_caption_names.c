@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A method's name stands in every picture, whatever else has to go, and no caption is cut. */
 #include "testing.h"
+#include "owned_drawings.h"
 
 #include "methods/methods.h"
 #include "pictures/pictures_internal.h"
@@ -29,7 +30,7 @@ FIXTURE(destroy) {
 
 /* Whether these characters of a font stand beside each other in the drawing. */
 static bool has_text(const Drawing *drawing, const Font *font, const char *text) {
-    Drawing sample = {0};
+    OWN(Drawing) sample = {0};
     bool found = false;
     font_add(&sample, font, text, 0, 0, 0);
     const size_t count = sample.glyph_count;
@@ -37,7 +38,6 @@ static bool has_text(const Drawing *drawing, const Font *font, const char *text)
         found = true;
         for (size_t i = 0; i < count && found; i++) found = drawing->glyphs[at + i].bitmap == sample.glyphs[i].bitmap;
     }
-    drawing_free(&sample);
     return found;
 }
 
@@ -48,8 +48,8 @@ static bool has_name(const Drawing *drawing, const Layout *layout, const char *n
 /* The number of runs whose name, whole or without its settings, is in the picture. */
 static int count_names(int count, int width, int height, const RenderLook *look, bool whole) {
     Error error = {0};
-    Picture picture;
-    Drawing drawing = {0};
+    OWN(Picture) picture;
+    OWN(Drawing) drawing = {0};
     const RenderOptions options = {.width = width, .height = height, .look = *look, .describe = describe};
     assert_ok(picture_plan(&picture, panels, count, width, height, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
@@ -63,8 +63,6 @@ static int count_names(int count, int width, int height, const RenderLook *look,
         if (!there) print_error("%d runs, %d x %d: no %s\n", count, width, height, name);
         found += there;
     }
-    drawing_free(&drawing);
-    picture_free(&picture);
     return found;
 }
 
@@ -95,8 +93,8 @@ static bool has_words(const Drawing *drawing, const Layout *layout, const char *
 /* Draws the captions of `count` methods from this one on; the number of descriptions that are left out. */
 static int check_captions(int first, int count, const int size[2], LookCompare compare) {
     Error error = {0};
-    Picture picture;
-    Drawing drawing = {0};
+    OWN(Picture) picture;
+    OWN(Drawing) drawing = {0};
     int kinds = 0, left_out = 0;
     const RenderOptions options = {
         .width = size[0], .height = size[1], .look.compare = compare, .describe = method_describe};
@@ -126,8 +124,6 @@ static int check_captions(int first, int count, const int size[2], LookCompare c
         if (!inside)
             fail_msg("%d x %d, %d runs from %s: a letter is outside", size[0], size[1], count, runs[0]->method);
     }
-    drawing_free(&drawing);
-    picture_free(&picture);
     return left_out;
 }
 

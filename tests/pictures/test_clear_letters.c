@@ -8,8 +8,6 @@
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 
-#include <math.h>
-
 enum { RUNS = RENDER_PANELS_MAX, OPAQUE = 128 }; /* opacity, of 255, from which a pixel is part of a letter */
 
 static const char *const files[RUNS] = {"trajectories/stack-engine", "trajectories/stack-pair-net",
@@ -26,9 +24,7 @@ FIXTURE(make) {
             if (glyph->code == 0x2026) ellipses[font] = glyph->offset;
         }
     for (int i = 0; i < RUNS; i++) {
-        char path[512];
-        snprintf(path, sizeof path, SOURCE_DIR "/golden/%s.npz", files[i]);
-        panels[i] = runs[i] = trajectory_of(path);
+        panels[i] = runs[i] = trajectory_of(printed(SOURCE_DIR "/golden/%s.npz", files[i]));
     }
     strcpy(runs[2]->method, "playback:launches=recorded-launches.csv,k=20");
     strcpy(runs[3]->method, "exec-solver:/usr/bin/python3 adapters/sweeps.py,k=100,name=Sweeps by others");

@@ -97,35 +97,4 @@ TEST(colours_can_be_chosen) {
     assert_int_equal(colours[2].light.fill, 0x7A9A01);
 }
 
-TEST(hostile_choices_are_refused) {
-    static const struct {
-        ColourChoices choices;
-        const char *message;
-    } cases[] = {
-        {{{"red"}, 1}, "--colour: error: 'red' is not NAME=RRGGBB, with six hex digits, such as interior=cc79a7"},
-        {{{"=2a9d8f"}, 1},
-         "--colour: error: '=2a9d8f' is not NAME=RRGGBB, with six hex digits, such as interior=cc79a7"},
-        {{{"engine=2a9d8"}, 1},
-         "--colour: error: 'engine=2a9d8' is not NAME=RRGGBB, with six hex digits, such as interior=cc79a7"},
-        {{{"engine=##2a9d8f"}, 1},
-         "--colour: error: 'engine=##2a9d8f' is not NAME=RRGGBB, with six hex digits, such as interior=cc79a7"},
-        {{{"engine=0x2a9d"}, 1},
-         "--colour: error: 'engine=0x2a9d' is not NAME=RRGGBB, with six hex digits, such as interior=cc79a7"},
-        {{{"Planck=ffff00"}, 1},
-         "--colour: error: 'Planck=ffff00' is too light to be seen on white: its lightness is 237 of 255, at most 187"},
-        {{{"Planck=2a9d8f", "Planck=804000"}, 2},
-         "--colour: error: 'Planck' has two colours: Planck=2a9d8f and Planck=804000"},
-        {{{"Plank=2a9d8f"}, 1}, "--colour: error: 'Plank' is not a run of this picture; did you mean 'Planck'?"},
-        {{{"Planck=0072b0"}, 1},
-         "--colour: error: #0072b0 for 'Planck' is too close to the colour of 'engine', #0072b2"},
-        {{{"Planck=a02010"}, 1},
-         "--colour: error: #a02010 for 'Planck' is too close to the colour of the bomb, #a0200f"},
-    };
-    RunColours colours[3];
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        error = (Error){0};
-        assert_refused(colours_assign(shown, 3, &cases[i].choices, colours, &error), cases[i].message);
-    }
-}
-
 RUN_TESTS(NULL, NULL)

@@ -3,6 +3,7 @@
    whole: equal pixels and equal bytes, along the runs of golden/ and across jumps. */
 #include "made.h"
 #include "sanitized.h"
+#include "owned_drawings.h"
 
 #include "regression/compare.h"
 #include "mesa.h"
@@ -47,11 +48,10 @@ static void assert_same_bytes(Twins *twins, const bool *changed) {
     Error error = {0};
     const uint8_t *next, *whole;
     size_t next_size, whole_size;
-    PngEncoder *encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
+    OWN(PngEncoder) *encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
     assert_ok(png_encode(twins->next_encoder, twins->next_image, changed, NULL, 0, &next, &next_size, &error), error);
     assert_ok(png_encode(encoder, twins->whole_image, NULL, NULL, 0, &whole, &whole_size, &error), error);
     assert_true(next_size == whole_size && memcmp(next, whole, next_size) == 0);
-    png_encoder_destroy(encoder);
 }
 
 static void assert_same_frame(Twins *twins, int frame) {
@@ -70,9 +70,7 @@ static void assert_same_frame(Twins *twins, int frame) {
 }
 
 static Trajectory *golden_run(const char *scene, const char *method) {
-    char path[PATH_MAX];
-    snprintf(path, sizeof path, "%s/%s-%s.npz", TRAJECTORIES, scene, method);
-    return trajectory_of(path);
+    return trajectory_of(printed("%s/%s-%s.npz", TRAJECTORIES, scene, method));
 }
 
 TEST(followed_frames_equal_whole_ones) {
@@ -96,7 +94,7 @@ TEST(followed_frames_equal_whole_ones) {
 TEST(wild_frames_equal_whole_ones) {
     static const float wild[] = {0, 1, 40, -40, 3e38F, NAN, INFINITY, 5, -1e6F, 2};
     enum { FRAMES = sizeof wild / sizeof wild[0] };
-    Trajectory *run = run_make("engine", FRAMES);
+    OWN(Trajectory) *run = run_make("engine", FRAMES);
     const Trajectory *const panels[] = {run};
     run->size[SECOND_BOX] = vec2(0.5F, 300);
     for (int frame = 0; frame < FRAMES; frame++) {
@@ -114,12 +112,11 @@ TEST(wild_frames_equal_whole_ones) {
             assert_same_frame(&twins, to);
         }
     close_twins(&twins);
-    trajectory_destroy(run);
 }
 
 /* A single frame drawn in between invalidates the canvas; a frame that does not exist does not. */
 TEST(other_calls_may_come_between) {
-    Trajectory *run = run_make("engine", 6);
+    OWN(Trajectory) *run = run_make("engine", 6);
     const Trajectory *const panels[] = {run};
     for (int frame = 0; frame < 6; frame++) run_position(run, frame, FIRST_BOX)->y += 1.6F * (float)frame;
     Twins twins;
@@ -133,11 +130,10 @@ TEST(other_calls_may_come_between) {
                 renderer_draw_next(twins.next, moment_stored(6), twins.next_image, &(const bool *){NULL}, &(Error){0}));
     }
     close_twins(&twins);
-    trajectory_destroy(run);
 }
 
 TEST(only_touched_rows_change) {
-    Drawing before = {0}, after = {0};
+    OWN(Drawing) before = {0}, after = {0};
     bool changed[100];
     const Rect clip = {0, 0, 100, 100};
     Shape box = {.x = 50, .y = 20, .half_width = 4, .half_height = 4, .cosine = 1, .fill = 1};
@@ -157,8 +153,6 @@ TEST(only_touched_rows_change) {
     drawing_add_rect(&after, (Rect){0, 0, 1, 1}, 0);
     assert_false(damage_find(&before, &after, 100, changed));
     for (int y = 0; y < 100; y++) assert_true(changed[y]);
-    drawing_free(&before);
-    drawing_free(&after);
 }
 
 RUN_TESTS(NULL, NULL)

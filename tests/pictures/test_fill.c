@@ -5,7 +5,6 @@
 #include "pictures/pictures_internal.h"
 
 #include <glob.h>
-#include <math.h>
 
 static const int sizes[][2] = {{1280, 720}, {1080, 1080}, {720, 1280}};
 enum { SIZES = sizeof sizes / sizeof sizes[0], STATES_MAX = 20000, WILD_FRAMES = 120 };
@@ -45,20 +44,19 @@ static double share_filled(const Picture *picture, int first, int last, bool wit
 }
 
 static Trajectory *run_of_scene(const char *path) {
-    Scene *scene = scene_from(path);
+    OWN(Scene) *scene = scene_from(path);
     const int most = STATES_MAX / (scene->body_count + 1) + 2;
     if (scene->bomb.present && scene->bomb.frame + WILD_FRAMES < scene->frames)
         scene->frames = scene->bomb.frame + WILD_FRAMES;
     if (!scene->bomb.present && most < scene->frames) scene->frames = most;
     Trajectory *run = run_by(scene, "engine");
-    scene_destroy(scene);
     return run;
 }
 
 /* At the start, and when the bomb strikes: a single box has fallen by then. A view that steps back is
    filled over the run. */
 static int check_scene(const char *path) {
-    Trajectory *run = run_of_scene(path);
+    OWN(Trajectory) *run = run_of_scene(path);
     const Trajectory *const runs[RENDER_PANELS_MAX] = {run, run, run, run, run, run};
     const int impact = trajectory_impact(run), struck = strstr(path, "/single.yaml") == NULL && impact > 0 ? impact : 0;
     int bare = 0;
@@ -75,7 +73,6 @@ static int check_scene(const char *path) {
                         path + sizeof SOURCE_DIR, sizes[i][0], sizes[i][1], count, start, later, most);
             bare++;
         }
-    trajectory_destroy(run);
     return bare;
 }
 

@@ -83,9 +83,8 @@ typedef struct Runs {
 static Runs read_runs(const char *const *names) {
     Runs runs = {0};
     for (; names[runs.count] != NULL; runs.count++) {
-        char path[PATH_MAX];
-        snprintf(path, sizeof path, "%s/%s.npz", golden, names[runs.count]);
-        runs.panels[runs.count] = runs.owned[runs.count] = trajectory_of(path);
+        runs.panels[runs.count] = runs.owned[runs.count] =
+            trajectory_of(printed("%s/%s.npz", golden, names[runs.count]));
     }
     return runs;
 }
@@ -114,7 +113,7 @@ static bool is_equal(const Image *expected, int i, bool dark, ContextChoice cont
     char name[NAME_SIZE], path[PATH_MAX];
     Error error = {0};
     ImageDifference difference;
-    Image *actual = draw(i, dark, context);
+    OWN(Image) *actual = draw(i, dark, context);
     image_compare(expected, actual, &difference);
     name_entry(name, i, dark);
     snprintf(path, sizeof path, "actual_%s.png", name);
@@ -122,7 +121,6 @@ static bool is_equal(const Image *expected, int i, bool dark, ContextChoice cont
         image_write_png(actual, path, NULL, 0, &error);
         print_error("%s: %lld pixels differ; see %s\n", name, (long long)difference.pixels, path);
     }
-    image_destroy(actual);
     return difference.equal;
 }
 
@@ -133,9 +131,8 @@ TEST(the_gallery_is_drawn_again) {
             char name[NAME_SIZE], path[PATH_MAX];
             name_entry(name, i, dark);
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
-            Image *expected = image_of(path);
+            OWN(Image) *expected = image_of(path);
             different += !is_equal(expected, i, dark, built_context(dark ? CONTEXT_EGL : CONTEXT_OSMESA));
-            image_destroy(expected);
         }
     assert_int_equal(different, 0);
 }
@@ -147,9 +144,8 @@ static void write_all(void) {
             Error error = {0};
             name_entry(name, i, dark);
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
-            Image *image = draw(i, dark, CONTEXT_AUTO);
+            OWN(Image) *image = draw(i, dark, CONTEXT_AUTO);
             if (!image_write_png(image, path, NULL, 0, &error)) print_error("%s\n", error.message);
-            image_destroy(image);
         }
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Both axes have at least three tics, however near the camera is. */
 #include "testing.h"
+#include "owned_drawings.h"
 
 #include "pictures/picture.h"
 
@@ -23,8 +24,8 @@ TEST(every_frame_has_three_tics_on_each_axis) {
                           trajectory_read(SOURCE_DIR "/golden/gallery/stack-momentum.npz", &error)};
     assert_ok(runs[0] != NULL && runs[1] != NULL, error);
     for (int i = 0; i < 3; i++) {
-        Picture picture;
-        Drawing drawing = {0};
+        OWN(Picture) picture;
+        OWN(Drawing) drawing = {0};
         const RenderOptions options = {.width = 960, .height = 540, .look.camera = cameras[i]};
         assert_ok(picture_plan(&picture, (const Trajectory *const *)runs, 2, 960, 540, &error), error);
         assert_ok(picture_apply_options(&picture, &options, &error), error);
@@ -35,8 +36,6 @@ TEST(every_frame_has_three_tics_on_each_axis) {
             count_tics(&picture, &drawing, &across, &up);
             if (across < 3 || up < 3) fail_msg("camera %d, frame %d: %d and %d tics", i, frame, across, up);
         }
-        drawing_free(&drawing);
-        picture_free(&picture);
     }
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of each look: required runs, and positions of poses, cameras, colours and curves. */
 #include "made.h"
+#include "owned_drawings.h"
 
 #include "look_runs.h"
 #include "mesa.h"
@@ -14,31 +15,6 @@ static Picture picture_with_look(int count, const RenderLook *look) {
     assert_ok(picture_plan(&picture, panels, count, WIDTH, HEIGHT, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
     return picture;
-}
-
-TEST_WITH(a_look_that_the_runs_do_not_have_is_refused, make, destroy) {
-    static const struct {
-        RenderLook look;
-        int count;
-        const char *text;
-    } wrong[] = {
-        {{.compare = LOOK_OVERLAY}, 1, "'overlay' compares runs, but there is only one"},
-        {{.compare = LOOK_DIFFERENCE}, 1, "'difference' compares runs"},
-        {{.show = LOOK_GHOSTS}, 1, "'ghosts' compares"},
-        {{.show = LOOK_DISTANCE}, 1, "'distance' compares"},
-        {{.show = LOOK_TIMELINE | LOOK_TRAILS}, 1, "'timeline' compares"},
-        {{.camera = LOOK_DIVERGENCE}, 1, "'divergence' compares"},
-        {{.compare = LOOK_OVERLAY}, 3, "'overlay' compares run 3 with the first, but their worlds differ (size of"},
-    };
-    runs[2]->size[FIRST_BOX].x = 2;
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        RenderOptions options = {.width = WIDTH, .height = HEIGHT, .look = wrong[i].look};
-        assert_refused(renderer_create(panels, wrong[i].count, &options, &error), wrong[i].text);
-    }
-    runs[0]->bomb = -1;
-    assert_refused(look_check(&(RenderLook){.camera = LOOK_BOMB}, panels, 2, &error), "cannot follow the bomb");
-    error = (Error){0};
-    assert_ok(look_check(&(RenderLook){.show = LOOK_TRAILS | LOOK_VELOCITIES}, panels, 3, &error), error);
 }
 
 TEST_WITH(poses_between_frames_lie_between, make, destroy) {
@@ -56,11 +32,10 @@ TEST_WITH(poses_between_frames_lie_between, make, destroy) {
 }
 
 TEST_WITH(distances_between_frames_lie_between, make, destroy) {
-    Picture picture = picture_with_look(2, &(RenderLook){0});
+    OWN(Picture) picture = picture_with_look(2, &(RenderLook){0});
     double before = picture_distance(&picture, moment_stored(9)), after = picture_distance(&picture, moment_stored(10));
     assert_near(picture_distance(&picture, (Moment){MOMENT_BETWEEN, 9, 1, 2, 2}), (before + after) / 2, 1e-6);
     assert_true(isnan(picture_run_distance(&picture, 0, moment_stored(9))));
-    picture_free(&picture);
 }
 
 TEST_WITH(events_are_found_where_they_are, make, destroy) {
@@ -81,23 +56,21 @@ TEST_WITH(events_are_found_where_they_are, make, destroy) {
 TEST_WITH(each_compare_has_its_panels, make, destroy) {
     static const int shown[] = {3, 1, 2}, first[] = {0, 0, 1};
     for (int compare = LOOK_SPLIT; compare <= LOOK_DIFFERENCE; compare++) {
-        Picture picture = picture_with_look(3, &(RenderLook){.compare = (LookCompare)compare});
+        OWN(Picture) picture = picture_with_look(3, &(RenderLook){.compare = (LookCompare)compare});
         assert_int_equal(picture.panel_count, shown[compare]);
         assert_int_equal(picture_run(&picture, 0), first[compare]);
-        picture_free(&picture);
     }
 }
 
 /* With a fixed camera only the timeline takes room. */
 TEST_WITH(curves_are_the_largest_distances, make, destroy) {
-    Picture picture = picture_with_look(3, &(RenderLook){.show = LOOK_TIMELINE});
+    OWN(Picture) picture = picture_with_look(3, &(RenderLook){.show = LOOK_TIMELINE});
     assert_int_equal(picture.curve_points, FRAMES);
     for (int frame = 0; frame < FRAMES; frame++) {
         assert_near(picture.curves[FRAMES + frame], trajectory_distance(runs[0], runs[1], frame), 1e-6);
         assert_true(isnan((double)picture.curves[frame]));
     }
     assert_true(picture.layout.timeline.top > picture.layout.panels[0].bottom);
-    picture_free(&picture);
 }
 
 /* No jumps: from frame to frame, centre and size of the view change by a small fraction. */
@@ -110,7 +83,7 @@ TEST_WITH(cameras_ease, make, destroy) {
         for (int frame = 2; frame < 400; frame++) /* from left to right, with a jump */
             *run_position(runs[run], frame, BOMB_BODY) = vec2(frame < 150 ? -10 : 10 + 0.01F * (float)frame, 3);
     for (int camera = LOOK_BOMB; camera <= LOOK_DIVERGENCE; camera++) {
-        Picture picture = picture_with_look(2, &(RenderLook){.camera = (LookCamera)camera});
+        OWN(Picture) picture = picture_with_look(2, &(RenderLook){.camera = (LookCamera)camera});
         const Rect panel = picture.layout.panels[0];
         double width = panel.right - panel.left, whole = width / picture.camera.scale, closest = 0;
         for (int frame = 0; frame < 400; frame++) {
@@ -128,7 +101,6 @@ TEST_WITH(cameras_ease, make, destroy) {
             Point at = panel_point(&picture, 0, 2, 0.5);
             assert_near(at.x, (panel.left + panel.right) / 2.0, 2);
         }
-        picture_free(&picture);
     }
 }
 
@@ -159,7 +131,7 @@ TEST_WITH(colors_of_distance_are_even_in_lightness, make, destroy) {
 
 TEST_WITH(distances_have_their_place_on_the_scale, make, destroy) {
     Scales scales;
-    Picture picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
+    OWN(Picture) picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
     assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 0.5, &error), error);
     assert_int_equal(scales.last_decade, 0);
     assert_false(scales.exceeded);
@@ -170,20 +142,18 @@ TEST_WITH(distances_have_their_place_on_the_scale, make, destroy) {
     assert_near(scales_share(&scales, 5), 1, 0);
     assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 5000, &error), error);
     assert_true(scales.exceeded && scales.last_decade == 1);
-    picture_free(&picture);
 }
 
 static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
     Error error = {0};
     RenderOptions options = {.width = 800, .height = 450, .look = *look};
     Renderer *renderer = renderer_create(panels, count, &options, &error);
-    Image *image = image_sized(800, 450);
+    OWN(Image) *image = image_sized(800, 450);
     const bool *changed;
     assert_ok(renderer != NULL, error);
     assert_ok(renderer_draw_next(renderer, moment, image, &changed, &error), error);
     uint64_t hash = image_hash(image);
     renderer_destroy(renderer);
-    image_destroy(image);
     return hash;
 }
 

@@ -25,7 +25,7 @@ static void assert_followed(const RenderLook *look, int count, int width, int he
     options.context = built_context(CONTEXT_EGL);
     Renderer *whole = renderer_create(panels, count, &options, &error);
     assert_ok(next != NULL && whole != NULL, error);
-    Image *a = image_sized(width, height), *b = image_sized(width, height);
+    OWN(Image) *a = image_sized(width, height), *b = image_sized(width, height);
     const bool *changed;
     for (int i = 0; i < MOMENTS; i++) {
         ImageDifference difference;
@@ -39,8 +39,6 @@ static void assert_followed(const RenderLook *look, int count, int width, int he
             fail_msg("compare %d, camera %d, show %u, moment %d: %d pixels differ", (int)look->compare,
                      (int)look->camera, look->show, i, (int)difference.pixels);
     }
-    image_destroy(a);
-    image_destroy(b);
     renderer_destroy(next);
     renderer_destroy(whole);
 }

@@ -72,11 +72,9 @@ static const char *copied(const char *name) {
     assert_ok(file_make_directory(directory, &error), error);
     for (int i = -1; i < PICTURES; i++) {
         size_t size;
-        char to[512];
-        char *data = read_whole(i < 0 ? manifest_of(whole) : frame_path(whole, i), &size);
-        snprintf(to, sizeof to, "%s", i < 0 ? manifest_of(directory) : frame_path(directory, i));
+        FREED char *data = read_whole(i < 0 ? manifest_of(whole) : frame_path(whole, i), &size);
+        const char *to = printed("%s", i < 0 ? manifest_of(directory) : frame_path(directory, i));
         assert_ok(file_write_soon(to, data, size, &error), error);
-        free(data);
     }
     return directory;
 }
@@ -100,7 +98,7 @@ static void check_picture(const json_t *item, int index) {
     const char *path = frame_path(whole, index), *part = json_string_value(json_object_get(item, "part"));
     int frame = (int)json_integer_value(json_object_get(item, "frame"));
     char *data = read_whole(path, &size), text[64] = "";
-    Image *image = image_of(path);
+    OWN(Image) *image = image_of(path);
     assert_true(hash_of(json_object_get(item, "pixels")) == image_hash(image));
     assert_true(hash_of(json_object_get(item, "file_hash")) == hash_xxh3(data, size));
     assert_non_null(strstr(path, json_string_value(json_object_get(item, "file"))));
@@ -112,7 +110,6 @@ static void check_picture(const json_t *item, int index) {
     assert_int_equal(atoi(text), frame);
     text_of_image(path, "Part", text, sizeof text);
     assert_string_equal(text, part != NULL ? part : "");
-    image_destroy(image);
     free(data);
 }
 
@@ -174,9 +171,8 @@ static void check_view(const char *directory, bool moving) {
         const json_t *picture = json_array_get(pictures, i);
         assert_int_equal(json_object_get(picture, "camera") != NULL, moving);
         if (strcmp(json_string_value(json_object_get(picture, "shows")), "frame") != 0) continue;
-        Image *image = image_of(frame_path(directory, (int)i));
+        OWN(Image) *image = image_of(frame_path(directory, (int)i));
         check_bodies(all, picture, image);
-        image_destroy(image);
     }
     json_decref(manifest);
 }
@@ -209,9 +205,8 @@ TEST(the_view_names_the_files_of_the_runs) {
 }
 
 TEST(a_manifest_names_no_place) {
-    char *text = text_of(manifest_of(whole));
+    FREED char *text = text_of(manifest_of(whole));
     assert_null(strstr(text, temporary_folder));
-    free(text);
 }
 
 TEST(nothing_is_drawn_twice) {
@@ -283,12 +278,11 @@ TEST(a_killed_sequence_goes_on) {
 
 /* A power failure cuts a write: the last line may be partial, and so may pictures. */
 TEST(every_cut_of_the_journal_is_survived) {
-    char journal[600];
     RenderOptions options = options_for(temporary_path("cut"));
     assert_false(render_study(panels, 2, &options, NULL, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
-    snprintf(journal, sizeof journal, "%s.part", manifest_of(options.directory));
+    const char *journal = printed("%s.part", manifest_of(options.directory));
     size_t size;
-    char *text = read_whole(journal, &size);
+    FREED char *text = read_whole(journal, &size);
     /* In the head, in the first line, in and after the last. */
     const size_t cuts[] = {0,        50,  (size_t)(strstr(text, "{\"file\"") - text) + 30, size - 90, size - 20,
                            size - 1, size};
@@ -297,7 +291,6 @@ TEST(every_cut_of_the_journal_is_survived) {
         write_bytes(journal, text, cuts[i]);
         resume(options.directory, NULL);
     }
-    free(text);
 }
 
 /* Pictures of another sequence are not kept. */
@@ -313,8 +306,7 @@ TEST(another_sequence_is_redrawn) {
         {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
     for (size_t i = 0; i < sizeof others / sizeof *others; i += (size_t)sampled(2)) {
-        char name[16];
-        snprintf(name, sizeof name, "other%zu", i);
+        const char *name = printed("other%zu", i);
         RenderOptions options = others[i].options;
         options.directory = temporary_path(name);
         options.last = -1;
@@ -365,7 +357,7 @@ TEST(a_manifest_is_not_trusted) {
         {"\n", "\n\n"},
     };
     size_t size;
-    char *text = read_whole(manifest_of(whole), &size);
+    FREED char *text = read_whole(manifest_of(whole), &size);
     const char *directory = copied("changed");
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i += (size_t)sampled(3)) {
         char *changed = replaced(text, changes[i][0], changes[i][1]);
@@ -374,12 +366,10 @@ TEST(a_manifest_is_not_trusted) {
         free(changed);
         if (ours) assert_true(resume(directory, NULL) < PICTURES);
     }
-    char *large = calloc(1, 1 << 20);
+    FREED char *large = calloc(1, 1 << 20);
     memcpy(large, text, size);
     write_bytes(manifest_of(directory), large, 1 << 20);
     assert_int_equal(resume(directory, NULL), 0);
-    free(large);
-    free(text);
 }
 
 /* Files of other programs are not touched. */

@@ -2,6 +2,7 @@
 /* Contact points and arrows are in proportion to the panel, but never cover the boxes; an arrow points to a bomb
    outside. */
 #include "testing.h"
+#include "owned_drawings.h"
 
 #include "pictures/pictures_internal.h"
 #include "pictures/look_runs.h"
@@ -20,35 +21,31 @@ static Picture picture_of(double metres) {
 
 TEST_WITH(marks_shrink_with_the_boxes, make, destroy) {
     for (double metres = 4; metres < 1000; metres *= 1.5) {
-        Picture picture = picture_of(metres);
+        OWN(Picture) picture = picture_of(metres);
         const double box = picture.camera.scale, side = panel_side(&picture);
         assert_near(picture.scales.box, box, 1e-9);
         assert_true(marks_dot_radius(&picture) <= fmax(0.15 * box, 0.6));
         assert_true(marks_line_thickness(&picture) <= fmax(0.1 * box, 0.6));
         assert_true(picture.scales.max_arrow <= 4 * box && picture.scales.max_arrow <= 0.28 * side);
-        picture_free(&picture);
     }
 }
 
 TEST_WITH(beside_large_boxes_marks_have_the_panels_proportions, make, destroy) {
-    Picture near = picture_of(4), nearer = picture_of(2);
+    OWN(Picture) near = picture_of(4), nearer = picture_of(2);
     assert_near(marks_dot_radius(&near), marks_dot_radius(&nearer), 0);
     assert_near(marks_line_thickness(&near), marks_line_thickness(&nearer), 0);
     assert_near(near.scales.max_arrow, nearer.scales.max_arrow, 0);
-    picture_free(&near);
-    picture_free(&nearer);
 }
 
 /* Thin arrows have no halo: of 5,000 boxes nothing else would be seen. */
 TEST(a_thin_arrow_is_drawn_once) {
     const Rect clip = {0, 0, 100, 100};
     for (double thickness = 0.6; thickness < 4; thickness += 0.2) {
-        Drawing drawing = {0};
+        OWN(Drawing) drawing = {0};
         const ArrowStyle style = {thickness, 1, 2};
         stroke_arrow(&drawing, (Point){20, 20}, (Point){60, 20}, false, &style, &clip);
         assert_int_equal(drawing.shape_count,
                          thickness < 1.01 ? 3 : 6); /* a shaft and two sides of the head, each time */
-        drawing_free(&drawing);
     }
 }
 
@@ -57,7 +54,7 @@ TEST(a_thin_arrow_is_drawn_once) {
 static bool find_pointer(Vec2 bomb, double *x, double *y) {
     Picture picture;
     Error error = {0};
-    Drawing drawing = {0};
+    OWN(Drawing) drawing = {0};
     *run_position(runs[0], 5, BOMB_BODY) = bomb;
     assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
     marks_draw_above(&picture, 0, moment_stored(5), &drawing);
@@ -70,7 +67,6 @@ static bool find_pointer(Vec2 bomb, double *x, double *y) {
         assert_true(*x > 0 && *x < 1 && *y > 0 && *y < 1);
     }
     *x -= fmin(fmax(picture.camera.left + picture.camera.scale * (double)bomb.x, 0) / (panel->right - panel->left), 1);
-    drawing_free(&drawing);
     return found;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order of a video: counts, order and fractions; films of any frame rate play in real time, and films of a given length
    last as long. */
-#include "testing.h"
+#include "owned.h"
 
 #include "pictures/render.h"
 #include "runs.h"
@@ -92,23 +92,21 @@ TEST(slow_motion_ends_where_the_run_does) {
         int frames, impact, between;
     } cases[] = {{FRAMES, 2, 2 + AFTER}, {FRAMES, FRAMES - 1, BEFORE}, {10, 4, 9}, {FRAMES, 0, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Trajectory *other = struck(cases[i].frames, cases[i].impact);
+        OWN(Trajectory) *other = struck(cases[i].frames, cases[i].impact);
         MomentPlan plan;
         const Trajectory *panels[] = {other};
         assert_ok(moments_plan(&plan, panels, 1, 0, cases[i].frames - 1, &(RenderOptions){.slow = 4}, &error), error);
         assert_int_equal(moments_last(&plan) + 1, cases[i].frames + 3 * cases[i].between);
         assert_int_equal(moments_at(&plan, moments_last(&plan)).frame, cases[i].frames - 1);
-        trajectory_destroy(other);
     }
 }
 
 TEST(the_first_impact_of_all_panels_counts) {
-    Trajectory *later = struck(FRAMES + 5, IMPACT + 30);
+    OWN(Trajectory) *later = struck(FRAMES + 5, IMPACT + 30);
     MomentPlan plan;
     const Trajectory *panels[] = {later, run};
     assert_ok(moments_plan(&plan, panels, 2, 0, FRAMES + 4, &(RenderOptions){.slow = 2}, &error), error);
     assert_int_equal(plan.slow_first, IMPACT - BEFORE);
-    trajectory_destroy(later);
 }
 
 static void assert_same_moment(Moment a, Moment b) {
@@ -160,20 +158,9 @@ TEST(a_range_of_frames_is_a_complete_sequence) {
         }
 }
 
-TEST(what_is_out_of_range_is_refused) {
-    static const struct {
-        RenderOptions options;
-        const char *text;
-    } wrong[] = {{{.slow = -1}, "must be 0 to 16 (got -1)"},
-                 {{.slow = 17}, "must be 0 to 16 (got 17)"},
-                 {{.hold = -1}, "held for 0 to 60 s (got -1)"},
-                 {{.hold = 61}, "held for 0 to 60 s (got 61)"},
-                 {{.hold = NAN}, "held for"}};
+TEST(time_steps_without_a_film_are_refused) {
     const Trajectory *panels[] = {run};
     MomentPlan plan;
-    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        assert_refused(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &wrong[i].options, &error), wrong[i].text);
-    }
     run->dt = 1e-9F;
     assert_refused(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.hold = 60}, &error),
                    "too many pictures for one sequence");
@@ -322,13 +309,6 @@ TEST(what_makes_no_sense_is_refused) {
         RenderOptions options;
         const char *text;
     } wrong[] = {
-        {60, 0, 9, {.fps = 0.5}, "the pictures per second must be 1 to 240 (got 0.5)"},
-        {60, 0, 9, {.fps = 241}, "(got 241)"},
-        {60, 0, 9, {.fps = NAN}, "pictures per second"},
-        {60, 0, 9, {.fps = -1}, "pictures per second"},
-        {60, 0, 9, {.duration = -1}, "the film can last up to 3600 s (got -1)"},
-        {60, 0, 9, {.duration = 3601}, "the film can last up to 3600 s"},
-        {60, 0, 9, {.duration = NAN}, "the film can last"},
         {60, 5, 5, {.duration = 2}, "--duration: error: a single frame has no speed; --hold shows it"},
         {60, 0, 9, {.duration = 0.02}, "--duration: error: 0.02 s are too short: 0.0333 s at 60 pictures per second"},
         {60, 0, 9, {.duration = 0.1, .fps = 10}, "0.1 s are too short: 0.2 s at 10 pictures per second are needed"},

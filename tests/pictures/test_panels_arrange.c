@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Long and high scenes fill their panels, in pictures of all shapes, and the grid is the one in which they are largest. */
 #include "testing.h"
+#include "owned_drawings.h"
 
 #include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
@@ -144,8 +145,7 @@ TEST(panels_that_need_their_room_keep_it) {
     for (int i = 0; i < 3; i++) runs[i]->bomb = BOMB_BODY;
     const Picture moving = plan(1, sizes[0], &(RenderLook){.camera = LOOK_BOMB});
     assert_int_equal(moving.layout.panels[0].right, moving.layout.right);
-    Picture owned = moving;
-    picture_free(&owned);
+    OWN(Picture) owned = moving;
     destroy();
 }
 
@@ -158,7 +158,7 @@ TEST(axes_are_numbered_in_equal_steps) {
             const Rect *panel = &picture.layout.panels[0];
             const int baseline = panel->bottom + picture.layout.axis_drop,
                       digit = font_width(&picture.layout.axis, "0");
-            Drawing drawing = {0};
+            OWN(Drawing) drawing = {0};
             picture_draw(&picture, moment_stored(3), &drawing);
             int ends[256], found = 0; /* right ends of numbers, from left to right */
             for (size_t k = 0; k < drawing.glyph_count && found < 256; k++) {
@@ -178,7 +178,6 @@ TEST(axes_are_numbered_in_equal_steps) {
             }
             if (found > 4 && 2 * (most - least) > 3 * digit)
                 fail_msg("%d x %d, %d panels: steps of %d to %d pixels", sizes[i][0], sizes[i][1], count, least, most);
-            drawing_free(&drawing);
         }
     destroy();
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whatever a picture draws outside its panels is in one of its parts, and nothing but the panels' content is in panels. */
 #include "testing.h"
+#include "owned_drawings.h"
 
 #include "pictures/pictures_internal.h"
 #include "pictures/look_runs.h"
@@ -36,8 +37,8 @@ static void assert_in_a_place(const Places *places, Rect mark, const char *what)
 
 static void check(const RenderLook *look, int count, int width, int height) {
     Error error = {0};
-    Picture picture;
-    Drawing drawing = {0};
+    OWN(Picture) picture;
+    OWN(Drawing) drawing = {0};
     RenderOptions options = {.width = width, .height = height, .look = *look};
     options.look.costs[0] = options.look.costs[1] = "8 \xC2\xB5s a step";
     assert_ok(picture_plan(&picture, panels, count, width, height, &error), error);
@@ -53,8 +54,6 @@ static void check(const RenderLook *look, int count, int width, int height) {
         const int32_t *b = drawing.glyphs[i].box;
         assert_in_a_place(&places, (Rect){b[0], b[1], b[0] + b[2], b[1] + b[3]}, "a character");
     }
-    drawing_free(&drawing);
-    picture_free(&picture);
 }
 
 TEST_WITH(every_mark_is_in_a_part, make, destroy) {
@@ -69,7 +68,7 @@ TEST_WITH(every_mark_is_in_a_part, make, destroy) {
 /* A region in a panel must not be taken for a caption. */
 TEST_WITH(parts_and_panels_do_not_overlap, make, destroy) {
     for (int i = 0; i < SIZES; i++) {
-        Picture picture;
+        OWN(Picture) picture;
         Part parts[PARTS_MAX];
         RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1], .look = {.show = ALL_SHOWN}};
         assert_ok(picture_plan(&picture, panels, RUNS, sizes[i][0], sizes[i][1], &error), error);
@@ -82,7 +81,6 @@ TEST_WITH(parts_and_panels_do_not_overlap, make, destroy) {
                     fail_msg("%d x %d: the %s overlaps panel %d", sizes[i][0], sizes[i][1],
                              part_names[parts[part].kind], panel);
             }
-        picture_free(&picture);
     }
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole frames: equal in both contexts for all contents of the trajectories, and stable from frame to frame. */
 #include "made.h"
+#include "owned_drawings.h"
 
 #include "pixels/built_contexts.h"
 #include "regression/compare.h"
@@ -34,9 +35,8 @@ static Image *draw_in(ContextChoice context, int count, int width, int height, i
 }
 
 static uint64_t hash_of(int count, int width, int height, int frame) {
-    Image *image = draw_in(CONTEXT_AUTO, count, width, height, frame);
+    OWN(Image) *image = draw_in(CONTEXT_AUTO, count, width, height, frame);
     uint64_t hash = image_hash(image);
-    image_destroy(image);
     return hash;
 }
 
@@ -44,13 +44,11 @@ TEST_WITH(both_contexts_draw_the_same, make, destroy) {
     static const int sizes[][2] = {{640, 360}, {1280, 720}, {360, 640}, {64, 64}, {65, 333}, {2000, 301}};
     for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
         const int *size = sizes[count - 1];
-        Image *a = draw_in(built_context(CONTEXT_OSMESA), count, size[0], size[1], 5);
-        Image *b = draw_in(built_context(CONTEXT_EGL), count, size[0], size[1], 5);
+        OWN(Image) *a = draw_in(built_context(CONTEXT_OSMESA), count, size[0], size[1], 5);
+        OWN(Image) *b = draw_in(built_context(CONTEXT_EGL), count, size[0], size[1], 5);
         ImageDifference difference;
         image_compare(a, b, &difference);
         if (!difference.equal) fail_msg("%d panels: %d pixels differ", count, (int)difference.pixels);
-        image_destroy(a);
-        image_destroy(b);
     }
 }
 
@@ -67,8 +65,8 @@ TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
     Picture picture;
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
     assert_int_equal(picture.frames, 12);
-    Image *last = draw_in(CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(CONTEXT_AUTO, 2, 640, 360, 9);
-    Image *a = image_sized(640, 360), *b = image_sized(640, 360);
+    OWN(Image) *last = draw_in(CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(CONTEXT_AUTO, 2, 640, 360, 9);
+    OWN(Image) *a = image_sized(640, 360), *b = image_sized(640, 360);
     const Rect *rects = picture.layout.panels;
     copy_panel(a, last, &rects[1]);
     copy_panel(b, later, &rects[1]);
@@ -84,10 +82,6 @@ TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
     assert_true(image_hash(a) != image_hash(b));
     assert_true(isnan(picture_distance(&picture, moment_stored(9))) &&
                 picture_distance(&picture, moment_stored(5)) == 0);
-    image_destroy(last);
-    image_destroy(later);
-    image_destroy(a);
-    image_destroy(b);
 }
 
 TEST_WITH(the_largest_distance_of_any_panel_counts, make, destroy) {
@@ -160,10 +154,9 @@ static uint64_t hash_with_words(const char *title, const char *note) {
     RenderOptions options = {.width = 1280, .height = 720, .title = title, .notes = {NULL, note}};
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
     assert_ok(renderer != NULL, error);
-    Image *image = image_sized(1280, 720);
+    OWN(Image) *image = image_sized(1280, 720);
     assert_ok(renderer_draw(renderer, 4, image, &error), error);
     uint64_t hash = image_hash(image);
-    image_destroy(image);
     renderer_destroy(renderer);
     return hash;
 }
@@ -183,7 +176,7 @@ TEST_WITH(captions_do_not_jump, make, destroy) {
     trajectory_destroy(runs[0]);
     panels[0] = runs[0] = run_make("engine", 1010);
     Picture picture;
-    Drawing drawing = {0};
+    OWN(Drawing) drawing = {0};
     assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
     int left = 0;
     for (int frame = 0; frame < 1010; frame += 7) {
@@ -192,7 +185,6 @@ TEST_WITH(captions_do_not_jump, make, destroy) {
         if (frame == 0) left = drawing.glyphs[0].box[0];
         assert_int_equal(drawing.glyphs[0].box[0], left); /* the "t" of "t = 0.000 s" */
     }
-    drawing_free(&drawing);
 }
 
 static uint64_t hash_with_method(const char *method) {
@@ -213,37 +205,14 @@ TEST_WITH(hostile_names_do_no_harm, make, destroy) {
         memset(runs[0]->scene, byte, TRAJECTORY_NAME_SIZE - 1);
         memset(runs[0]->method, byte, TRAJECTORY_NAME_SIZE - 1);
         Picture picture;
-        Drawing drawing = {0};
+        OWN(Drawing) drawing = {0};
         assert_ok(picture_plan(&picture, panels, 2, 400, 300, &error), error);
         picture_draw(&picture, moment_stored(3), &drawing);
         for (size_t i = 0; i < drawing.glyph_count; i++) {
             const int32_t *box = drawing.glyphs[i].box;
             assert_true(box[0] >= 0 && box[0] + box[2] <= 400 && box[1] >= 0 && box[1] + box[3] <= 300);
         }
-        drawing_free(&drawing);
     }
-}
-
-TEST_WITH(what_cannot_be_shown_is_refused, make, destroy) {
-    static const int sizes[][2] = {{63, 64}, {64, 63}, {8193, 64}, {64, 8193}, {-5, 100}, {0, 0}};
-    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
-        assert_refused(renderer_create(panels, 1, &options, &error), "must be 64 to 8192 pixels (got");
-    }
-    RenderOptions options = {.width = 64, .height = 64};
-    for (int count = 0; count <= 7; count += 7) {
-        assert_refused(renderer_create(panels, count, &options, &error), "the number of panels must be 1 to 6 (got");
-    }
-    runs[1]->dt = 1.0F / 50;
-    assert_refused(renderer_create(panels, 2, &options, &error),
-                   "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");
-    Renderer *renderer = renderer_create(panels, 1, &options, &error);
-    Image *image = image_sized(64, 64);
-    for (int frame = -1; frame <= 12; frame += 13) {
-        assert_refused(renderer_draw(renderer, frame, image, &error), "the frames are 0 to 11");
-    }
-    image_destroy(image);
-    renderer_destroy(renderer);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -28,7 +28,7 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
 }
 
 TEST(bodies_stand_on_nothing) {
-    Trajectory *run = run_make("engine", 3);
+    OWN(Trajectory) *run = run_make("engine", 3);
     Image *image = shoot(run, 0, 0x0072B2, STILL_ALL);
     expect_pixel(image, 60, 150, 0x0072B2FF);  /* the middle of the first box */
     expect_pixel(image, 100, 150, 0x00000000); /* between the boxes */
@@ -43,13 +43,12 @@ TEST(bodies_stand_on_nothing) {
     expect_pixel(image, 60, 150, 0x00000000);
     expect_pixel(image, 100, 180, 0xD3D8DFFF);
     image_destroy(image);
-    trajectory_destroy(run);
 }
 
 /* Alpha sums to the boxes' areas (corners are round): an edge within a pixel counts in part. */
 TEST(alpha_is_coverage) {
-    Trajectory *run = run_make("engine", 8);
-    Image *image = shoot(run, 7, 0x0072B2, STILL_MOVING);
+    OWN(Trajectory) *run = run_make("engine", 8);
+    OWN(Image) *image = shoot(run, 7, 0x0072B2, STILL_MOVING);
     double sum = 0;
     int partial = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
@@ -60,8 +59,6 @@ TEST(alpha_is_coverage) {
     const double area = 20 * 20 * (1 + 2 + 1.5 * 1.5);
     assert_true(sum > 0.97 * area && sum < area);
     assert_true(partial > 50);
-    image_destroy(image);
-    trajectory_destroy(run);
 }
 
 TEST(sizes_are_limited) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Signals that cut calls short change nothing in a sequence; files that cannot be removed are reported. */
 #define _GNU_SOURCE /* RTLD_NEXT */
-#include "testing.h"
+#include "owned.h"
 
 #include "files.h"
 #include "mesa.h"
@@ -58,15 +58,13 @@ static RenderOptions options_for(const char *directory) {
 }
 
 static bool draw(const RenderOptions *options, int frames, Error *error) {
-    Trajectory *run = run_make("engine", frames);
+    OWN(Trajectory) *run = run_make("engine", frames);
     const bool done = render_study((const Trajectory *[]){run}, 1, options, NULL, NULL, NULL, error);
-    trajectory_destroy(run);
     return done;
 }
 
 TEST(interrupted_calls_are_continued) {
-    char whole[256];
-    snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
+    const char *whole = printed("%s", temporary_path("whole"));
     RenderOptions options = options_for(whole);
     assert_ok(draw(&options, FRAMES, &error), error);
     options = options_for(temporary_path("interrupted"));

@@ -7,8 +7,6 @@
 #include "methods/methods.h"
 #include "pictures/picture.h"
 
-#include <math.h>
-
 static const double sights[4][3][3] = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
     {{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}},

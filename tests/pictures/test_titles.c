@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Titles break into lines that fit, in the header and on cards; captions stand for the names of methods. */
 #include "testing.h"
+#include "owned_drawings.h"
 
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
@@ -59,14 +60,12 @@ static Picture plan(const char *title, const char *caption, int width, int heigh
 
 static size_t end_glyphs(const RenderOptions *options) {
     Error error = {0};
-    Picture picture;
-    Drawing drawing = {0};
+    OWN(Picture) picture;
+    OWN(Drawing) drawing = {0};
     assert_ok(picture_plan(&picture, (const Trajectory *const *)runs, 2, 1280, 720, &error), error);
     assert_ok(picture_apply_options(&picture, options, &error), error);
     card_draw(&picture, (Moment){.kind = MOMENT_END}, &drawing);
     const size_t glyphs = drawing.glyph_count;
-    drawing_free(&drawing);
-    picture_free(&picture);
     return glyphs;
 }
 
@@ -94,7 +93,7 @@ TEST_WITH(an_end_card_compares_with_what_held, make, destroy) {
     const RenderOptions options = {.width = 1280, .height = 720, .end_card = true, .describe = method_describe};
     run_position(runs[1], 5, FIRST_BOX)->y += 3;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Picture picture;
+        OWN(Picture) picture;
         for (int k = 0; k < 2; k++) {
             strcpy(runs[k]->method, cases[i].methods[k]);
             strcpy(runs[k]->verdict, cases[i].verdicts[k]);
@@ -106,7 +105,6 @@ TEST_WITH(an_end_card_compares_with_what_held, make, destroy) {
         assert_near(row->largest, 3, 1e-6);
         assert_int_equal(row->frame, 5);
         assert_near(row->last, 0, 1e-9);
-        picture_free(&picture);
     }
 }
 
@@ -132,7 +130,7 @@ TEST_WITH(too_long_a_title_is_an_error, make, destroy) {
 }
 
 static bool draws(const Drawing *drawing, const Font *font, const char *text) {
-    Drawing sample = {0};
+    OWN(Drawing) sample = {0};
     font_add(&sample, font, text, 0, 0, 0);
     bool found = false;
     for (size_t at = 0; !found && at + sample.glyph_count <= drawing->glyph_count; at++) {
@@ -140,7 +138,6 @@ static bool draws(const Drawing *drawing, const Font *font, const char *text) {
         for (size_t i = 0; found && i < sample.glyph_count; i++)
             found = drawing->glyphs[at + i].bitmap == sample.glyphs[i].bitmap;
     }
-    drawing_free(&sample);
     return found;
 }
 
@@ -149,29 +146,17 @@ TEST_WITH(a_caption_stands_for_the_method, make, destroy) {
     const Picture picture = plan(NULL, "our own", 960, 540);
     const MomentKind kinds[] = {MOMENT_STORED, MOMENT_TITLE, MOMENT_END};
     for (int i = 0; i < 3; i++) {
-        Drawing drawing = {0};
+        OWN(Drawing) drawing = {0};
         const Font font = kinds[i] == MOMENT_STORED ? picture.layout.title : font_pick(FONT_SEMIBOLD, 0.036 * 540);
         picture_draw(&picture, (Moment){.kind = kinds[i], .frame = 5, .slow = 1}, &drawing);
         assert_true(draws(&drawing, &font, "our own"));
         assert_false(draws(&drawing, &font, "pair-net"));
         assert_true(draws(&drawing, &font, "engine"));
-        drawing_free(&drawing);
     }
     const Picture kept = plan(NULL, "", 960, 540);
-    Drawing drawing = {0};
+    OWN(Drawing) drawing = {0};
     picture_draw(&kept, moment_stored(5), &drawing);
     assert_true(draws(&drawing, &kept.layout.title, "pair-net"));
-    drawing_free(&drawing);
-}
-
-TEST(captions_are_checked) {
-    char text[CAPTION_TEXT_SIZE + 1];
-    memset(text, 'a', sizeof text);
-    text[CAPTION_TEXT_SIZE - 1] = '\0';
-    assert_ok(caption_check(text, "--caption", &error), error);
-    text[CAPTION_TEXT_SIZE - 1] = 'a', text[CAPTION_TEXT_SIZE] = '\0';
-    assert_refused(caption_check(text, "--caption", &error),
-                   "--caption: error: the text has 256 bytes, but at most 255 are allowed");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -29,12 +29,11 @@ static char *stream_of(const uint32_t *pixels, int width, int height, double rat
 /* The planes of such a picture: Y[count], Cb[count], Cr[count]. */
 static void convert(const uint32_t *pixels, int count, uint8_t *planes) {
     size_t size;
-    char *stream = stream_of(pixels, count, 1, 60, &size);
+    FREED char *stream = stream_of(pixels, count, 1, 60, &size);
     const char *frame = strchr(stream, '\n') + 1;
     assert_memory_equal(frame, "FRAME\n", 6);
     assert_int_equal(size, (size_t)(frame - stream) + 6 + 3 * (size_t)count);
     memcpy(planes, frame + 6, 3 * (size_t)count);
-    free(stream);
 }
 
 /* ITU-R BT.709-6, item 3.2 to 3.5. */
@@ -77,11 +76,10 @@ TEST(primaries_are_those_of_bt709) {
 /* A picture of 2 x 3 pixels, blue at (1, 1). */
 TEST(planes_follow_each_other_in_rows) {
     size_t size;
-    char *stream = stream_of((const uint32_t[]){0, 0, 0, 0x0000FF, 0, 0}, 2, 3, 60, &size);
+    FREED char *stream = stream_of((const uint32_t[]){0, 0, 0, 0x0000FF, 0, 0}, 2, 3, 60, &size);
     assert_memory_equal(
         stream + size - 18,
         ((const uint8_t[]){16, 16, 16, 32, 16, 16, 128, 128, 128, 240, 128, 128, 128, 128, 128, 118, 128, 128}), 18);
-    free(stream);
 }
 
 TEST(the_header_has_the_rate_as_a_fraction) {
@@ -92,11 +90,10 @@ TEST(the_header_has_the_rate_as_a_fraction) {
     for (int i = 0; i < 3; i++) {
         char expected[HEADER_MOST];
         size_t size;
-        char *stream = stream_of((const uint32_t[]){0, 0}, 2, 1, cases[i].rate, &size);
+        FREED char *stream = stream_of((const uint32_t[]){0, 0}, 2, 1, cases[i].rate, &size);
         snprintf(expected, sizeof expected, "YUV4MPEG2 W2 H1 F%s Ip A1:1 C444 XCOLORRANGE=LIMITED\nFRAME\n",
                  cases[i].text);
         assert_memory_equal(stream, expected, strlen(expected));
-        free(stream);
     }
 }
 

@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNG files made of single chunks with valid checksums. Include testing.h first. */
 #pragma once
+#include "pixels/png.h"
 #include <zlib.h>
 
+#ifndef PNG_PARTS_ROOM
+#define PNG_PARTS_ROOM (1 << 16)
+#endif
+
 typedef struct PngParts {
-    uint8_t data[1 << 16];
+    uint8_t data[PNG_PARTS_ROOM];
     size_t size;
 } PngParts;
 
@@ -32,14 +37,29 @@ static inline void put_chunk(PngParts *parts, const char *type, const void *data
     put_number(parts, (uint32_t)crc32(0, parts->data + start, (uInt)(size + 4)));
 }
 
-static inline void put_header(PngParts *parts, uint32_t width, uint32_t height, int depth, int color) {
+static inline void put_header_of(PngParts *parts, uint32_t width, uint32_t height, int depth, int color,
+                                 int interlace) {
     uint8_t data[13] = {0};
     store_number(data, width);
     store_number(data + 4, height);
-    data[8] = (uint8_t)depth, data[9] = (uint8_t)color;
+    data[8] = (uint8_t)depth, data[9] = (uint8_t)color, data[12] = (uint8_t)interlace;
     parts->size = 0;
     put_bytes(parts, "\x89PNG\r\n\x1a\n", 8);
     put_chunk(parts, "IHDR", data, sizeof data);
+}
+
+static inline void put_header(PngParts *parts, uint32_t width, uint32_t height, int depth, int color) {
+    put_header_of(parts, width, height, depth, color, 0);
+}
+
+/* Whether png_file_check() finds the file sound. */
+static inline bool is_sound(const PngParts *parts, int64_t max_pixels, Error *error) {
+    PngFile file;
+    const char *path = write_bytes(temporary_path("parts.png"), parts->data, parts->size);
+    if (!png_file_open(&file, path, max_pixels, error)) return false;
+    const bool sound = png_file_check(&file, error);
+    png_file_close(&file);
+    return sound;
 }
 
 /* Compressed zeros: black pixels, if they are as many as the header tells. */

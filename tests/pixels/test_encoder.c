@@ -55,18 +55,15 @@ static void assert_holds(const uint8_t *data, size_t size, const Image *image) {
     Error error = {0};
     const char *path = temporary_path("holds.png");
     assert_ok(file_write(path, data, size, &error), error);
-    Image *back = image_of(path);
+    OWN(Image) *back = image_of(path);
     ImageDifference difference;
     image_compare(image, back, &difference);
     assert_true(difference.equal);
-    image_destroy(back);
 }
 
 /* pngcheck is stricter than decoders. */
 static void assert_checked(void) {
-    char command[512];
-    snprintf(command, sizeof command, "pngcheck -q '%s' >/dev/null", temporary_path("holds.png"));
-    assert_int_equal(system(command), 0);
+    assert_int_equal(system(printed("pngcheck -q '%s' >/dev/null", temporary_path("holds.png"))), 0);
 }
 
 TEST(every_picture_comes_back) {
@@ -77,15 +74,13 @@ TEST(every_picture_comes_back) {
             for (PngEffort effort = PNG_FAST; effort <= PNG_SMALL; effort++) {
                 const uint8_t *data;
                 size_t size;
-                Image *image = blank_image(sizes[i][0], sizes[i][1]);
-                PngEncoder *encoder = png_encoder_create(image->width, image->height, effort, &error);
+                OWN(Image) *image = blank_image(sizes[i][0], sizes[i][1]);
+                OWN(PngEncoder) *encoder = png_encoder_create(image->width, image->height, effort, &error);
                 assert_ok(encoder != NULL, error);
                 fill(image, kind);
                 assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &size, &error), error);
                 assert_holds(data, size, image);
                 assert_checked();
-                png_encoder_destroy(encoder);
-                image_destroy(image);
             }
 }
 
@@ -94,22 +89,20 @@ TEST(random_pictures_come_back) {
         const uint8_t *data;
         size_t size;
         bool ignored[64];
-        Image *image = blank_image(1 + (int)any_below(300), 1 + (int)any_below(40));
-        PngEncoder *encoder = png_encoder_create(image->width, image->height, PNG_FAST, &error);
+        OWN(Image) *image = blank_image(1 + (int)any_below(300), 1 + (int)any_below(40));
+        OWN(PngEncoder) *encoder = png_encoder_create(image->width, image->height, PNG_FAST, &error);
         fill(image, (int)any_below(KINDS));
         for (unsigned box = any_below(9); box > 0; box--) add_box(image, ignored);
         assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &size, &error), error);
         assert_holds(data, size, image);
-        png_encoder_destroy(encoder);
-        image_destroy(image);
     }
 }
 
 /* The bytes equal those of a new encoder, whatever was encoded before. */
 TEST(kept_rows_change_no_byte) {
     enum { WIDTH = 230, HEIGHT = 61 };
-    Image *image = blank_image(WIDTH, HEIGHT);
-    PngEncoder *encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
+    OWN(Image) *image = blank_image(WIDTH, HEIGHT);
+    OWN(PngEncoder) *encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
     for (int frame = 0; frame < 200; frame++) {
         bool changed[HEIGHT] = {false};
         const uint8_t *data, *fresh_data;
@@ -117,13 +110,10 @@ TEST(kept_rows_change_no_byte) {
         if (frame > 0)
             for (unsigned box = any_below(3); box > 0; box--) add_box(image, changed);
         assert_ok(png_encode(encoder, image, frame > 0 ? changed : NULL, NULL, 0, &data, &size, &error), error);
-        PngEncoder *fresh = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
+        OWN(PngEncoder) *fresh = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
         assert_ok(png_encode(fresh, image, NULL, NULL, 0, &fresh_data, &fresh_size, &error), error);
         assert_true(size == fresh_size && memcmp(data, fresh_data, size) == 0);
-        png_encoder_destroy(fresh);
     }
-    png_encoder_destroy(encoder);
-    image_destroy(image);
 }
 
 /* Rows not flagged as changed are not read. */
@@ -131,31 +121,26 @@ TEST(only_changed_rows_are_read) {
     bool none[40] = {false};
     const uint8_t *data;
     size_t size;
-    Image *image = blank_image(50, 40), *first = blank_image(50, 40);
-    PngEncoder *encoder = png_encoder_create(50, 40, PNG_FAST, &error);
+    OWN(Image) *image = blank_image(50, 40), *first = blank_image(50, 40);
+    OWN(PngEncoder) *encoder = png_encoder_create(50, 40, PNG_FAST, &error);
     assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &size, &error), error);
     fill(image, NOISE);
     assert_ok(png_encode(encoder, image, none, NULL, 0, &data, &size, &error), error);
     assert_holds(data, size, first);
-    png_encoder_destroy(encoder);
-    image_destroy(image);
-    image_destroy(first);
 }
 
 TEST(small_is_smaller) {
     const uint8_t *data;
     size_t sizes[2];
     bool ignored[400];
-    Image *image = blank_image(640, 360);
+    OWN(Image) *image = blank_image(640, 360);
     for (int box = 0; box < 60; box++) add_box(image, ignored);
     for (PngEffort effort = PNG_FAST; effort <= PNG_SMALL; effort++) {
-        PngEncoder *encoder = png_encoder_create(640, 360, effort, &error);
+        OWN(PngEncoder) *encoder = png_encoder_create(640, 360, effort, &error);
         assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &sizes[effort], &error), error);
-        png_encoder_destroy(encoder);
     }
     assert_true(sizes[PNG_SMALL] < sizes[PNG_FAST]);
     assert_true(sizes[PNG_FAST] < 640 * 360 * 3 / 20);
-    image_destroy(image);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Glyphs drawn at run time look like those of the atlas, which FreeType drew. */
 #include "testing.h"
+#include "owned_drawings.h"
 
 #include "pixels/gl.h"
 #include "pixels/pixels_internal.h"
@@ -60,7 +61,7 @@ TEST(own_glyphs_are_those_of_freetype) {
 
 /* A frame that reuses the place of another's bitmap is another frame, and clipped rows begin at the right texel. */
 TEST(the_bitmaps_belong_to_the_drawing) {
-    Drawing drawing = {0}, rows = {0};
+    OWN(Drawing) drawing = {0}, rows = {0};
     const Font font = font_pick(FONT_REGULAR, 20);
     font_add(&drawing, &font,
              "\xC3\x9C"
@@ -75,8 +76,6 @@ TEST(the_bitmaps_belong_to_the_drawing) {
     assert_int_equal(rows.glyphs[rows.glyph_count - 1].bitmap, last->bitmap + 2U * (unsigned)last->box[2]);
     drawing_clear(&drawing);
     assert_int_equal(drawing.bitmap_size, 0);
-    drawing_free(&drawing);
-    drawing_free(&rows);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -48,12 +48,11 @@ TEST_WITH(one_bit_changes_the_hash, make, destroy) {
 
 TEST_WITH(the_shape_counts, make, destroy) {
     ImageDifference d;
-    Image *turned = image_sized(3, 4);
+    OWN(Image) *turned = image_sized(3, 4);
     image_compare(a, turned, &d);
     assert_false(d.equal);
     assert_false(d.same_size);
     assert_true(image_hash(a) != image_hash(turned));
-    image_destroy(turned);
 }
 
 /* Only rows flagged as changed are read. */

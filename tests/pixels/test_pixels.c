@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shapes and glyphs pixel by pixel, in both kinds of context. */
-#include "testing.h"
+#include "owned.h"
 
 #include "pictures/mesa.h"
 #include "pixels/gl.h"
 #include "screens.h"
-
-#include <math.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -77,7 +75,7 @@ TEST(a_disc_has_the_area_of_a_circle) {
 }
 
 TEST(moving_by_whole_pixels_moves_the_pixels) {
-    Image *before = image_create(SCREEN_SIDE, SCREEN_SIDE, &(Error){0});
+    OWN(Image) *before = image_create(SCREEN_SIDE, SCREEN_SIDE, &(Error){0});
     Shape shape = turned(box(30.3, 31.7, 25, 14), 0.6);
     shape.radius = 3.3, shape.outline = 1.4, shape.line = 0x405060;
     memcpy(before->pixels, paint(shape)->pixels, SCREEN_SIDE * SCREEN_SIDE * 4);
@@ -85,7 +83,6 @@ TEST(moving_by_whole_pixels_moves_the_pixels) {
     const Image *after = paint(shape);
     for (int y = 0; y < SCREEN_SIDE - 23; y++)
         for (int x = 0; x < SCREEN_SIDE - 17; x++) assert_int_equal(rgb(before, x, y), rgb(after, x + 17, y + 23));
-    image_destroy(before);
 }
 
 /* Smaller differences can be due to the machine's arithmetic. */

@@ -1,58 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file has beside its pixels does not matter, whatever its size; what its pixels have must be sound, however it is cut
    into chunks. Each file is read by both decoders: libpng's is forced by Adam7, which of one pixel is the plain order. */
-#include "testing.h"
+#include "owned.h"
 
-#include "pixels/png.h"
+#define PNG_PARTS_ROOM (1 << 23)
+#include "png_parts.h"
 
 #include <zlib.h>
 
-enum { ROOM = 1 << 23 };
-
-typedef struct File {
-    uint8_t *data;
-    size_t size;
-} File;
-
-static void put(File *file, const void *data, size_t size) {
-    assert_true(file->size + size <= ROOM);
-    if (size > 0) memcpy(file->data + file->size, data, size);
-    file->size += size;
-}
-
-static void put_number(File *file, size_t value) {
-    put(file, (const uint8_t[]){(uint8_t)(value >> 24), (uint8_t)(value >> 16), (uint8_t)(value >> 8), (uint8_t)value},
-        4);
-}
-
-static void put_chunk(File *file, const char *type, const void *data, size_t size) {
-    put_number(file, size);
-    const size_t start = file->size;
-    put(file, type, 4);
-    put(file, data, size);
-    put_number(file, crc32(0, file->data + start, (uInt)(size + 4)));
-}
-
-static void begin_of(File *file, int width, int height, int depth, bool interlaced) {
-    const uint8_t header[13] = {0,
-                                0,
-                                (uint8_t)(width >> 8),
-                                (uint8_t)width,
-                                0,
-                                0,
-                                (uint8_t)(height >> 8),
-                                (uint8_t)height,
-                                (uint8_t)depth,
-                                2 /* RGB */,
-                                0,
-                                0,
-                                interlaced};
-    file->size = 0;
-    put(file, "\x89PNG\r\n\x1a\n", 8);
-    put_chunk(file, "IHDR", header, sizeof header);
-}
-
-static void begin(File *file, bool interlaced) { begin_of(file, 1, 1, 8, interlaced); }
+static void begin(PngParts *file, bool interlaced) { put_header_of(file, 1, 1, 8, 2 /* RGB */, interlaced); }
 
 /* One red pixel as a zlib stream. */
 static size_t red(uint8_t stream[64]) {
@@ -61,27 +17,27 @@ static size_t red(uint8_t stream[64]) {
     return size;
 }
 
-static void assert_red(const File *file) {
+static void assert_red(const PngParts *file) {
     Error error = {0};
     Image *image = image_decode_png(file->data, file->size, "file.png", IMAGE_MAX_PIXELS, &error);
     assert_ok(image != NULL, error);
     assert_memory_equal(image->pixels, ((const uint8_t[]){255, 0, 0, 255}), 4);
     image_destroy(image);
-    assert_ok(image_check_png(file->data, file->size, "file.png", IMAGE_MAX_PIXELS, &error), error);
+    assert_ok(is_sound(file, IMAGE_MAX_PIXELS, &error), error);
 }
 
-static void assert_damaged(const File *file) {
+static void assert_damaged(const PngParts *file) {
     Error error = {0};
     assert_refused(image_decode_png(file->data, file->size, "file.png", IMAGE_MAX_PIXELS, &error), "file.png: error: ");
     error = (Error){0};
-    assert_false(image_check_png(file->data, file->size, "file.png", IMAGE_MAX_PIXELS, &error));
+    assert_false(is_sound(file, IMAGE_MAX_PIXELS, &error));
     assert_int_equal(error.kind, ERROR_INPUT);
 }
 
 TEST(other_chunks_have_any_size) {
     static const char *const types[] = {"tEXt", "zTXt", "iTXt", "eXIf", "iCCP", "sPLT", "caBX", "tIME", "vpAg"};
     static const size_t sizes[] = {0, 1, (1 << 16) - 1, 1 << 16, (1 << 16) + 1, 1 << 20};
-    File file = {malloc(ROOM), 0};
+    static PngParts file;
     uint8_t *ballast = calloc(1 << 20, 1), stream[64];
     const size_t pixels = red(stream);
     for (size_t i = 0; i < sizeof types / sizeof types[0] * 2 * 2; i++)
@@ -96,7 +52,6 @@ TEST(other_chunks_have_any_size) {
             file.data[file.size - 12 - 4]++; /* the checksum of the last chunk before the end */
             assert_damaged(&file);
         }
-    free(file.data);
     free(ballast);
 }
 
@@ -104,8 +59,8 @@ TEST(other_chunks_have_any_size) {
 TEST(texts_are_found_behind_any_chunk) {
     static const char *const types[] = {"tEXt", "zTXt", "iTXt", "eXIf", "iCCP", "sPLT", "caBX", "tIME", "vpAg"};
     static const size_t sizes[] = {0, 1, 1 << 16, (1 << 16) + 1, 1 << 20};
-    File file = {malloc(ROOM), 0};
-    uint8_t *ballast = calloc(1 << 20, 1);
+    static PngParts file;
+    FREED uint8_t *ballast = calloc(1 << 20, 1);
     char value[16];
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
         for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
@@ -122,14 +77,12 @@ TEST(texts_are_found_behind_any_chunk) {
             assert_ok(image_find_text(file.data, file.size, "Later", value, sizeof value, &error), error);
             assert_string_equal(value, "");
         }
-    free(file.data);
-    free(ballast);
 }
 
 /* Files read in pieces, with a large chunk: what displays is held, the rest is not. */
 TEST(large_chunks_are_not_held) {
     static const char *const types[] = {"caBX", "eXIf"};
-    File file = {malloc(ROOM), 0};
+    static PngParts file;
     uint8_t *ballast = calloc(1 << 20, 1), stream[64];
     const size_t pixels = red(stream);
     for (int i = 0; i < 2; i++) {
@@ -140,19 +93,18 @@ TEST(large_chunks_are_not_held) {
         put_chunk(&file, "IDAT", stream, pixels);
         put_chunk(&file, "IEND", NULL, 0);
         const char *path = temporary_path(types[i]);
-        FILE *out = fopen(path, "wb");
-        assert_true(out != NULL && fwrite(file.data, 1, file.size, out) == file.size && fclose(out) == 0);
+        write_bytes(path, file.data, file.size);
         assert_ok(png_file_open(&opened, path, IMAGE_MAX_PIXELS, &error), error);
         assert_non_null(opened.rows);
         assert_int_equal(opened.size > 1 << 20, i == 1);
         png_file_close(&opened);
     }
-    free(file.data);
     free(ballast);
 }
 
 /* The stream of `size` bytes, then padding, the first `cut` bytes in one chunk, each of the others in its own. */
-static void put_pixels(File *file, bool interlaced, const uint8_t *stream, size_t size, size_t cut, size_t padding) {
+static void put_pixels(PngParts *file, bool interlaced, const uint8_t *stream, size_t size, size_t cut,
+                       size_t padding) {
     static const uint8_t zeros[64];
     begin(file, interlaced);
     if (cut > 0) put_chunk(file, "IDAT", stream, cut);
@@ -165,7 +117,7 @@ static void put_pixels(File *file, bool interlaced, const uint8_t *stream, size_
 }
 
 TEST(checksums_count_however_they_are_split) {
-    File file = {malloc(ROOM), 0};
+    static PngParts file;
     uint8_t stream[64];
     const size_t size = red(stream);
     for (size_t cut = 0; cut < size; cut++)
@@ -183,14 +135,13 @@ TEST(checksums_count_however_they_are_split) {
             put_pixels(&file, interlaced, stream, size - 1, cut < size - 2 ? cut : size - 2, 0);
             assert_damaged(&file);
         }
-    free(file.data);
 }
 
 /* Rows of 18 KB that do not shrink, of 8 bits and, for libpng, of 16. */
 TEST(noise_in_one_chunk_is_read) {
     enum { BYTES = 18000, DOWN = 40, SIZE = DOWN * (BYTES + 1) };
-    File file = {malloc(ROOM), 0};
-    uint8_t *rows = malloc(SIZE), *stream = malloc(2 * SIZE);
+    static PngParts file;
+    FREED uint8_t *rows = malloc(SIZE), *stream = malloc(2 * SIZE);
     uint32_t seed = 1;
     for (size_t i = 0; i < SIZE; i++) {
         seed = seed * 1664525 + 1013904223;
@@ -201,17 +152,13 @@ TEST(noise_in_one_chunk_is_read) {
             error = (Error){0};
             uLongf length = 2 * SIZE;
             assert_int_equal(compress2(stream, &length, rows, SIZE, level), Z_OK);
-            begin_of(&file, BYTES * 8 / 3 / depth, DOWN, depth, false);
+            put_header(&file, BYTES * 8U / 3 / (uint32_t)depth, DOWN, depth, 2);
             put_chunk(&file, "IDAT", stream, length);
             put_chunk(&file, "IEND", NULL, 0);
-            Image *image = image_decode_png(file.data, file.size, "noise.png", IMAGE_MAX_PIXELS, &error);
+            OWN(Image) *image = image_decode_png(file.data, file.size, "noise.png", IMAGE_MAX_PIXELS, &error);
             assert_ok(image != NULL, error);
             if (depth == 8) assert_memory_equal(image->pixels, rows + 1, 3);
-            image_destroy(image);
         }
-    free(file.data);
-    free(rows);
-    free(stream);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whatever the check refuses, the decoder refuses; and it accepts whatever the decoder accepts. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/file.h"
 #include "pixels/png.h"
@@ -22,9 +22,8 @@ static bool check(const uint8_t *data, size_t size, Error *error) {
 }
 
 static bool decodes(const uint8_t *data, size_t size) {
-    Image *image = image_decode_png(data, size, "x.png", IMAGE_MAX_PIXELS, &(Error){0});
+    OWN(Image) *image = image_decode_png(data, size, "x.png", IMAGE_MAX_PIXELS, &(Error){0});
     bool done = image != NULL;
-    image_destroy(image);
     return done;
 }
 
@@ -48,24 +47,22 @@ TEST(every_kind_is_valid) {
         for (int interlace = 0; interlace < 2; interlace++) {
             size_t size;
             int width = 0, height = 0;
-            uint8_t *data = kind_bytes(&kinds[i], interlace, &size);
+            FREED uint8_t *data = kind_bytes(&kinds[i], interlace, &size);
             assert_ok(png_check(data, size, "x.png", &width, &height, &error), error);
             assert_true(width == PNG_SIDE && height == PNG_SIDE);
-            free(data);
         }
 }
 
 TEST(cut_and_changed_files_are_refused) {
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         size_t size;
-        uint8_t *data = kind_bytes(&kinds[i], 0, &size);
+        FREED uint8_t *data = kind_bytes(&kinds[i], 0, &size);
         for (size_t cut = 0; cut < size; cut++) assert_false(check(data, cut, &error));
         for (size_t bit = 0; bit < 8 * size; bit++) {
             data[bit / 8] ^= (uint8_t)(1 << bit % 8);
             assert_false(check(data, size, &error));
             data[bit / 8] ^= (uint8_t)(1 << bit % 8);
         }
-        free(data);
     }
 }
 

@@ -53,10 +53,9 @@ FIXTURE(unload) {
 }
 
 static void decode(Error *error) {
-    Image *image = image_decode_png(file, file_size, "a.png", IMAGE_MAX_PIXELS, error);
+    OWN(Image) *image = image_decode_png(file, file_size, "a.png", IMAGE_MAX_PIXELS, error);
     assert_int_equal(image != NULL, error->kind == ERROR_NONE);
     if (image != NULL) assert_int_equal(image->width, PNG_SIDE);
-    image_destroy(image);
 }
 
 /* Interlaced, or with 16 bits, a file is read by libpng. */
@@ -114,12 +113,10 @@ static PngEffort effort;
 static void encode(Error *error) {
     const uint8_t *data;
     size_t size;
-    Image *image = image_create(40, 30, error);
-    PngEncoder *encoder = image != NULL ? png_encoder_create(40, 30, effort, error) : NULL;
+    OWN(Image) *image = image_create(40, 30, error);
+    OWN(PngEncoder) *encoder = image != NULL ? png_encoder_create(40, 30, effort, error) : NULL;
     if (encoder != NULL && png_encode(encoder, image, NULL, &text, 1, &data, &size, error))
         assert_memory_equal(data + size - 8, "IEND", 4);
-    png_encoder_destroy(encoder);
-    image_destroy(image);
 }
 
 TEST(encoding_names_the_lack_of_memory) {

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that are larger than a piece: they give what whole files give, and a change of a file never looks like success. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/file.h"
 #include "base/hash.h"
 #include "pixels/png.h"
-
-#include <unistd.h>
 
 enum { WIDTH = 600, HEIGHT = 400 }; /* of noise: three pieces */
 
@@ -27,10 +25,9 @@ static const char *write_noise(const char *name, int changed) {
     static int turn;
     char *path = paths[turn++ % 4];
     Error error = {0};
-    Image *image = noise(changed);
+    OWN(Image) *image = noise(changed);
     snprintf(path, PATH_MAX, "%s", temporary_path(name));
     assert_ok(image_write_png(image, path, &(ImageText){"key", "value"}, 1, &error), error);
-    image_destroy(image);
     return path;
 }
 
@@ -70,13 +67,11 @@ static void take(void *context, int y, const uint8_t *a, const uint8_t *b) {
 }
 
 static bool scan(PngFile files[2], int changed, bool threads, int *differing) {
-    Image *a = noise(HEIGHT), *b = noise(changed);
+    OWN(Image) *a = noise(HEIGHT), *b = noise(changed);
     Rows rows = {.wanted = {a, b}};
     const RowSink sink = {begin, place, take, &rows, ROWS_ALL};
     const bool ok = png_files_scan(files, threads, &sink);
     *differing = rows.differing;
-    image_destroy(a);
-    image_destroy(b);
     return ok;
 }
 
@@ -99,7 +94,7 @@ TEST(hash_and_texts_are_those_of_the_file) {
     size_t size;
     char value[8];
     const char *path = write_noise("a.png", HEIGHT);
-    uint8_t *data = image_load_png(path, &size, &error);
+    FREED uint8_t *data = image_load_png(path, &size, &error);
     open_both(files, path, path);
     assert_true(size > 700000 && files[0].size < 200 && files[0].hash == hash_xxh3(data, size));
     assert_ok(image_find_text(files[0].data, files[0].size, "key", value, sizeof value, &error), error);
@@ -108,7 +103,6 @@ TEST(hash_and_texts_are_those_of_the_file) {
     assert_int_equal(files[0].size, size);
     assert_memory_equal(files[0].data, data, size);
     close_both(files);
-    free(data);
 }
 
 /* Replaces what the open file has, not its name. */
@@ -127,7 +121,7 @@ static void check_change(uint8_t mask, int more) {
     size_t size;
     int differing;
     const char *a = write_noise("a.png", HEIGHT), *b = write_noise("b.png", 200);
-    uint8_t *data = (uint8_t *)file_read(b, 1 << 24, &size, &error), *longer = calloc(size + 8, 1);
+    FREED uint8_t *data = (uint8_t *)file_read(b, 1 << 24, &size, &error), *longer = calloc(size + 8, 1);
     memcpy(longer, data, size);
     for (size_t at = 0; at < 200; at++)
         if (memcmp(data + at, "value", 5) == 0) longer[at] ^= mask;
@@ -137,8 +131,6 @@ static void check_change(uint8_t mask, int more) {
     assert_true(files[1].damaged && !files[0].damaged);
     assert_refused(png_file_load(&files[1], &error), "changed while it was compared");
     close_both(files);
-    free(data);
-    free(longer);
 }
 
 TEST(a_file_that_changes_is_no_success) {

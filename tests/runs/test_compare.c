@@ -4,8 +4,6 @@
 
 #include "example.h"
 
-#include <math.h>
-
 /* Two examples, which differ in what a test then changes in the second. */
 static Trajectory *a, *b;
 

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs as CSV: what is written is read back bit by bit; what a file does not state is assumed and noted; what cannot be a
    run is refused with its line. */
-#include "testing.h"
+#include "owned.h"
 
 #include "example.h"
 #include "runs/trajectory.h"
-
-#include <math.h>
 
 static const CsvRunOptions defaults = {.name = "file"};
 static CsvRunNotes notes;
@@ -33,7 +31,7 @@ static bool has_note(const char *text) {
 }
 
 TEST(a_small_file_is_read) {
-    Trajectory *run = read_ok(HEAD ROWS, &defaults);
+    OWN(Trajectory) *run = read_ok(HEAD ROWS, &defaults);
     assert_true(run->frames == 2 && run->bodies == 2 && run->bomb == -1 && run->dt == 1.0F / 60);
     assert_true(run->no_velocities && run->no_contacts && run->scene_hash == 0);
     assert_true(run->size[0].x == 20 && run->size[1].y == 2);
@@ -42,19 +40,17 @@ TEST(a_small_file_is_read) {
     assert_string_equal(run->scene, "file");
     assert_true(has_note("1 static: 0 never moves") && has_note("velocities are unknown"));
     assert_true(has_note("the scene is called 'file'") && has_note("units are m, s and rad; y points up"));
-    trajectory_destroy(run);
 }
 
 /* Line ends of Windows, a byte order mark, blanks, another order of columns and rows, no last line end. */
 TEST(what_other_programs_write_is_read) {
-    Trajectory *run = read_ok("\xef\xbb\xbf# size: 0,20,1\r\n#size:1, 1, 2\r\n# made by hand\r\n"
-                              "time,angle, y ,x,body,frame,mass\r\n1.5,0.5,2,0,1,8,3\r\n1, 0, 3, 0, 1, 7, 3\r\n"
-                              "1,0,-0.5,0,0,7,3\r\n1.5,0,-0.5,0,0,8,3",
-                              &defaults);
+    OWN(Trajectory) *run = read_ok("\xef\xbb\xbf# size: 0,20,1\r\n#size:1, 1, 2\r\n# made by hand\r\n"
+                                   "time,angle, y ,x,body,frame,mass\r\n1.5,0.5,2,0,1,8,3\r\n1, 0, 3, 0, 1, 7, 3\r\n"
+                                   "1,0,-0.5,0,0,7,3\r\n1.5,0,-0.5,0,0,8,3",
+                                   &defaults);
     assert_true(run->frames == 2 && run->dt == 0.5F && run->position[3].y == 2 && run->angle[3] == 0.5F);
     assert_true(has_note("frame 7 of the file becomes frame 0") && has_note("unknown columns are left out: mass"));
     assert_true(has_note("dt is 1/2 s, from the column time"));
-    trajectory_destroy(run);
 }
 
 TEST(times_of_few_digits_give_the_step) {
@@ -63,21 +59,19 @@ TEST(times_of_few_digits_give_the_step) {
         size_t used = strlen(text);
         snprintf(text + used, sizeof text - used, "%.5f,%d,5,%d,0,0\n", 2 + i / 60.0, i, i);
     }
-    Trajectory *run = read_ok(text, &defaults);
+    OWN(Trajectory) *run = read_ok(text, &defaults);
     assert_true(run->dt == (float)(1.0 / 60));
     assert_true(has_note("bodies 5 to 5 of the file become bodies 0 to 0") && has_note("no body is static"));
-    trajectory_destroy(run);
 }
 
 TEST(angles_may_be_in_degrees) {
     const CsvRunOptions degrees = {.name = "file", .degrees = true, .dt = 0.5F};
-    Trajectory *run =
+    OWN(Trajectory) *run =
         read_ok("# size: 0,1,1\nframe,body,x,y,angle,vx,vy,omega\n0,0,0,0,180,1,2,90\n1,0,0,0,-90,1,2,90\n", &degrees);
     assert_near(run->angle[0], 3.14159265F, 0);
     assert_near(run->angle[1], -1.57079633F, 0);
     assert_near(run->angular_velocity[1], 1.57079633F, 0);
     assert_true(run->velocity[1].y == 2 && run->dt == 0.5F && !run->no_velocities);
-    trajectory_destroy(run);
 }
 
 TEST(sizes_may_be_in_a_file) {
@@ -85,30 +79,28 @@ TEST(sizes_may_be_in_a_file) {
     const char text[] = "height,body,width,static\n2,1,1,0\n1,0,20,1\n";
     const CsvRunOptions options = {.name = "file", .sizes = sizes, .dt = 1};
     write_bytes(sizes, text, strlen(text));
-    Trajectory *run = read_ok("frame,body,x,y,angle\n" ROWS, &options);
+    OWN(Trajectory) *run = read_ok("frame,body,x,y,angle\n" ROWS, &options);
     assert_true(run->size[0].x == 20 && run->size[1].y == 2);
     assert_memory_equal(run->fixed, ((const uint8_t[]){1, 0}), 2);
-    trajectory_destroy(run);
 }
 
 /* A static body needs one row; one that comes late or leaves early has rows while it is there. */
 TEST(rows_may_be_missing_where_that_has_a_meaning) {
-    Trajectory *run = read_ok("# dt: 1\n# size: 0,20,1\n# size: 1,1,2\n# size: 2,1,1\nframe,body,x,y,angle\n"
-                              "0,0,0,-0.5,0\n0,1,0,3,0\n1,1,0,2,0\n1,2,7,7,0\n2,2,7,6,0\n",
-                              &defaults);
+    OWN(Trajectory) *run = read_ok("# dt: 1\n# size: 0,20,1\n# size: 1,1,2\n# size: 2,1,1\nframe,body,x,y,angle\n"
+                                   "0,0,0,-0.5,0\n0,1,0,3,0\n1,1,0,2,0\n1,2,7,7,0\n2,2,7,6,0\n",
+                                   &defaults);
     assert_true(run->fixed[0] && run->position[6].y == -0.5F);
     assert_true(trajectory_has(run, 1, 1) && !trajectory_has(run, 2, 1));
     assert_true(!trajectory_has(run, 0, 2) && trajectory_has(run, 1, 2) && trajectory_has(run, 2, 2));
-    trajectory_destroy(run);
 }
 
 TEST(what_is_written_is_read_back) {
     const char *path = temporary_path("example.csv");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
     t->iterations = 12;
     assert_ok(csv_run_write(t, path, &error), error);
-    Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
+    OWN(Trajectory) *run = csv_run_read(path, &defaults, &notes, &error);
     assert_ok(run != NULL, error);
     TrajectoryDifference difference;
     trajectory_compare(t, run, &difference);
@@ -121,23 +113,19 @@ TEST(what_is_written_is_read_back) {
     assert_memory_equal(&run->camera_size, &t->camera_size, sizeof(Vec2));
     assert_memory_equal(run->fixed, t->fixed, EXAMPLE_BODIES);
     assert_int_equal(notes.count, 1); /* the units */
-    trajectory_destroy(run);
-    trajectory_destroy(t);
 }
 
 /* A body that never moves need not be static, which the file states, too. */
 TEST(kinds_and_missing_velocities_are_read_back) {
     const char *path = temporary_path("example.csv");
-    Trajectory *t = read_ok(HEAD ROWS, &defaults);
+    OWN(Trajectory) *t = read_ok(HEAD ROWS, &defaults);
     t->fixed[0] = 0;
     assert_ok(csv_run_write(t, path, &error), error);
-    Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
+    OWN(Trajectory) *run = csv_run_read(path, &defaults, &notes, &error);
     assert_ok(run != NULL, error);
     TrajectoryDifference difference;
     trajectory_compare(t, run, &difference);
     assert_true(difference.equal && run->no_velocities && !run->fixed[0]);
-    trajectory_destroy(run);
-    trajectory_destroy(t);
 }
 
 static const struct {
@@ -219,9 +207,8 @@ TEST(damaged_files_are_refused_or_harmless) {
         }
         error = (Error){0};
         const char *path = write_bytes(temporary_path("damaged.csv"), damaged, sizeof damaged - 1);
-        Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
+        OWN(Trajectory) *run = csv_run_read(path, &defaults, &notes, &error);
         if (run == NULL) assert_int_equal(error.kind, ERROR_INPUT);
-        trajectory_destroy(run);
     }
 }
 

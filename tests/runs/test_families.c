@@ -4,14 +4,8 @@
 #include "sanitized.h"
 
 #include <dirent.h>
-#include <math.h>
-#include <stdio.h>
 
-static Scene *read_family(const char *file) {
-    char path[1024];
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/families/%s", file);
-    return scene_from(path);
-}
+static Scene *read_family(const char *file) { return scene_from(printed(SOURCE_DIR "/scenes/families/%s", file)); }
 
 /* m: how far a box is from where it began. */
 static double farthest(const Scene *scene, const World *world) {

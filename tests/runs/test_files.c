@@ -6,7 +6,6 @@
 #include "example.h"
 
 #include <inttypes.h>
-#include <math.h>
 
 static void write_file(const Trajectory *t, const char *path) {
     Error error = {0};
@@ -15,10 +14,10 @@ static void write_file(const Trajectory *t, const char *path) {
 
 TEST(written_is_read) {
     const char *path = temporary_path("run.npz");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     t->iterations = 12;
     write_file(t, path);
-    Trajectory *r = trajectory_of(path);
+    OWN(Trajectory) *r = trajectory_of(path);
     assert_int_equal(r->iterations, 12);
     assert_string_equal(r->scene, t->scene);
     assert_string_equal(r->method, t->method);
@@ -32,21 +31,17 @@ TEST(written_is_read) {
     assert_memory_equal(r->contacts, t->contacts, 2 * sizeof *t->contacts);
     assert_string_equal(r->verdict, "falls at 0.05 s (body 1, ex\xc3\xa4mple)");
     assert_true(r->verdict_frame == 3 && r->verdict_body == 1);
-    trajectory_destroy(r);
-    trajectory_destroy(t);
 }
 
 /* An empty world of one frame is one, too. */
 TEST(the_smallest_trajectory) {
     const char *path = temporary_path("small.npz");
-    Trajectory *t = run_sized(1, 0);
+    OWN(Trajectory) *t = run_sized(1, 0);
     t->dt = 1;
     write_file(t, path);
-    Trajectory *r = trajectory_of(path);
+    OWN(Trajectory) *r = trajectory_of(path);
     assert_true(r->frames == 1 && r->bodies == 0 && r->scene[0] == '\0');
     assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
-    trajectory_destroy(r);
-    trajectory_destroy(t);
 }
 
 static void expect_refused(const Trajectory *t, const char *reason) {
@@ -127,7 +122,7 @@ TEST(bad_poses_are_refused) {
 /* A verdict without a body, and no verdict. */
 TEST(a_verdict_may_be_unknown) {
     const char *path = temporary_path("calm.npz");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     trajectory_judge(t, "settles", 0, -1);
     write_file(t, path);
     Trajectory *r = trajectory_of(path);
@@ -139,7 +134,6 @@ TEST(a_verdict_may_be_unknown) {
     r = trajectory_of(path);
     assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
     trajectory_destroy(r);
-    trajectory_destroy(t);
 }
 
 static void leave(Trajectory *t, int frame, int body) {
@@ -172,7 +166,7 @@ TEST(a_body_is_there_over_one_interval_of_frames) {
 /* Step 2 had its contacts where the box was in frame 1: it may be gone in frame 2, but not before. */
 TEST(contacts_are_of_the_bodies_before_the_step) {
     const char *path = temporary_path("last_contact.npz");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     leave(t, 2, 1);
     leave(t, 3, 1);
     write_file(t, path);
@@ -181,7 +175,6 @@ TEST(contacts_are_of_the_bodies_before_the_step) {
     trajectory_destroy(r);
     leave(t, 1, 1);
     expect_refused(t, "step 2, contact 0: bodies 0 and 1 are not an existing pair");
-    trajectory_destroy(t);
 }
 
 TEST(bad_contacts_are_refused) {
@@ -198,15 +191,14 @@ TEST(bad_contacts_are_refused) {
     REFUSE(contact_start[3], 3, "contact_start must rise");
     REFUSE(contact_start[3], INT64_MAX, "contact_start must rise");
     /* Rising, but with a contact in step 0. */
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     t->contact_start[1] = t->contact_start[2] = 1;
     expect_refused(t, "contact_start must rise");
-    trajectory_destroy(t);
 }
 
 /* In step 1 the bomb is not there yet. */
 TEST(a_contact_of_an_absent_body_is_refused) {
-    Trajectory *t = run_sized(2, 2);
+    OWN(Trajectory) *t = run_sized(2, 2);
     t->dt = 1;
     t->size[0] = t->size[1] = vec2(1, 1);
     for (int frame = 0; frame < 2; frame++) example_pose(t, frame, 0, (float[6]){0});
@@ -214,15 +206,14 @@ TEST(a_contact_of_an_absent_body_is_refused) {
     assert_ok(trajectory_add_contact(t, 1, &contact, &error), error);
     trajectory_end_contacts(t);
     expect_refused(t, "step 1, contact 0: bodies 0 and 1 are not an existing pair");
-    trajectory_destroy(t);
 }
 
 TEST(random_damage_is_refused_or_harmless) {
     const char *path = temporary_path("damaged.npz");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     write_file(t, path);
     size_t size;
-    char *data = read_whole(path, &size);
+    FREED char *data = read_whole(path, &size);
     uint32_t seed = 7;
     for (int round = 0; round < 1000; round++) {
         seed = seed * 1664525 + 1013904223;
@@ -232,22 +223,19 @@ TEST(random_damage_is_refused_or_harmless) {
         write_bytes(path, data, size - (round % 4 == 0 ? (seed >> 12) % size : 0));
         data[at] ^= mask;
         Error refusal = {0};
-        Trajectory *r = trajectory_read(path, &refusal);
+        OWN(Trajectory) *r = trajectory_read(path, &refusal);
         if (r == NULL) {
             assert_error(refusal, ERROR_INPUT, "damaged.npz: error: ");
             continue;
         }
         assert_same_run(t, r);
-        trajectory_destroy(r);
     }
-    free(data);
-    trajectory_destroy(t);
 }
 
 /* The dynamic bodies that are there, and every number exactly. */
 TEST(csv_gives_every_float_back) {
     const char *path = temporary_path("run.csv");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     /* With 8 digits this float and the next read the same. */
     t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
     assert_ok(write_as(t, TRAJECTORY_CSV, path, &error), error);
@@ -269,12 +257,11 @@ TEST(csv_gives_every_float_back) {
     }
     assert_null(strtok(NULL, "\n"));
     free(text);
-    trajectory_destroy(t);
 }
 
 TEST(hashes_are_those_of_the_frames) {
     const char *path = temporary_path("run.hashes");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     t->fixed[1] = t->fixed[2] = 1;
     assert_ok(write_as(t, TRAJECTORY_HASHES, path, &error), error);
     char *text = text_of(path);
@@ -285,21 +272,17 @@ TEST(hashes_are_those_of_the_frames) {
     t->fixed[1] = 0;
     assert_ok(write_as(t, TRAJECTORY_HASHES, path, &error), error);
     text = text_of(path);
-    char line[64];
-    snprintf(line, sizeof line, "\n3,%016" PRIx64 "\n", trajectory_frame_hash(t, 3));
-    assert_non_null(strstr(text, line));
+    assert_non_null(strstr(text, printed("\n3,%016" PRIx64 "\n", trajectory_frame_hash(t, 3))));
     free(text);
-    trajectory_destroy(t);
 }
 
 TEST(failed_writes_tell) {
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     for (int i = 0; i < 3; i++) {
         error = (Error){0};
         assert_false(write_as(t, (TrajectoryFormat)i, temporary_path("nowhere/run"), &error));
         assert_error(error, ERROR_SYSTEM, "nowhere/run: error: cannot write: ");
     }
-    trajectory_destroy(t);
 }
 
 RUN_TESTS(NULL, NULL)

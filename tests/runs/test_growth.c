@@ -3,8 +3,6 @@
 #include "made.h"
 #include "files.h"
 
-#include <math.h>
-
 enum { FRAMES = 200 };
 
 static const double DT = 1.0 / 60;
@@ -35,15 +33,13 @@ TEST(an_exponential_has_its_rate) {
 
 /* The same by two trajectories, whose floats lie far enough from each other to be fine. */
 TEST(trajectories_that_part_exponentially) {
-    Trajectory *a = run_sized(FRAMES, 1), *b = run_sized(FRAMES, 1);
+    OWN(Trajectory) *a = run_sized(FRAMES, 1), *b = run_sized(FRAMES, 1);
     for (int frame = 0; frame < FRAMES; frame++) {
         a->position[frame] = vec2(0, 0);
         b->position[frame] = vec2(0, (float)(1e-5 * exp(2 * frame * DT)));
         distance[frame] = trajectory_distance(a, b, frame);
     }
     assert_near(measured(0, FRAMES).rate, 2, 1e-6);
-    trajectory_destroy(a);
-    trajectory_destroy(b);
 }
 
 /* From 1e-6 m by a factor of 2 a frame: 0.1 m is passed in frame 17, as 2^17 = 131072. */

@@ -6,8 +6,6 @@
 
 #include "engine/uniform.h"
 
-#include <math.h>
-
 enum { SCENES = 200, STEPS = 30, BOXES_MAX = 8 };
 
 /* Evenly over the powers of ten from low to high, and now and then one of these. */
@@ -102,8 +100,8 @@ static void assert_finite(const World *world, const char *method, int scene, int
 /* True where a step was refused. */
 static bool run_scene(const Scene *scene, int number, const Method *method) {
     Error error = {0};
-    World *world = world_of(scene);
-    Stepper *stepper = stepper_of(scene, method);
+    OWN(World) *world = world_of(scene);
+    OWN(Stepper) *stepper = stepper_of(scene, method);
     bool ok = true;
     for (int step = 1; ok && step <= scene->frames; step++) {
         ok = simulate_step(stepper, world, &(Step){.scene = scene, .frame = step}, &error);
@@ -112,8 +110,6 @@ static bool run_scene(const Scene *scene, int number, const Method *method) {
         else
             assert_error(error, ERROR_INPUT, "is NaN or infinite");
     }
-    stepper_destroy(stepper);
-    world_destroy(world);
     return !ok;
 }
 

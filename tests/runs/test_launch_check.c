@@ -11,13 +11,12 @@ static const char falling[] = "gravity: [0, -10]\ndt: 1/60\niterations: 10\nfram
                               "bomb: {x: {from: -4, to: 4, value: 3}, y: 0.75, size: [1, 1], mass: 5, frame: 60}\n";
 
 static Scene *read_scene(const char *text, const char *more) {
-    char all[1000];
-    snprintf(all, sizeof all, "%s%s", text, more);
+    const char *all = printed("%s%s", text, more);
     return scene_from(write_bytes(temporary_path("scene.yaml"), all, strlen(all)));
 }
 
 TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
-    Scene *scene = read_scene(falling, "");
+    OWN(Scene) *scene = read_scene(falling, "");
     Launch launch = launch_of(scene);
     launch.x = 0.6f;
     launch.frame = 1; /* the box is still above */
@@ -27,12 +26,11 @@ TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
                    "scene: error: the launch at x = 0.6 m, rotation 0 rad: the bomb would start 0.4 m "
                    "inside body 1 in frame 60, more than the slop of 0.01 m; launch it elsewhere, or "
                    "write 'overlaps: allowed' in the scene; free x: -4 to -0.99, 0.99 to 4");
-    scene_destroy(scene);
 }
 
 /* The first launch that is refused is named by its place in the list, in whatever order their frames come. */
 TEST(the_launch_is_named) {
-    Scene *scene = read_scene(falling, "");
+    OWN(Scene) *scene = read_scene(falling, "");
     const Launch own = launch_of(scene);
     Launch launches[] = {own, own, own, own};
     launches[0].x = 0, launches[0].frame = 2; /* still below the box */
@@ -46,24 +44,21 @@ TEST(the_launch_is_named) {
     launches[3].x = 1.1f;
     assert_refused(launches_check(scene, launches, 4, &error), "launch 4 at x = 1.1 m, rotation 0.7 rad",
                    "; free x, at any rotation: -4 to -1.2, 1.2 to 4");
-    scene_destroy(scene);
 }
 
 TEST(a_scene_may_allow_it) {
-    Scene *scene = read_scene(falling, "overlaps: allowed\n");
+    OWN(Scene) *scene = read_scene(falling, "overlaps: allowed\n");
     Launch launch = launch_of(scene);
     launch.x = 0;
     assert_ok(launches_check(scene, &launch, 1, &error), error);
-    scene_destroy(scene);
 }
 
 static Trajectory *run(const char *method_text, float x, Error *error) {
-    Scene *scene = read_scene(falling, "");
+    OWN(Scene) *scene = read_scene(falling, "");
     Method method;
     scene->bomb.body.position.x = x;
     assert_ok(method_parse(&method, method_text, error), *error);
     Trajectory *trajectory = simulate(scene, &method, NULL, error);
-    scene_destroy(scene);
     return trajectory;
 }
 
@@ -71,16 +66,15 @@ TEST(runs_are_refused_by_any_method) {
     static const char *const methods[] = {"engine", "momentum", "interior"};
     for (int i = 0; i < 3; i++) {
         assert_refused(run(methods[i], 0.3f, &error), "the bomb would start 0.7 m inside body 1 in frame 60");
-        Trajectory *free_run = run(methods[i], 1.5f, (error = (Error){0}, &error));
+        OWN(Trajectory) *free_run = run(methods[i], 1.5f, (error = (Error){0}, &error));
         assert_ok(free_run != NULL, error);
-        trajectory_destroy(free_run);
     }
 }
 
 /* Training and scoring launches, and the launch of a single run. */
 static void check_shipped(const char *path) {
     Error error = {0};
-    Scene *scene = scene_from(path);
+    OWN(Scene) *scene = scene_from(path);
     enum { COUNT = LAUNCH_GRID };
     Launch launches[2 * COUNT + 1];
     if (scene->bomb.present) {
@@ -93,16 +87,13 @@ static void check_shipped(const char *path) {
         }
         assert_ok(launches_check(scene, launches, count, &error), error);
     }
-    scene_destroy(scene);
 }
 
 TEST(shipped_scenes_have_room_for_their_launches) {
     static const char *const folders[] = {"", "families/", "stability/", "templates/"};
     for (int i = 0; i < 4; i++) {
-        char pattern[512];
         glob_t found;
-        snprintf(pattern, sizeof pattern, SOURCE_DIR "/scenes/%s*.yaml", folders[i]);
-        assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+        assert_int_equal(glob(printed(SOURCE_DIR "/scenes/%s*.yaml", folders[i]), 0, NULL, &found), 0);
         for (size_t k = 0; k < found.gl_pathc; k++) check_shipped(found.gl_pathv[k]);
         globfree(&found);
     }
@@ -110,7 +101,7 @@ TEST(shipped_scenes_have_room_for_their_launches) {
 
 /* A bomb that falls straight down touches the box of 1 m at x = 0 if its own half metre and the box's reach so far. */
 TEST(launches_that_strike_nothing_are_found) {
-    Scene *scene = read_scene(falling, "");
+    OWN(Scene) *scene = read_scene(falling, "");
     LaunchMisses misses;
     Launch tried[LAUNCH_TRIES];
     int beside = 0, touch;
@@ -141,7 +132,6 @@ TEST(launches_that_strike_nothing_are_found) {
     scene->frames = SCENE_MAX_FRAMES; /* would take long */
     assert_ok(launches_find_misses(scene, &misses, &error), error);
     assert_true(misses.tried == 0 && misses.missed == 0);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

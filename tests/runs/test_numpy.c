@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NumPy reads a trajectory, and a trajectory that NumPy wrote is read. */
-#include "made.h"
+/* NumPy reads a trajectory. */
 
 #include "example.h"
 #include "python.h"
@@ -45,56 +44,6 @@ TEST(numpy_reads_every_member) {
                "    np.testing.assert_array_equal(got, array, name)\n"
                "assert np.signbit(f['angle'][:, 1]).all()\n",
                path);
-}
-
-#define MAKE                                                                                                 \
-    "import sys, numpy as np\n"                                                                              \
-    "n = np.zeros\n"                                                                                         \
-    "arrays = dict(version=np.int32(1), scene='falling', method='by hand', scene_hash=np.uint64(5),\n"       \
-    "  dt=np.float32(0.5), bomb=np.int32(-1), camera=n((2, 2), 'f4'), size=np.ones((1, 2), 'f4'),\n"         \
-    "  fixed=n(1, 'u1'), position=n((3, 1, 2), 'f4'), angle=n((3, 1), 'f4'), velocity=n((3, 1, 2), 'f4'),\n" \
-    "  angular_velocity=n((3, 1), 'f4'), contact_start=n(4, 'i8'), contact_bodies=n((0, 2), 'i4'),\n"        \
-    "  contact_feature=n(0, 'u4'), contact_point=n((0, 2), 'f4'), contact_normal=n((0, 2), 'f4'),\n"         \
-    "  contact_impulse=n((0, 2), 'f4'))\n"                                                                   \
-    "arrays['position'][:, 0, 1] = [7, 6, 4]\n"
-#define SAVE "np.savez_compressed(sys.argv[1], **arrays)\n"
-
-TEST(what_numpy_writes_is_read) {
-    const char *path = temporary_path("numpy.npz");
-    run_python(MAKE SAVE, path);
-    Trajectory *t = trajectory_of(path);
-    assert_string_equal(t->scene, "falling");
-    assert_string_equal(t->method, "by hand");
-    assert_true(t->frames == 3 && t->bodies == 1 && t->bomb == -1 && t->dt == 0.5F && t->scene_hash == 5);
-    assert_true(t->position[0].y == 7 && t->position[1].y == 6 && t->position[2].y == 4);
-    trajectory_destroy(t);
-}
-
-/* The same, with one thing changed. */
-static void expect_refused(const char *change, const char *reason) {
-    const char *path = temporary_path("run.npz");
-    char program[2048];
-    snprintf(program, sizeof program, "%s%s\n%s", MAKE, change, SAVE);
-    run_python(program, path);
-    Error error = {0};
-    Trajectory *t = trajectory_read(path, &error);
-    if (t != NULL) fail_msg("taken: %s", change);
-    assert_error(error, ERROR_INPUT, "run.npz: error: ");
-    assert_error(error, ERROR_INPUT, reason);
-}
-
-TEST(what_does_not_fit_is_refused) {
-    expect_refused("arrays['version'] = np.int32(2)", "run.npz: error: trajectory of version 2; expected version 1");
-    expect_refused("del arrays['angle']", "has no array 'angle'");
-    expect_refused("arrays['angle'] = n((3, 2), 'f4')", "array 'angle' has shape (3, 2); expected (3, 1)");
-    expect_refused("arrays['size'] = n((1, 2))", "body 0: its size must be finite");
-    expect_refused("arrays['position'] = n((3, 1, 3), 'f4')",
-                   "array 'position' has shape (3, 1, 3); expected (3, 1, 2)");
-    expect_refused("arrays['position'] = n((0, 1, 2), 'f4')", "0 frames of 1 bodies");
-    expect_refused("arrays['contact_feature'] = n(1, 'u4')", "array 'contact_feature' has shape (1)");
-    expect_refused("arrays['contact_start'][3] = 1", "contact_start must rise from 0, 0 to the number of contacts");
-    expect_refused("arrays['scene'] = 'x' * 128", "text 'scene' is");
-    expect_refused("arrays['scene'] = '\\u00e4' * 64", "text 'scene' is");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -2,8 +2,6 @@
 /* Why two trajectories part: made by hand, so that the first frame, body, contact and cause are known. */
 #include "made.h"
 
-#include <math.h>
-
 /* A floor, two boxes on it, and a bomb (body 3) that comes in frame 3. Every step has four contacts. */
 enum { FRAMES = 7, BODIES = 4, BOMB = 3, BOMB_FRAME = 3, CONTACTS = 4 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A study whose pieces are numbers: done whole, in shards, cut off, merged, and with damaged files. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/file.h"
 #include "runs/pieces.h"
@@ -82,11 +82,10 @@ static void assert_results(const Study *study) {
     for (int64_t i = 0; i < COUNT; i++) {
         Error error = {0};
         size_t size;
-        char *text = pieces_read(&study->pieces, i, &size, NULL, &error);
+        FREED char *text = pieces_read(&study->pieces, i, &size, NULL, &error);
         assert_ok(text != NULL, error);
         assert_int_equal(atoi(text), i * i);
         assert_int_equal(size, strlen(text));
-        free(text);
     }
 }
 
@@ -198,12 +197,11 @@ static void measure_elsewhere(const Study *study, int64_t piece) {
     char path[PIECES_PATH_SIZE];
     PieceHead head;
     size_t size;
-    char *results = pieces_read(&study->pieces, piece, &size, NULL, &error);
+    FREED char *results = pieces_read(&study->pieces, piece, &size, NULL, &error);
     assert_ok(results != NULL && pieces_path(&study->pieces, piece, path, &error), error);
     pieces_head(&study->pieces, piece, &head);
     snprintf(head.cpu, sizeof head.cpu, "another processor");
     assert_ok(piece_file_write(path, &head, results, size, &error), error);
-    free(results);
 }
 
 TEST(times_of_two_processors_are_not_mixed) {

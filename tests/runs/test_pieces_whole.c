@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pieces that write files beside their results: a piece counts as done only while its file is as the results say. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/file.h"
 #include "runs/pieces.h"
@@ -41,9 +41,8 @@ static bool whole(void *context, int64_t piece, const char *results, size_t size
     size_t found;
     Error ignored = {0};
     file_of(path, files, piece);
-    char *text = file_read(path, 100, &found, &ignored);
+    FREED char *text = file_read(path, 100, &found, &ignored);
     *there = text != NULL && found == size && memcmp(text, results, size) == 0;
-    free(text);
     return !files->fails || error_system(error, path, "cannot be read");
 }
 
@@ -71,8 +70,7 @@ static void change(const Files *files, int piece, const char *text) {
 }
 
 TEST(a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again) {
-    char folder[300];
-    snprintf(folder, sizeof folder, "%s", temporary_path("files"));
+    const char *folder = printed("%s", temporary_path("files"));
     Files files = {.folder = folder};
     Pieces pieces;
     PiecePlan plan;

@@ -2,9 +2,9 @@
 #include "made.h"
 
 TEST(a_trajectory_says_what_it_is) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     scene->frames = 60;
-    Trajectory *trajectory = run_by(scene, "engine:k=3");
+    OWN(Trajectory) *trajectory = run_by(scene, "engine:k=3");
     assert_string_equal(trajectory->scene, "single");
     assert_string_equal(trajectory->method, "engine:k=3");
     assert_true(trajectory->scene_hash == scene_hash(scene));
@@ -20,13 +20,11 @@ TEST(a_trajectory_says_what_it_is) {
     assert_int_equal(trajectory->contact_start[1], 0);
     assert_int_equal(trajectory->contact_start[20], 0);
     for (int64_t i = 0; i < contacts; i++) assert_true(trajectory->contacts[i].a < trajectory->contacts[i].b);
-    trajectory_destroy(trajectory);
-    scene_destroy(scene);
 }
 
 /* Put in after step 10, so it is in frame 10 and has not moved there yet. */
 TEST(the_bomb_comes_after_the_step_it_is_told_to) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     scene->frames = 20;
     scene->bomb.frame = 10;
     Trajectory *trajectory = run_by(scene, "engine");
@@ -41,7 +39,6 @@ TEST(the_bomb_comes_after_the_step_it_is_told_to) {
     assert_int_equal(trajectory->bodies, 2);
     assert_int_equal(trajectory->bomb, -1);
     trajectory_destroy(trajectory);
-    scene_destroy(scene);
 }
 
 static Scene *read_top_removed(void) {
@@ -54,8 +51,8 @@ static Scene *read_top_removed(void) {
 
 /* Taken out after step 30, so it is not in frame 30, though step 30 had its contacts; a file tells the same. */
 TEST(the_last_body_goes_after_the_step_it_is_told_to) {
-    Scene *scene = read_top_removed();
-    Trajectory *trajectory = run_by(scene, "engine");
+    OWN(Scene) *scene = read_top_removed();
+    OWN(Trajectory) *trajectory = run_by(scene, "engine");
     assert_int_equal(trajectory->bodies, 12);
     for (int frame = 0; frame <= 60; frame++) assert_int_equal(trajectory_has(trajectory, frame, 11), frame < 30);
     for (int step = 1; step <= 60; step++) {
@@ -66,30 +63,24 @@ TEST(the_last_body_goes_after_the_step_it_is_told_to) {
     }
     const char *path = temporary_path("gone.npz");
     assert_ok(trajectory_write(trajectory, path, &error), error);
-    Trajectory *read = trajectory_of(path);
+    OWN(Trajectory) *read = trajectory_of(path);
     assert_same_run(trajectory, read);
-    trajectory_destroy(read);
-    trajectory_destroy(trajectory);
-    scene_destroy(scene);
 }
 
 /* One that stands aside changes no bit of the others, neither while it is there nor when it goes. */
 TEST(a_body_that_touches_none_of_the_others_changes_none) {
-    Scene *scene = read_top_removed();
+    OWN(Scene) *scene = read_top_removed();
     scene->bodies[11].position = vec2(30, 0.5f);
-    Trajectory *with = run_by(scene, "engine");
+    OWN(Trajectory) *with = run_by(scene, "engine");
     scene->body_count = 11;
     scene->last_body_until = 0;
-    Trajectory *without = run_by(scene, "engine");
+    OWN(Trajectory) *without = run_by(scene, "engine");
     assert_true(trajectory_has(with, 29, 11) && !trajectory_has(with, 30, 11));
     for (int frame = 0; frame <= 60; frame++) {
         assert_memory_equal(&with->position[frame * 12], &without->position[frame * 11], 11 * sizeof(Vec2));
         assert_memory_equal(&with->angle[frame * 12], &without->angle[frame * 11], 11 * sizeof(float));
         assert_memory_equal(&with->velocity[frame * 12], &without->velocity[frame * 11], 11 * sizeof(Vec2));
     }
-    trajectory_destroy(with);
-    trajectory_destroy(without);
-    scene_destroy(scene);
 }
 
 static bool count_step(void *context, int frame, const World *world, Error *error) {
@@ -102,13 +93,12 @@ static bool count_step(void *context, int frame, const World *world, Error *erro
 }
 
 TEST(an_observer_sees_every_step_and_may_end_the_run) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     int steps = 0;
     StepObserver observer = {count_step, &steps};
     const Method method = method_named("engine");
     assert_refused(simulate_observed(scene, &method, &observer, &error), "observer: error: enough");
     assert_int_equal(steps, 7);
-    scene_destroy(scene);
 }
 
 static bool stop(void *context, double done, double total) {
@@ -117,7 +107,7 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(a_run_that_cannot_go_on_says_why) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     Method method = method_named("engine");
     assert_null(simulate(scene, &method, &(Progress){stop, NULL}, &error));
     assert_error(error, ERROR_INTERRUPTED, "single: error: stopped after step 5 of 300");
@@ -133,7 +123,6 @@ TEST(a_run_that_cannot_go_on_says_why) {
     scene->network_count = 0;
     assert_ok(method_parse(&method, "pair-net", &error), error);
     assert_refused(simulate(scene, &method, NULL, &error), "the scene names no network");
-    scene_destroy(scene);
 }
 
 TEST(methods_are_found_by_name) {

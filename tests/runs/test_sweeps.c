@@ -25,7 +25,7 @@ static bool agree(void *context, int frame, const World *world, Error *error) {
 
 static void run_scene(const char *name, float bomb_x) {
     Error error = {0};
-    Scene *scene = scene_named(name);
+    OWN(Scene) *scene = scene_named(name);
     scene->bomb.body.position.x = bomb_x;
     Method method = method_named("engine");
     KernelChoice kernels = {.reference = {.plain = {.scalar = true}}};
@@ -33,7 +33,6 @@ static void run_scene(const char *name, float bomb_x) {
     free_kernels(kernels.engine);
     free_kernels(kernels.momentum);
     reference_kernels_free(&kernels.reference);
-    scene_destroy(scene);
 }
 
 TEST(every_frame_has_the_bits_of_the_plain_text) {

@@ -4,10 +4,8 @@
 
 #include "example.h"
 
-#include <math.h>
-
 TEST(a_new_trajectory_is_empty) {
-    Trajectory *t = run_sized(3, 2);
+    OWN(Trajectory) *t = run_sized(3, 2);
     for (int i = 0; i < 6; i++) {
         assert_true(isnan(t->position[i].x) && isnan(t->position[i].y) && isnan(t->angle[i]));
         assert_true(isnan(t->velocity[i].x) && isnan(t->velocity[i].y) && isnan(t->angular_velocity[i]));
@@ -15,7 +13,6 @@ TEST(a_new_trajectory_is_empty) {
     }
     for (int k = 0; k <= 3; k++) assert_int_equal(t->contact_start[k], 0);
     assert_int_equal(t->bomb, -1);
-    trajectory_destroy(t);
 }
 
 TEST(too_large_a_trajectory_is_refused) {
@@ -26,18 +23,17 @@ TEST(too_large_a_trajectory_is_refused) {
 }
 
 TEST(a_body_is_there_where_its_position_is_finite) {
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     assert_false(trajectory_has(t, 1, 2));
     assert_true(trajectory_has(t, 2, 2));
     t->position[2 * EXAMPLE_BODIES + 2].y = INFINITY;
     assert_false(trajectory_has(t, 2, 2));
-    trajectory_destroy(t);
 }
 
 /* Steps with 2, 0, 1, 0, ... contacts: every step finds its own. */
 TEST(contacts_are_found_by_step) {
     enum { FRAMES = 50 };
-    Trajectory *t = run_sized(FRAMES, 2);
+    OWN(Trajectory) *t = run_sized(FRAMES, 2);
     for (int step = 1; step < FRAMES - 5; step++) {
         for (int i = 0; i < step % 3; i++) {
             TrajectoryContact contact = {.a = step, .b = i};
@@ -54,7 +50,6 @@ TEST(contacts_are_found_by_step) {
             assert_int_equal(t->contacts[first + i].b, i);
         }
     }
-    trajectory_destroy(t);
 }
 
 /* The definition, byte by byte: body 1 and, once it is there, body 2; never the floor. */
@@ -69,51 +64,46 @@ static uint64_t hash_by_hand(const float *numbers, int count) {
 }
 
 TEST(the_hash_is_fnv_of_dynamic_bodies_that_are_there) {
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     float without[] = {0.1F, 0.25F, -0.0F, 1, -0.5F, 3e-30F};
     float with[] = {0.1F * 2, 0.25F, -0.0F, 2, -0.5F, 3e-30F, -3, 15, 1.5F, 7.5F, -22.5F, -1};
     assert_true(trajectory_frame_hash(t, 1) == hash_by_hand(without, 6));
     assert_true(trajectory_frame_hash(t, 2) == hash_by_hand(with, 12));
     t->fixed[1] = t->fixed[2] = 1;
     assert_true(trajectory_frame_hash(t, 2) == 1469598103934665603U);
-    trajectory_destroy(t);
 }
 
 /* In every third of 8 frames, what frame 4 saw is there in frame 6, the last but one; frame 7 is beyond. */
 TEST(a_verdict_keeps_its_place) {
     const int kept[8] = {0, 1, 1, 1, 2, 2, 2, -1};
-    Trajectory *t = run_sized(8, 2);
+    OWN(Trajectory) *t = run_sized(8, 2);
     t->dt = 1;
     for (int frame = 0; frame < 8; frame++) {
         trajectory_judge(t, "falls", frame, 1);
-        Trajectory *third = trajectory_every(t, 3, &error);
+        OWN(Trajectory) *third = trajectory_every(t, 3, &error);
         assert_ok(third != NULL, error);
         assert_string_equal(third->verdict, "falls");
         assert_int_equal(third->verdict_frame, kept[frame]);
         assert_int_equal(third->verdict_body, 1);
-        trajectory_destroy(third);
     }
     trajectory_judge(t, "", -1, -1);
-    Trajectory *third = trajectory_every(t, 3, &error);
+    OWN(Trajectory) *third = trajectory_every(t, 3, &error);
     assert_ok(third != NULL, error);
     assert_true(third->verdict[0] == '\0' && third->verdict_frame == -1);
-    trajectory_destroy(third);
-    trajectory_destroy(t);
 }
 
 /* Cut between characters. */
 TEST(a_long_verdict_is_cut) {
     char words[2 * TRAJECTORY_VERDICT_SIZE + 1] = "";
     for (int i = 0; i < TRAJECTORY_VERDICT_SIZE; i++) strcat(words, "\xc3\xa4");
-    Trajectory *t = example_trajectory();
+    OWN(Trajectory) *t = example_trajectory();
     trajectory_judge(t, words, 0, 0);
     assert_int_equal(strlen(t->verdict), TRAJECTORY_VERDICT_SIZE - 2);
-    trajectory_destroy(t);
 }
 
 /* Of 8 frames every third: 0, 3 and 6, each with its own state and the contacts of its own step. */
 TEST(every_third_frame_is_the_same_frame) {
-    Trajectory *t = run_sized(8, 2);
+    OWN(Trajectory) *t = run_sized(8, 2);
     strcpy(t->method, "engine");
     t->dt = 0.125F;
     t->bomb = 1;
@@ -127,7 +117,7 @@ TEST(every_third_frame_is_the_same_frame) {
         for (int i = 0; i < step % 4; i++)
             assert_ok(trajectory_add_contact(t, step, &(TrajectoryContact){.a = step, .b = i}, &error), error);
     trajectory_end_contacts(t);
-    Trajectory *third = trajectory_every(t, 3, &error), *all = trajectory_every(t, 1, &error);
+    OWN(Trajectory) *third = trajectory_every(t, 3, &error), *all = trajectory_every(t, 1, &error);
     assert_ok(third != NULL && all != NULL, error);
     assert_int_equal(third->frames, 3);
     assert_true(third->dt == 0.375F && third->bomb == 1 && third->fixed[0] == 1 && third->size[1].y == 3);
@@ -140,9 +130,6 @@ TEST(every_third_frame_is_the_same_frame) {
     TrajectoryDifference difference;
     trajectory_compare(t, all, &difference);
     assert_true(difference.equal && all->contact_start[8] == t->contact_start[8]);
-    trajectory_destroy(t);
-    trajectory_destroy(third);
-    trajectory_destroy(all);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -5,8 +5,6 @@
 #include "runs/runs.h"
 #include "runs/verdict.h"
 
-#include <math.h>
-
 /* Both verdicts, in words. */
 static void judge(Scene *scene, const char *text, char made[TRAJECTORY_VERDICT_SIZE], Trajectory **run) {
     const Method method = method_named(text);
@@ -44,33 +42,28 @@ static const struct {
 TEST(a_stored_run_has_the_verdict_of_simulate) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char made[TRAJECTORY_VERDICT_SIZE], read[TRAJECTORY_VERDICT_SIZE];
-        Scene *scene = scene_named(cases[i].scene);
-        Trajectory *run;
+        OWN(Scene) *scene = scene_named(cases[i].scene);
+        OWN(Trajectory) * run;
         scene->frames = cases[i].frames;
         judge(scene, cases[i].method, made, &run);
         run->no_contacts = true; /* found again in any case */
         stored(scene, run, read);
         assert_string_equal(read, made);
-        trajectory_destroy(run);
-        scene_destroy(scene);
     }
 }
 
 TEST(a_run_without_velocities_has_those_of_its_poses) {
     char made[TRAJECTORY_VERDICT_SIZE], read[TRAJECTORY_VERDICT_SIZE];
-    Scene *scene = scene_named("stack");
-    Trajectory *run;
+    OWN(Scene) *scene = scene_named("stack");
+    OWN(Trajectory) * run;
     scene->bomb.present = false;
     scene->frames = 200;
     judge(scene, "interior", made, &run);
     run->no_velocities = true;
     assert_int_equal(stored(scene, run, read).verdict, VERDICT_SETTLES);
-    Scene *assumed = trajectory_scene(run, &error);
+    OWN(Scene) *assumed = trajectory_scene(run, &error);
     assert_true(assumed->body_count == run->bodies && !assumed->bomb.present && verdict_run_of(assumed).stands);
     assert_int_equal(stored(assumed, run, read).verdict, VERDICT_SETTLES);
-    scene_destroy(assumed);
-    trajectory_destroy(run);
-    scene_destroy(scene);
 }
 
 /* J: of boxes of 1 kg and 1 m. */
@@ -86,8 +79,8 @@ static double energy(const Trajectory *run, int frame) {
 
 TEST(figures_of_a_stored_run) {
     char made[TRAJECTORY_VERDICT_SIZE], read[TRAJECTORY_VERDICT_SIZE];
-    Scene *scene = scene_named("stack");
-    Trajectory *run;
+    OWN(Scene) *scene = scene_named("stack");
+    OWN(Trajectory) * run;
     scene->bomb.present = false;
     scene->frames = 120;
     judge(scene, "engine", made, &run);
@@ -101,14 +94,12 @@ TEST(figures_of_a_stored_run) {
     for (int frame = 1; frame < run->frames; frame++) most = fmax(most, energy(run, frame) - energy(run, 0));
     assert_near(reading.excess, most, 1e-3);
     assert_true(most > 10 && most < 50);
-    trajectory_destroy(run);
-    scene_destroy(scene);
 }
 
 TEST(another_scene_is_refused) {
-    Scene *scene = scene_named("stack"), *other = scene_named("pyramid");
+    OWN(Scene) *scene = scene_named("stack"), *other = scene_named("pyramid");
     char made[TRAJECTORY_VERDICT_SIZE];
-    Trajectory *run;
+    OWN(Trajectory) * run;
     SimulateVerdict verdict;
     scene->frames = 2;
     judge(scene, "engine", made, &run);
@@ -118,9 +109,6 @@ TEST(another_scene_is_refused) {
     assert_refused(simulate_verdict_of_run(&verdict, &(RunScene){.scene = scene}, run, &error),
                    "is not the scene of the run: body 3 is 2 x 1 m, not 1 x 1 m");
     simulate_verdict_free(&verdict);
-    trajectory_destroy(run);
-    scene_destroy(scene);
-    scene_destroy(other);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that would eat time or memory, and files damaged at random. */
 #include "scene_text.h"
+#include "owned.h"
 
 #include "base/yaml.h"
 
@@ -31,10 +32,9 @@ static void text_expect(Text *text, const char *message) {
 
 static int text_body_count(Text *text) {
     Error error;
-    Scene *scene = read_bytes(text->data, text->size, &error);
+    OWN(Scene) *scene = read_bytes(text->data, text->size, &error);
     assert_ok(scene != NULL, error);
     int count = scene->body_count;
-    scene_destroy(scene);
     free(text->data);
     return count;
 }
@@ -170,7 +170,7 @@ TEST(damaged_files_are_read_or_refused_with_their_place) {
         fclose(file);
         damage(text, &size, &seed);
         error = (Error){0};
-        Scene *scene = read_bytes(text, size, &error);
+        OWN(Scene) *scene = read_bytes(text, size, &error);
         int line, column;
         if (scene == NULL) {
             assert_int_equal(error.kind, ERROR_INPUT);
@@ -179,7 +179,6 @@ TEST(damaged_files_are_read_or_refused_with_their_place) {
             assert_int_equal(error.message[strlen(error.message) - 1], '^');
         }
         *(scene == NULL ? &refused : &read) += 1;
-        scene_destroy(scene);
     }
     /* Damage within a comment has no effect; most other damage is detected. */
     assert_true(read > 100);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bodies that start inside one another are refused, unless the scene allows it. */
-#include "made.h"
 #include "scene_text.h"
+#include "owned.h"
 
 #define TWO(first, second) BASE "bodies:\n  - {mass: 1, " first "}\n  - {mass: 1, " second "}\n"
 #define AT(x) "size: [1, 1], position: [" x ", 0]"
@@ -41,16 +41,6 @@ TEST(overlapping_bodies_are_refused) { CHECK_TABLE(overlaps); }
 
 TEST(bombs_inside_bodies_are_refused) { CHECK_TABLE(bombs); }
 
-TEST(settings_are_checked_too) {
-    static const char text[] =
-        BASE GROUND STACK("5", "$spacing") "parameters:\n  spacing: {value: 1, from: 0.5, to: 2}\n";
-    const char *path = write_scene(text, sizeof text - 1);
-    Scene *scene = scene_from(path);
-    scene_destroy(scene);
-    assert_refused(scene_read_with(path, &(SceneSetting){"spacing", 0.5}, 1, &error),
-                   ":7:5: error: body 2 starts 0.5 m inside body 1");
-}
-
 /* 10,000 boxes in one place: the first pair suffices, so that memory does not grow with the pairs. */
 TEST(ten_thousand_in_one_place_are_refused) {
     expect_refused(
@@ -59,13 +49,11 @@ TEST(ten_thousand_in_one_place_are_refused) {
 }
 
 TEST(the_hash_of_a_scene_does_not_depend_on_it) {
-    Scene *refused = good_scene(TWO(AT("0"), AT("1"))),
-          *allowed = good_scene(TWO(AT("0"), AT("1")) "overlaps: allowed\n");
+    OWN(Scene) *refused = good_scene(TWO(AT("0"), AT("1"))),
+               *allowed = good_scene(TWO(AT("0"), AT("1")) "overlaps: allowed\n");
     assert_true(scene_hash(refused) == scene_hash(allowed));
     assert_false(refused->overlaps_allowed);
     assert_true(allowed->overlaps_allowed);
-    scene_destroy(refused);
-    scene_destroy(allowed);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scenes of scenes/stability, each at both ends of each of its parameters: they can be read, and begin at rest. */
-#include "testing.h"
+#include "owned.h"
 
 #include "engine/engine.h"
 #include "scenes/scenes.h"
@@ -48,7 +48,7 @@ static void check_overlaps(const Scene *scene) {
 }
 
 static void check_ends(const char *path) {
-    Scene *scene = read_with(path, NULL, 0);
+    OWN(Scene) *scene = read_with(path, NULL, 0);
     assert_true(scene->parameter_count > 0);
     check_overlaps(scene);
     for (int i = 0; i < scene->parameter_count; i++) {
@@ -57,14 +57,12 @@ static void check_ends(const char *path) {
         for (int end = 0; end <= 1; end++) {
             SceneSetting setting = {.value = end == 0 ? parameter->from : parameter->to};
             strcpy(setting.name, parameter->name);
-            Scene *other = read_with(path, &setting, 1);
+            OWN(Scene) *other = read_with(path, &setting, 1);
             if (setting.value != parameter->value && scene_hash(other) == scene_hash(scene))
                 fail_msg("%s: %s changes nothing", scene->name, parameter->name);
             check_overlaps(other);
-            scene_destroy(other);
         }
     }
-    scene_destroy(scene);
 }
 
 TEST(every_scene_begins_at_rest_at_all_ends) {
@@ -77,8 +75,8 @@ TEST(every_scene_begins_at_rest_at_all_ends) {
 
 /* A network of a scene knows it by its bodies and bomb. */
 TEST(beyond_training_is_the_stack_itself) {
-    Scene *stack = read_with(SOURCE_DIR "/scenes/stack.yaml", NULL, 0);
-    Scene *beyond = read_with(SOURCE_DIR "/scenes/stability/beyond_training.yaml", NULL, 0);
+    OWN(Scene) *stack = read_with(SOURCE_DIR "/scenes/stack.yaml", NULL, 0);
+    OWN(Scene) *beyond = read_with(SOURCE_DIR "/scenes/stability/beyond_training.yaml", NULL, 0);
     assert_int_equal(scene_hash(beyond), scene_hash(stack));
     assert_int_equal(beyond->frames, stack->frames);
     assert_int_equal(beyond->network_count, stack->network_count + 1); /* scene-net, which is what is tested there */
@@ -88,8 +86,6 @@ TEST(beyond_training_is_the_stack_itself) {
         assert_non_null(path);
         assert_string_equal(strrchr(path, '/'), strrchr(scene_network(stack, method), '/'));
     }
-    scene_destroy(stack);
-    scene_destroy(beyond);
 }
 
 RUN_TESTS(NULL, NULL)

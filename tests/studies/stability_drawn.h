@@ -7,7 +7,6 @@
 
 #include "base/file.h"
 
-#include <math.h>
 #include <sys/stat.h>
 
 #define MAPS "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"

@@ -4,8 +4,6 @@
 
 #include "studies/stability.h"
 
-#include <math.h>
-
 /* Fails, as `how`, in the intervals [from, to]; in the undecided interval only for failing_seed (-1: no such
    interval). */
 typedef struct Made {

@@ -2,7 +2,7 @@
 /* A run compared with a shifted one. */
 #include "made.h"
 
-#include <math.h>
+OWNED_VALUE(Chaos, chaos_free)
 
 static const char *write_scene(const char *bodies_and_bomb) {
     const char *path = temporary_path("scene.yaml");
@@ -14,9 +14,8 @@ static const char *write_scene(const char *bodies_and_bomb) {
 }
 
 static Trajectory *run_scene(const char *path, const char *text) {
-    Scene *scene = scene_from(path);
+    OWN(Scene) *scene = scene_from(path);
     Trajectory *run = run_by(scene, text);
-    scene_destroy(scene);
     return run;
 }
 
@@ -32,34 +31,30 @@ TEST(a_shift_in_free_flight_is_constant) {
     for (int with_bomb = 0; with_bomb < 2; with_bomb++) {
         snprintf(text, sizeof text, "%s%s", falling, with_bomb ? bomb : "");
         const char *path = write_scene(text);
-        Trajectory *run = run_scene(path, "engine");
+        OWN(Trajectory) *run = run_scene(path, "engine");
         int body = chaos_body(run, -1, -1);
         assert_int_equal(body, with_bomb ? 2 : 0);
-        Chaos chaos;
+        OWN(Chaos) chaos;
         assert_ok(chaos_run(&chaos, path, run, body, 50, NULL, &error), error);
         assert_true(chaos.body == body && chaos.rerun_differs == -1 && chaos.frames == 50);
         assert_near(chaos.shift, 1e-6, 0.2e-6);
         for (int frame = 0; frame < 50; frame++)
             assert_near(chaos.distance[frame], with_bomb && frame < 20 ? 0 : chaos.shift, 1e-7);
-        chaos_free(&chaos);
-        trajectory_destroy(run);
     }
 }
 
 /* At a position where one ulp is 0.0625 m. */
 TEST(a_shift_is_at_least_one_float) {
     const char *path = write_scene("  - {size: [1, 1], position: [600000, 50], mass: 1, friction: 0}\n");
-    Trajectory *run = run_scene(path, "engine");
-    Chaos chaos;
+    OWN(Trajectory) *run = run_scene(path, "engine");
+    OWN(Chaos) chaos;
     assert_ok(chaos_run(&chaos, path, run, 0, 10, NULL, &error), error);
     assert_true(chaos.shift == 0.0625 && chaos.distance[9] == 0.0625);
-    chaos_free(&chaos);
-    trajectory_destroy(run);
 }
 
 /* scenes/stack.yaml: the bomb hits in step 41; body 1 touches the ground from step 4. */
 TEST(a_bomb_that_has_not_hit_is_not_shifted) {
-    Trajectory *run = run_scene(SOURCE_DIR "/scenes/stack.yaml", "engine");
+    OWN(Trajectory) *run = run_scene(SOURCE_DIR "/scenes/stack.yaml", "engine");
     assert_int_equal(run->bomb, 11);
     int hit = 0;
     for (int step = 1; hit == 0; step++)
@@ -73,24 +68,19 @@ TEST(a_bomb_that_has_not_hit_is_not_shifted) {
     assert_int_equal(chaos_body(run, 1, hit - 1), 11);
     for (int body = 0; body < run->bodies; body++) run->fixed[body] = 1;
     assert_int_equal(chaos_body(run, 1, hit - 1), -1);
-    trajectory_destroy(run);
 }
 
 /* The distances are those between the two trajectories. */
 TEST(distances_are_those_of_the_trajectories) {
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
-    Trajectory *run = run_scene(path, "momentum:k=5");
-    Scene *scene = scene_from(path);
+    OWN(Trajectory) *run = run_scene(path, "momentum:k=5");
+    OWN(Scene) *scene = scene_from(path);
     scene->bodies[10].position.x = 1e-6F;
-    Trajectory *shifted = run_by(scene, "momentum:k=5");
-    Chaos chaos;
+    OWN(Trajectory) *shifted = run_by(scene, "momentum:k=5");
+    OWN(Chaos) chaos;
     assert_ok(chaos_run(&chaos, path, run, 10, run->frames, NULL, &error), error);
     for (int frame = 0; frame < run->frames; frame++)
         assert_true(chaos.distance[frame] == trajectory_distance(run, shifted, frame));
-    chaos_free(&chaos);
-    trajectory_destroy(shifted);
-    trajectory_destroy(run);
-    scene_destroy(scene);
 }
 
 static void expect_refused(const Trajectory *run, const char *path, int frames, const char *reason) {
@@ -101,7 +91,7 @@ static void expect_refused(const Trajectory *run, const char *path, int frames, 
 
 TEST(other_scenes_and_runs_are_detected) {
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
-    Trajectory *run = run_scene(path, "engine");
+    OWN(Trajectory) *run = run_scene(path, "engine");
     expect_refused(run, SOURCE_DIR "/scenes/single.yaml", 20, "single.yaml: error: is not the scene of the run");
     expect_refused(run, path, SCENE_MAX_FRAMES + 2, "can run at most");
     strcpy(run->method, "engine:network=none");
@@ -116,7 +106,6 @@ TEST(other_scenes_and_runs_are_detected) {
     run->bodies = 3; /* a forged run with the hash of the scene */
     run->bomb = 2;
     expect_refused(run, path, 20, "bodies: 12 and 3");
-    trajectory_destroy(run);
 }
 
 static bool stop_late(void *context, double done, double total) {
@@ -127,11 +116,10 @@ static bool stop_late(void *context, double done, double total) {
 /* A stop must not be taken for a NaN or infinite state. */
 TEST(a_stop_is_an_error) {
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
-    Trajectory *run = run_scene(path, "engine");
+    OWN(Trajectory) *run = run_scene(path, "engine");
     Chaos chaos;
     assert_false(chaos_run(&chaos, path, run, 1, 101, &(Progress){stop_late, NULL}, &error));
     assert_error(error, ERROR_INTERRUPTED, "stopped after step 51 of 100");
-    trajectory_destroy(run);
 }
 
 RUN_TESTS(NULL, NULL)

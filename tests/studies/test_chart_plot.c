@@ -2,6 +2,7 @@
 /* chart.csv: invented numbers, modelled on measured ones; twelve methods. */
 #include "charts.h"
 #include "files.h"
+#include "owned.h"
 #include "python.h"
 
 #include "studies/chart_data.h"
@@ -12,16 +13,12 @@
 
 #include "methods/methods.h"
 
-#include <math.h>
-
 #define SAMPLE SOURCE_DIR "/tests/studies/chart.csv"
 
 static const ChartLook page = {.size = CHART_PAGE};
 
 static const char *drawn_file(const char *scene, const char *ending) {
-    char name[128];
-    snprintf(name, sizeof name, "chart-%s.%s", scene, ending);
-    return temporary_path(name);
+    return temporary_path(printed("chart-%s.%s", scene, ending));
 }
 
 static const char *folder(void) {
@@ -58,10 +55,9 @@ TEST(a_picture_and_its_caption_are_written) {
                "               'pyramid_settled, 40 launches'):\n"
                "    assert wanted in texts, (wanted, texts)\n",
                drawn_file("pyramid_settled", "svg"));
-    char *caption = read_drawn("pyramid_settled", "txt", &size);
+    FREED char *caption = read_drawn("pyramid_settled", "txt", &size);
     assert_non_null(strstr(caption, " Beyond the axes: reference (2232 to 2400 µs, below 0.0001 m/s)."));
     assert_non_null(strstr(caption, "Ring and dotted lines: engine as shipped"));
-    free(caption);
 }
 
 /* The picture's size in pixels, from the head of its file. */
@@ -69,11 +65,10 @@ static void expect_size(const ChartLook *look, int width, int height) {
     Error error = {0};
     size_t size;
     assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), look, &error), error);
-    unsigned char *png = (unsigned char *)read_drawn("pyramid_settled", "png", &size);
+    FREED unsigned char *png = (unsigned char *)read_drawn("pyramid_settled", "png", &size);
     assert_int_equal(png[18] << 8 | png[19], width);
     if (height > 0) assert_int_equal(png[22] << 8 | png[23], height);
     if (height < 0) assert_true((png[22] << 8 | png[23]) > -height);
-    free(png);
 }
 
 TEST(sizes_are_those_of_a_column_and_a_slide) {
@@ -81,25 +76,8 @@ TEST(sizes_are_those_of_a_column_and_a_slide) {
     expect_size(&(ChartLook){.size = CHART_SLIDE}, 1890, 1063);
     expect_size(&(ChartLook){.words = true}, 2055, -1200);
     size_t size;
-    char *svg = read_drawn("pyramid_settled", "svg", &size);
+    FREED char *svg = read_drawn("pyramid_settled", "svg", &size);
     assert_non_null(strstr(svg, "Velocity error:"));
-    free(svg);
-}
-
-TEST(the_same_table_gives_the_same_files) {
-    static const char *const endings[] = {"png", "svg", "pdf"};
-    size_t size[2][3];
-    char *data[2][3];
-    for (int run = 0; run < 2; run++) {
-        assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &page, &error), error);
-        for (int i = 0; i < 3; i++) data[run][i] = read_drawn("pyramid_settled", endings[i], &size[run][i]);
-    }
-    for (int i = 0; i < 3; i++) {
-        assert_int_equal(size[0][i], size[1][i]);
-        assert_memory_equal(data[0][i], data[1][i], size[0][i]);
-        free(data[0][i]);
-        free(data[1][i]);
-    }
 }
 
 #define HEADER                                                                                               \
@@ -139,13 +117,6 @@ TEST(tables_without_a_mark_are_refused) {
     expect_refused(many, "single", "at most 32 methods");
 }
 
-TEST(one_mark_and_one_panel_are_enough) {
-    assert_ok(chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &page,
-                         &error),
-              error);
-    assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
-}
-
 /* The caption of the drawn stack, to be freed. */
 static char *caption_of(const char *path) {
     Error error = {0};
@@ -155,10 +126,9 @@ static char *caption_of(const char *path) {
 }
 
 static void expect_caption(const char *path, const char *wanted, const char *unwanted) {
-    char *caption = caption_of(path);
+    FREED char *caption = caption_of(path);
     if (strstr(caption, wanted) == NULL) fail_msg("no '%s' in: %s", wanted, caption);
     if (unwanted != NULL) assert_null(strstr(caption, unwanted));
-    free(caption);
 }
 
 TEST(times_that_vary_are_noted) {
@@ -179,49 +149,10 @@ TEST(a_target_without_push_out_is_noted) {
     static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n";
-    char engine[200];
-    snprintf(engine, sizeof engine, "%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
+    const char *engine = printed("%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
     expect_caption(write_rows(rows), "soft-step, avbd: error against the solution without the velocity that pushes",
                    NULL);
     expect_caption(write_rows(engine), "Velocity error", "error against");
-}
-
-/* The maximum number of methods, with the longest names and settings. */
-TEST(a_full_chart_is_drawn) {
-    char lines[20000] = "";
-    for (int i = 0; i < CHART_MAX_LINES * 5; i++)
-        snprintf(lines + strlen(lines), 200,
-                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n",
-                 i % CHART_MAX_LINES, i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
-    assert_ok(chart_plot(write_rows(lines), "full", folder(), &page, &error), error);
-}
-
-/* A table may have any texts: what is drawn of them is text. */
-TEST(names_stay_texts) {
-    static const char *const names[] = {"'; x='",         "</text><script>", "&amp;",
-                                        "`touch victim`", "\xc3\x28'\\",     "%s %d %n"};
-    char *lines = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&lines, &size);
-    assert_non_null(file);
-    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
-        for (int k = 1; k <= 2; k++) {
-            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,impact,40,%d,%d,%d,,,%d,,,,,,,,\n", names[i], k, names[i],
-                    5 * k, 4 * k, 6 * k, i + 1);
-            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,after,40,1,1,1,,,0,,,,,,,,\n", names[i], k, names[i]);
-        }
-    fclose(file);
-    const char *path = write_rows(lines);
-    free(lines);
-    assert_ok(chart_plot(path, "hostile", folder(), &page, &error), error);
-    run_python(
-        "import sys, xml.etree.ElementTree as tree\n"
-        "root = tree.parse(sys.argv[1]).getroot()\n"
-        "kinds = {e.tag.split('}')[1] for e in root.iter()}\n"
-        "assert kinds == {'svg', 'title', 'style', 'rect', 'path', 'text'}, kinds\n"
-        "names = [e.text or '' for e in root.iter()] + [open(sys.argv[1][:-3] + 'txt', encoding='utf-8').read()]\n"
-        "assert any('?s ?d ?n' in name for name in names), names\n",
-        drawn_file("hostile", "svg"));
 }
 
 TEST(texts_become_plain) {
@@ -391,19 +322,6 @@ TEST(six_lines_at_most_are_in_colour) {
                  NULL, (const int[]){C, C}, 2);
 }
 
-TEST(a_name_that_no_row_has_is_refused) {
-    CsvTable table;
-    assert_ok(csv_table_read(&table, write_rows(many_methods), &chart_layout, &error), error);
-    assert_ok(chart_highlight_check("nncg,sain:net=off", table.rows, table.count, &error), error);
-    assert_ok(chart_highlight_check(NULL, table.rows, table.count, &error), error);
-    assert_refused(chart_highlight_check("nncg,avdb", table.rows, table.count, &error),
-                   "--highlight: error: 'avdb' is not a method of this chart; did you mean 'avbd'?");
-    assert_refused(
-        chart_highlight_check("engine,nncg,avbd,scene-net,sain,interior,engine", table.rows, table.count, &error),
-        "--highlight: error: a chart has at most 6 methods in colour (got 7)");
-    csv_table_free(&table);
-}
-
 /* What lost the scene is drawn if it is asked for. */
 TEST(lost_methods_are_shown_on_request) {
     static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
@@ -413,10 +331,9 @@ TEST(lost_methods_are_shown_on_request) {
     size_t size;
     expect_caption(write_rows(rows), "Unstable before the impact, and left out: pair-net (1).", "Crosses");
     assert_ok(chart_plot(write_rows(rows), "stack", folder(), &asked, &error), error);
-    char *caption = read_drawn("stack", "txt", &size);
+    FREED char *caption = read_drawn("stack", "txt", &size);
     assert_non_null(strstr(caption, "Crosses: the method lost the scene before the impact."));
     assert_null(strstr(caption, "left out: pair-net"));
-    free(caption);
 }
 
 /* A program reports one time; its curve is in colour and no part of the front. */
@@ -469,14 +386,13 @@ TEST(a_chart_explains_its_words) {
                                             " near: residual at which iterations stop, m/s",
                                             " net=off: without its learned part",
                                             " Velocity error: difference from the converged solution of the same step"};
-    char *caption = caption_of(write_rows(many_methods));
+    FREED char *caption = caption_of(write_rows(many_methods));
     for (size_t i = 0; i < sizeof explained / sizeof *explained; i++) {
         const char *found = strstr(caption, explained[i]);
         if (found == NULL) fail_msg("no '%s' in: %s", explained[i], caption);
         assert_null(strstr(found + 1, explained[i]));
     }
     assert_null(strstr(caption, "substeps:"));
-    free(caption);
 }
 
 /* Links of chart.html have their places by the height that the words give. */

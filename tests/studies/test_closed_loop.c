@@ -5,64 +5,61 @@
 #include "studies/frozen.h"
 #include "studies/rollout.h"
 
-#include <math.h>
+OWNED_VALUE(RunLog, run_log_free)
+
+OWNED_VALUE(Rollout, rollout_free)
 
 static ClosedLoop run(const char *text, const Scene *scene) {
     Error error = {0};
     ClosedLoop result;
-    RunLog converged = {0};
+    OWN(RunLog) converged = {0};
     const Method method = method_named(text);
     assert_ok(closed_loop_log_converged(&converged, scene, &error), error);
     assert_ok(closed_loop_run(&method, scene, &converged, 1, &result, &error), error);
-    run_log_free(&converged);
     return result;
 }
 
 /* The reference equals itself; it conserves momentum; friction and inelastic impacts only dissipate energy. */
 TEST(the_converged_run_equals_itself) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     ClosedLoop result = run("reference", scene);
     assert_near(result.frames_until_apart, CLOSED_LOOP_FRAMES, 0);
     assert_near(result.momentum_error, 0, 0);
     assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
     assert_true(result.penetration_max > 0);
-    scene_destroy(scene);
 }
 
 /* With one sweep and no warm start a stack of ten sinks. */
 TEST(a_poor_method_diverges_before_a_good_one) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     ClosedLoop poor = run("engine:k=1,warm=off", scene), good = run("interior", scene);
     assert_true(poor.frames_until_apart > 1 && poor.frames_until_apart < 40);
     assert_true(good.frames_until_apart > 2 * poor.frames_until_apart);
     assert_true(poor.penetration_max > good.penetration_max);
-    scene_destroy(scene);
 }
 
 /* The energy that a late bomb brings is not counted as created by the method. */
 TEST(energy_counts_from_the_bomb_on) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     scene->bomb.frame = 30;
     ClosedLoop result = run("engine", scene);
     assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
-    scene_destroy(scene);
 }
 
 /* A light bomb brings nothing, and comes after the heavy box has lost its height of 3.5 m. */
 TEST(energy_before_the_bomb_does_not_count) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     scene->bomb.frame = 120;
     scene->bomb.body.mass = 0.001f;
     const ClosedLoop result = run("engine", scene);
     assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
-    scene_destroy(scene);
 }
 
 /* The log of the engine, moved by a centimetre more in each frame. */
 TEST(runs_have_parted_at_a_tenth_of_a_metre) {
-    Scene *scene = scene_named("single");
-    RunLog engine = {0};
-    Rollout rollout = {0};
+    OWN(Scene) *scene = scene_named("single");
+    OWN(RunLog) engine = {0};
+    OWN(Rollout) rollout = {0};
     LaunchLoop loop;
     const Method method = method_named("engine");
     scene->frames = 40;
@@ -71,33 +68,27 @@ TEST(runs_have_parted_at_a_tenth_of_a_metre) {
         engine.position[frame * engine.bodies + 1].x += 0.01f * ((float)frame - 0.5f);
     assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, NULL, &loop, &error), error);
     assert_near(loop.frames_engine, 11, 0);
-    rollout_free(&rollout);
-    run_log_free(&engine);
-    scene_destroy(scene);
 }
 
 /* avbd moves bodies without equal and opposite impulses. */
 TEST(momentum_is_that_of_a_step) {
-    Scene *scene = scene_named("stack");
-    Rollout rollout = {0};
+    OWN(Scene) *scene = scene_named("stack");
+    OWN(Rollout) rollout = {0};
     const Method method = method_named("avbd:k=2");
-    Stepper *stepper = stepper_of(scene, &method);
+    OWN(Stepper) *stepper = stepper_of(scene, &method);
     const ClosedLoop result = run("avbd:k=2", scene);
     scene->frames = CLOSED_LOOP_FRAMES;
     assert_ok(rollout_run(&rollout, stepper, scene, NULL, NULL, &error), error);
     assert_true(rollout.log.momentum_error > 0);
     assert_near(result.momentum_error, rollout.log.momentum_error / rollout.log.frames, 1e-12);
-    stepper_destroy(stepper);
-    rollout_free(&rollout);
-    scene_destroy(scene);
 }
 
 /* The interior method is close to the converged run of the pyramid for longer than to the engine's. */
 TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
-    Scene *scene = scene_named("pyramid");
+    OWN(Scene) *scene = scene_named("pyramid");
     scene->frames = 60;
-    RunLog engine = {0}, converged = {0};
-    Rollout rollout = {0};
+    OWN(RunLog) engine = {0}, converged = {0};
+    OWN(Rollout) rollout = {0};
     LaunchLoop loop;
     const Method method = method_named("interior");
     assert_ok(closed_loop_log(&engine, "engine", scene, &error), error);
@@ -110,16 +101,12 @@ TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
     assert_true(isnan(loop.frames_converged) && loop.frames_engine < 60);
     assert_ok(closed_loop_launch(&rollout, &method, scene, NULL, &converged, &loop, &error), error);
     assert_true(isnan(loop.frames_engine) && loop.frames_converged > 1);
-    rollout_free(&rollout);
-    run_log_free(&engine);
-    run_log_free(&converged);
-    scene_destroy(scene);
 }
 
 /* The converged run tells when another parts from it, up to its first unconverged step. */
 TEST(launches_that_part_after_an_unconverged_step_do_not_count) {
     enum { LAUNCHES = 3 };
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     const Scene launches[LAUNCHES] = {*scene, *scene, *scene};
     RunLog converged[LAUNCHES] = {0};
     ClosedLoop all, some, none;
@@ -141,11 +128,10 @@ TEST(launches_that_part_after_an_unconverged_step_do_not_count) {
     assert_int_equal(none.unconverged, LAUNCHES);
     assert_true(isnan(none.frames_until_apart));
     for (int i = 0; i < LAUNCHES; i++) run_log_free(&converged[i]);
-    scene_destroy(scene);
 }
 
 TEST(both_methods_are_timed) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     scene->frames = 60;
     const Sampling sampling = {.after = 20, .rest = 20};
     SnapshotList states = {0};
@@ -155,7 +141,6 @@ TEST(both_methods_are_timed) {
     assert_ok(closed_loop_time(&method, &states, 3, &us_step, &us_step_engine, &error), error);
     assert_true(us_step > 0 && us_step_engine > 0);
     snapshots_free(&states);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors at equal time, of an invented chart. */
 #include "charts.h"
+#include "owned.h"
 
 #include "studies/chart_table.h"
 #include "studies/equal_time.h"
 #include "studies/error_curve.h"
 
-#include <math.h>
+OWNED_VALUE(EqualTime, equal_time_free)
 
 /* A row of the impact in closed loop; median and 95th percentile are half and twice the mean. */
 #define IMPACT(method, setting, us, mean, half, twice) \
@@ -57,8 +58,8 @@ static void assert_same(double found, double value) {
 
 TEST(every_setting_meets_its_best_rival_at_its_time) {
     static const double factors[] = {1, 0.5, 2};
-    CsvTable rows = read_chart();
-    EqualTime table;
+    OWN(CsvTable) rows = read_chart();
+    OWN(EqualTime) table;
     /* The line of logarithms from (8, 0.8) to (20, 0.2), at 10 and at 16. */
     assert_near(0.8 * pow(0.25, log(1.25) / log(2.5)), expected[4].rival_error, 1e-11);
     assert_near(0.8 * pow(0.25, log(2) / log(2.5)), expected[6].rival_error, 1e-11);
@@ -79,8 +80,6 @@ TEST(every_setting_meets_its_best_rival_at_its_time) {
         assert_same(row->ratio, want->ratio);
         assert_same(row->time_momentum_20, want->time_momentum_20);
     }
-    equal_time_free(&table);
-    csv_table_free(&rows);
 }
 
 /* At 20 microseconds, the time of momentum with 50 sweeps. */
@@ -93,8 +92,8 @@ TEST(methods_are_compared_at_one_time) {
         {"scene-net", "interior", 0.1, 10},   {"scene-net:net=off", "interior", 0.5, 50},
         {"interior", "momentum", 0.01, 0.05}, {"block", "interior", NAN, NAN}, /* lost the scene */
     };
-    CsvTable rows = read_chart();
-    EqualTime table;
+    OWN(CsvTable) rows = read_chart();
+    OWN(EqualTime) table;
     assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
     assert_string_equal(table.time, "k=50");
     assert_int_equal(table.method_count, sizeof methods / sizeof *methods);
@@ -106,8 +105,6 @@ TEST(methods_are_compared_at_one_time) {
         assert_same(row->error, methods[i].error);
         assert_same(row->ratio, methods[i].ratio);
     }
-    equal_time_free(&table);
-    csv_table_free(&rows);
 }
 
 /* A loss by four remains one where nobody can see it, and is marked; so is what only one of the two is below. */
@@ -119,8 +116,8 @@ TEST(errors_below_the_resolution_are_compared_as_they_are) {
         ErrorsBelow below;
     } wanted[] = {{4, BELOW_BOTH},    {0.2, BELOW_METHOD}, {8. / 3, BELOW_BOTH},
                   {0.25, BELOW_BOTH}, {5, BELOW_RIVAL},    {0.375, BELOW_BOTH}};
-    CsvTable rows;
-    EqualTime table;
+    OWN(CsvTable) rows;
+    OWN(EqualTime) table;
     assert_ok(csv_table_read(&rows, write_chart(small), &chart_layout, &error), error);
     assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
     for (int i = 0; i < 6; i++) {
@@ -129,16 +126,14 @@ TEST(errors_below_the_resolution_are_compared_as_they_are) {
     }
     assert_int_equal(table.methods[0].below, BELOW_BOTH);
     assert_near(table.methods[0].ratio, 4, 1e-9);
-    equal_time_free(&table);
-    csv_table_free(&rows);
 }
 
 /* The most of 20, 50 and 100 sweeps that the chart has. */
 TEST(the_time_is_that_of_the_most_sweeps) {
     static const char *const renamed[] = {"k=50", "k=50", "k=20"}, *const settings[] = {"k=100", "k=20", "k=100"};
     for (int k = 0; k < 3; k++) {
-        CsvTable rows = read_chart();
-        EqualTime table;
+        OWN(CsvTable) rows = read_chart();
+        OWN(EqualTime) table;
         for (int i = 0; i < rows.count; i++) {
             ChartRow *row = (ChartRow *)rows.rows + i;
             if (strcmp(row->method, "momentum") == 0 && strcmp(row->setting, renamed[k]) == 0)
@@ -146,8 +141,6 @@ TEST(the_time_is_that_of_the_most_sweeps) {
         }
         assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
         assert_string_equal(table.time, settings[k]);
-        equal_time_free(&table);
-        csv_table_free(&rows);
     }
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figure of errors at equal time, of an invented chart. */
-#include "files.h"
 #include "python.h"
 
 #include "studies/chart_table.h"
@@ -37,20 +36,6 @@ TEST(learned_methods_stand_beside_their_twins) {
         "               ' net=off: without its learned part.'):\n"
         "    assert caption.count(wanted) == 1, (wanted, caption)\n",
         temporary_path("equal_time.svg"));
-}
-
-TEST(tables_and_three_formats_are_written) {
-    static const char *const files[] = {"equal_time.csv", "equal_time_methods.csv", "equal_time.png", "equal_time.pdf"};
-    static const char *const begins[] = {"scene,method,setting,phase,statistic,launches,us_solver,error,rival,",
-                                         "scene,method,us_solver,reach,error,rival,rival_error,ratio,below\n",
-                                         "\x89PNG", "%PDF-"};
-    for (int i = 0; i < 4; i++) {
-        size_t size;
-        char *data = read_whole(temporary_path(files[i]), &size);
-        assert_true(size > strlen(begins[i]));
-        assert_memory_equal(data, begins[i], strlen(begins[i]));
-        free(data);
-    }
 }
 
 /* One method alone has no rival: there are tables, but no figure. */

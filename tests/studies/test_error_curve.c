@@ -4,8 +4,6 @@
 
 #include "studies/error_curve.h"
 
-#include <math.h>
-
 enum { POINTS = 4 };
 
 /* error = 3 us^-1.7: a straight line in logarithms. */

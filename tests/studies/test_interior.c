@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The method `interior` at rest: what it holds for a minute and the engine with ten sweeps does not. */
 #include "sanitized.h"
+#include "owned.h"
 #include "studies/trial.h"
 
 #include "engine/uniform.h"
@@ -14,11 +15,10 @@ typedef struct Case {
 /* The verdicts on methods in the scene, beside its converged run. */
 static void judge_all(const Case *the, const char *const *texts, int count, bool stands, VerdictReading *readings) {
     Error error = {0};
-    char path[512];
     Method method, reference;
-    EnergyLog converged = {0};
-    snprintf(path, sizeof path, "%s/scenes/stability/%s.yaml", SOURCE_DIR, the->scene);
-    Scene *scene = scene_read_with(path, the->settings, the->count, &error);
+    OWN(EnergyLog) converged = {0};
+    const char *path = printed("%s/scenes/stability/%s.yaml", SOURCE_DIR, the->scene);
+    OWN(Scene) *scene = scene_read_with(path, the->settings, the->count, &error);
     assert_ok(scene != NULL && method_parse(&reference, "reference", &error), error);
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
     assert_true(!stands || scene->frames == (int)lroundf(60 / scene->dt));
@@ -26,8 +26,6 @@ static void judge_all(const Case *the, const char *const *texts, int count, bool
     for (int i = 0; i < count; i++)
         assert_ok(method_parse(&method, texts[i], &error) && verdict_run(&readings[i], scene, &method, &run, &error),
                   error);
-    energy_log_free(&converged);
-    scene_destroy(scene);
 }
 
 static VerdictReading judge(const Case *the, const char *text, bool stands) {

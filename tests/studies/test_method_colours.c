@@ -2,6 +2,7 @@
 /* A method has one colour in film, page, figure and chart, and no two runs of a picture share one. */
 #include "charts.h"
 #include "files.h"
+#include "owned.h"
 #include "figures/run_figure.h"
 #include "pictures/mesa.h"
 
@@ -41,7 +42,7 @@ static int count_pixels(const Image *image, Rect part, uint32_t colour) {
 /* Each panel has its run's colour on its boxes and no other's. */
 static void check_film(const Trajectory *const *runs, const RunColours *colours, int count, LookTheme theme) {
     RenderOptions options = {.width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .look.theme = theme};
-    Image *image = image_sized(WIDTH, HEIGHT);
+    OWN(Image) *image = image_sized(WIDTH, HEIGHT);
     Picture picture;
     Error error = {0};
     assert_ok(picture_plan(&picture, runs, count, WIDTH, HEIGHT, &error), error);
@@ -56,7 +57,6 @@ static void check_film(const Trajectory *const *runs, const RunColours *colours,
         }
     renderer_destroy(renderer);
     picture_free(&picture);
-    image_destroy(image);
 }
 
 static void check_page(const Trajectory *const *runs, const RunColours *colours, int count) {
@@ -158,11 +158,10 @@ TEST(a_chart_of_all_methods_has_no_colour_twice) {
     }
     csv_table_free(&table);
     assert_ok(chart_plot(path, "stack", temporary_folder, &(ChartLook){.highlight = "momentum"}, &error), error);
-    char *svg = read_whole(temporary_path("chart-stack.svg"), &size);
+    FREED char *svg = read_whole(temporary_path("chart-stack.svg"), &size);
     static const char *const strokes[] = {"\"#0072B2", "\"#D07CB1", "\"#009E73"}; /* engine, interior, momentum */
     for (int i = 0; i < 3; i++)
         if (strstr(svg, strokes[i]) == NULL) fail_msg("the chart lacks %s", strokes[i]);
-    free(svg);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scores of launches as bytes: what was written is read back and put together, and what is damaged is refused. */
-#include "testing.h"
+#include "owned.h"
 
 #include "base/file.h"
 #include "studies/chart_table.h"
 #include "studies/launch_scores.h"
 #include "studies/rollout.h"
-
-#include <math.h>
 
 enum { METHODS = 3, LAUNCHES = 2 };
 
@@ -76,12 +74,11 @@ TEST(launches_are_put_together) {
     for (int launch = 0; launch < LAUNCHES; launch++) {
         size_t size;
         StoredScores stored;
-        char *bytes = write_launch(launch, &size);
+        FREED char *bytes = write_launch(launch, &size);
         assert_ok(stored_scores_open(&stored, "launch", bytes, size, METHODS, &error), error);
         assert_int_equal(stored.unconverged, 5 + launch);
         assert_int_equal(stored.run_unconverged, 3 * launch);
         for (int i = 0; i < METHODS; i++) assert_ok(method_scores_add(&scores[i], &stored, i, &error), error);
-        free(bytes);
     }
     for (int i = 0; i < METHODS; i++) {
         assert_whole(&scores[i], i);
@@ -116,20 +113,19 @@ static bool are_read(const char *bytes, size_t size, int methods) {
     Error error = {0};
     StoredScores stored;
     MethodScores scores = {0};
-    char *copy = malloc(size + 1); /* the sanitizers see what is read behind it */
+    FREED char *copy = malloc(size + 1); /* the sanitizers see what is read behind it */
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     bool ok = stored_scores_open(&stored, "launch", copy, size, methods, &error);
     for (int i = 0; ok && i < methods; i++) ok = method_scores_add(&scores, &stored, i, &error);
     if (!ok) assert_error(error, ERROR_INPUT, "launch: error: is no result of a launch; delete it");
     method_scores_free(&scores);
-    free(copy);
     return ok;
 }
 
 TEST(damaged_results_are_refused) {
     size_t size;
-    char *bytes = write_launch(0, &size);
+    FREED char *bytes = write_launch(0, &size);
     assert_true(are_read(bytes, size, METHODS));
     assert_false(are_read(bytes, size, METHODS + 1));
     assert_false(are_read(bytes, size, METHODS - 1));
@@ -165,7 +161,6 @@ TEST(damaged_results_are_refused) {
         memcpy(bytes + criteria, kept, sizeof kept);
     }
     assert_true(are_read(bytes, size, METHODS));
-    free(bytes);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "owned.h"
 #include "files.h"
 
 #include "studies/piece_tables.h"
@@ -32,14 +32,11 @@ static bool write_tables(const char *folder, const char **results, int count, co
 }
 
 static void assert_table(const char *folder, const char *name, const char *expected) {
-    char path[400];
-    snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    assert_file(path, expected);
+    assert_file(printed("%s/%s.csv", folder, name), expected);
 }
 
 TEST(rows_have_the_order_of_pieces_and_sections) {
-    char folder[300];
-    snprintf(folder, sizeof folder, "%s", temporary_path("tables"));
+    const char *folder = printed("%s", temporary_path("tables"));
     const char *results[] = {"a:1\n# a:9\nab:2\na:3\n#\n", "",     "# 8\nab:4\n", "a/1:11\na/0:10\nab:5\n",
                              "a/0:20\na/1:21\n",           "a:6\n"};
     const PieceGroup groups[] = {{0, 3, 0}, {3, 2, 2}, {5, 1, 0}};
@@ -51,8 +48,7 @@ TEST(rows_have_the_order_of_pieces_and_sections) {
 }
 
 TEST(lines_of_no_table_are_refused) {
-    char folder[300];
-    snprintf(folder, sizeof folder, "%s", temporary_path("foreign"));
+    const char *folder = printed("%s", temporary_path("foreign"));
     static const char *const wrong[] = {"b:1\n", "a1\n",    "a/0:1\n", "a/-2:1\n", "a/x:1\n",
                                         "a:1",   "abc:1\n", ":1\n",    "\n"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -64,14 +60,13 @@ TEST(lines_of_no_table_are_refused) {
 }
 
 TEST(a_row_is_a_line_with_the_tables_name) {
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t size;
     FILE *results = open_memstream(&text, &size);
     assert_ok(piece_tables_print(results, &a_layout, -1, &(int){7}, &error), error);
     assert_ok(piece_tables_print(results, &ab_layout, 3, &(int){8}, &error), error);
     fclose(results);
     assert_string_equal(text, "a:7\nab/3:8\n");
-    free(text);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -6,6 +6,10 @@
 #include "studies/rollout.h"
 #include "studies/statistics.h"
 
+OWNED_VALUE(Rollout, rollout_free)
+
+OWNED_VALUE(SnapshotList, snapshots_free)
+
 static const Sampling every = {.after = 1, .rest = 1}, few = {.after = 10, .rest = 50};
 
 static void free_scores(StepScores scores[PHASES]) {
@@ -13,9 +17,9 @@ static void free_scores(StepScores scores[PHASES]) {
 }
 
 TEST(the_reference_has_no_error) {
-    Scene *scene = scene_named("stack");
-    Stepper *stepper = stepper_by(scene, "reference");
-    Rollout rollout = {0};
+    OWN(Scene) *scene = scene_named("stack");
+    OWN(Stepper) *stepper = stepper_by(scene, "reference");
+    OWN(Rollout) rollout = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(rollout_run(&rollout, stepper, scene, &few, scores, &error), error);
     for (int phase = 0; phase < PHASES; phase++)
@@ -24,9 +28,6 @@ TEST(the_reference_has_no_error) {
             assert_true(scores[phase].share[i] == 1);
         }
     free_scores(scores);
-    rollout_free(&rollout);
-    stepper_destroy(stepper);
-    scene_destroy(scene);
 }
 
 /* A box that has sunk by 5 mm catches at a seam in the engine's run. The reference, whose own contacts are mended, must solve
@@ -36,28 +37,25 @@ TEST(frozen_steps_have_the_contacts_of_the_engine) {
     for (int i = 0; i < 6; i++) bodies[i] = (BodyDef){.size = {1, 1}, .fixed = true, .position = {(float)i, -0.5f}};
     bodies[6] = (BodyDef){.size = {0.8f, 0.8f}, .mass = 1, .position = {1.09f, 0.395f}, .velocity = {0.17f, 0}};
     const Scene scene = scene_of_bodies(bodies, 7, 60);
-    SnapshotList list = {0};
+    OWN(SnapshotList) list = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(snapshots_add(&list, &scene, &every, &error), error);
     const Body *last = &world_bodies(list.items[list.count - 1].world)[6];
     assert_true(last->velocity.x < 0.1f);
-    Stepper *stepper = stepper_by(&scene, "reference");
-    World *world = world_of(&scene);
+    OWN(Stepper) *stepper = stepper_by(&scene, "reference");
+    OWN(World) *world = world_of(&scene);
     assert_ok(snapshots_score(&list, stepper, world, scores, &error), error);
     assert_true(scores[PHASE_REST].count > 50);
     for (int i = 0; i < scores[PHASE_REST].count; i++) assert_near(scores[PHASE_REST].error[i], 0, 1e-6);
     free_scores(scores);
-    world_destroy(world);
-    stepper_destroy(stepper);
-    snapshots_free(&list);
 }
 
 /* 6 impact frames, 60 frames after; every frame is in exactly one phase. */
 TEST(every_frame_is_in_one_phase) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     scene->frames = 200;
-    Stepper *stepper = stepper_by(scene, "engine");
-    Rollout rollout = {0};
+    OWN(Stepper) *stepper = stepper_by(scene, "engine");
+    OWN(Rollout) rollout = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(rollout_run(&rollout, stepper, scene, &every, scores, &error), error);
     assert_true(rollout.log.touch > 10 && rollout.log.touch < 100);
@@ -68,29 +66,24 @@ TEST(every_frame_is_in_one_phase) {
     assert_int_equal(rollout.log.at[rollout.log.touch + 65].phase, PHASE_AFTER);
     assert_int_equal(rollout.log.at[rollout.log.touch + 66].phase, PHASE_REST);
     free_scores(scores);
-    rollout_free(&rollout);
-    stepper_destroy(stepper);
-    scene_destroy(scene);
 }
 
 static double frozen_error(const SnapshotList *list, const Scene *scene, const char *method) {
     Error error = {0};
     StepScores scores[PHASES] = {0};
-    Stepper *stepper = stepper_by(scene, method);
-    World *world = world_of(scene);
+    OWN(Stepper) *stepper = stepper_by(scene, method);
+    OWN(World) *world = world_of(scene);
     assert_ok(snapshots_score(list, stepper, world, scores, &error), error);
     assert_int_equal(scores[PHASE_IMPACT].count, 6);
     double mean = statistics_mean(scores[PHASE_IMPACT].error, scores[PHASE_IMPACT].count);
     free_scores(scores);
-    world_destroy(world);
-    stepper_destroy(stepper);
     return mean;
 }
 
 /* More sweeps give a smaller error; no warm start, or noise, a larger one. */
 TEST(methods_rank_as_expected_on_frozen_steps) {
-    Scene *scene = scene_named("stack");
-    SnapshotList list = {0};
+    OWN(Scene) *scene = scene_named("stack");
+    OWN(SnapshotList) list = {0};
     assert_ok(snapshots_add(&list, scene, &few, &error), error);
     assert_int_equal(list.unconverged, 0);
     double by10 = frozen_error(&list, scene, "engine:k=10"), by100 = frozen_error(&list, scene, "engine:k=100");
@@ -101,22 +94,20 @@ TEST(methods_rank_as_expected_on_frozen_steps) {
     assert_true(by1000 < by100 && by100 < by10 && by10 < constant);
     assert_true(by10 != cold);
     assert_true(reference < 1e-5);
-    snapshots_free(&list);
-    scene_destroy(scene);
 }
 
 /* A box between walls that are closer to each other than it is wide: nothing keeps it out of both. */
 TEST(steps_without_a_solution_are_not_scored) {
-    Scene *scene = scene_named("stack");
+    OWN(Scene) *scene = scene_named("stack");
     scene->frames = 20;
     scene->bomb.present = false;
     scene->body_count = 4;
     scene->bodies[1] = scene->bodies[2] = scene->bodies[0];
     scene->bodies[1].position = vec2(-50.3f, 5);
     scene->bodies[2].position = vec2(50.3f, 5);
-    Stepper *stepper = stepper_by(scene, "engine");
-    Rollout rollout = {0};
-    SnapshotList list = {0};
+    OWN(Stepper) *stepper = stepper_by(scene, "engine");
+    OWN(Rollout) rollout = {0};
+    OWN(SnapshotList) list = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(rollout_run(&rollout, stepper, scene, &every, scores, &error), error);
     assert_ok(snapshots_add(&list, scene, &every, &error), error);
@@ -125,19 +116,15 @@ TEST(steps_without_a_solution_are_not_scored) {
     assert_int_equal(list.unconverged, rollout.unconverged);
     assert_in_range(rollout.unconverged, 1, 20);
     free_scores(scores);
-    rollout_free(&rollout);
-    snapshots_free(&list);
-    stepper_destroy(stepper);
-    scene_destroy(scene);
 }
 
 /* The engine's frozen steps are those of its closed loop, so the errors are the same. */
 TEST(frozen_steps_of_the_engine_are_its_own) {
-    Scene *scene = scene_named("pyramid_settled");
-    SnapshotList list = {0};
+    OWN(Scene) *scene = scene_named("pyramid_settled");
+    OWN(SnapshotList) list = {0};
     StepScores frozen[PHASES] = {0}, closed[PHASES] = {0};
-    Rollout rollout = {0};
-    Stepper *stepper = stepper_by(scene, "engine");
+    OWN(Rollout) rollout = {0};
+    OWN(Stepper) *stepper = stepper_by(scene, "engine");
     assert_ok(snapshots_add(&list, scene, &few, &error), error);
     assert_ok(rollout_run(&rollout, stepper, scene, &few, closed, &error), error);
     assert_ok(snapshots_score(&list, stepper, rollout.world, frozen, &error), error);
@@ -148,10 +135,6 @@ TEST(frozen_steps_of_the_engine_are_its_own) {
     assert_int_equal(closed[PHASE_IMPACT].count, 4);
     free_scores(frozen);
     free_scores(closed);
-    rollout_free(&rollout);
-    snapshots_free(&list);
-    stepper_destroy(stepper);
-    scene_destroy(scene);
 }
 
 /* Keeps every body in place, with velocity 0. */
@@ -185,11 +168,11 @@ static Stepper *make_still_stepper(const Scene *scene, bool no_push_out) {
 /* The errors of the first step of a scene: frozen, and of a run of this many frames: closed loop. */
 static void assert_errors(const Scene *scene, Stepper *stepper, double expected, double tolerance) {
     Error error = {0};
-    Rollout rollout = {0};
+    OWN(Rollout) rollout = {0};
     StepScores closed[PHASES] = {0}, frozen[PHASES] = {0};
     Scene first = *scene;
     first.frames = 1;
-    SnapshotList list = {.no_push_out = true};
+    OWN(SnapshotList) list = {.no_push_out = true};
     assert_ok(snapshots_add(&list, &first, &every, &error), error);
     assert_ok(rollout_run(&rollout, stepper, scene, &every, closed, &error), error);
     assert_ok(snapshots_score(&list, stepper, rollout.world, frozen, &error), error);
@@ -199,8 +182,6 @@ static void assert_errors(const Scene *scene, Stepper *stepper, double expected,
     for (int i = 0; i < scene->frames; i++) assert_near(closed[PHASE_REST].error[i], expected, tolerance);
     free_scores(closed);
     free_scores(frozen);
-    snapshots_free(&list);
-    rollout_free(&rollout);
     stepper_destroy(stepper);
 }
 

@@ -6,7 +6,7 @@
 #include "studies/rollout.h"
 #include "studies/statistics.h"
 
-#include <math.h>
+OWNED_VALUE(RunLog, run_log_free)
 
 enum { FRAMES = 10, BODIES = 3 };
 
@@ -80,15 +80,13 @@ TEST(nothing_is_compared_with_steps_that_did_not_converge) {
 
 /* A box in a V that its friction holds apart from. */
 TEST(steps_that_did_not_converge_are_counted) {
-    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge_launches.yaml");
-    RunLog log = {0};
+    OWN(Scene) *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge_launches.yaml");
+    OWN(RunLog) log = {0};
     assert_ok(closed_loop_log(&log, "reference", scene, &error), error);
     assert_in_range(log.unconverged, 10, 50);
     assert_int_equal(log.unconverged, scene->frames + 1 - log.first_unconverged);
     assert_ok(closed_loop_log(&log, "engine", scene, &error), error);
     assert_int_equal(log.unconverged, 0);
-    run_log_free(&log);
-    scene_destroy(scene);
 }
 
 TEST(differences_are_assigned_to_their_phase) {
@@ -177,8 +175,8 @@ TEST(runs_part_where_a_body_or_the_bomb_is_away) {
 TEST(momentum_and_fallbacks_are_added) {
     BodyDef box = {.size = {1, 1}, .mass = 1};
     const Scene scene = {.dt = 0.5f, .frames = 2, .body_count = 1, .bodies = &box};
-    World *world = world_of(&scene);
-    RunLog log = {0};
+    OWN(World) *world = world_of(&scene);
+    OWN(RunLog) log = {0};
     assert_true(run_log_begin(&log, &scene, world));
     for (int frame = 1; frame <= 2; frame++) {
         ContactProblem problem;
@@ -196,20 +194,16 @@ TEST(momentum_and_fallbacks_are_added) {
     assert_true(run_log_begin(&log, &scene, world));
     assert_near(log.momentum_error, 0, 0);
     assert_int_equal(log.fallen_back, 0);
-    run_log_free(&log);
-    world_destroy(world);
 }
 
 /* A box of 3 kg, 2 m up, at 4 m/s and 6 rad/s: 3 (16 / 2 + 10 2) + 3 (1 + 1) / 12 36 / 2 = 93 J. */
 TEST(energy_is_kinetic_and_potential) {
     BodyDef box = {.size = {1, 1}, .mass = 3, .position = {5, 2}, .velocity = {0, 4}, .angular_velocity = 6};
     Scene scene = {.dt = 0.5f, .frames = 1, .body_count = 1, .bodies = &box, .gravity = {0, -10}};
-    World *world = world_of(&scene);
-    RunLog log = {0};
+    OWN(World) *world = world_of(&scene);
+    OWN(RunLog) log = {0};
     assert_true(run_log_begin(&log, &scene, world));
     assert_near(log.at[0].energy, 3 * (8 + 20) + 0.5 * 0.5 * 36, 1e-4);
-    run_log_free(&log);
-    world_destroy(world);
 }
 
 TEST(quantiles_are_interpolated) {

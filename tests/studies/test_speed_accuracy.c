@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Times of different processors are not mixed: a merge refuses them, or leaves out those of others than the first. */
-#include "testing.h"
+#include "owned.h"
 
 #include "studies/chart.h"
 #include "studies/chart_table.h"
-
-#include <math.h>
 
 static const char *const scenes[] = {SOURCE_DIR "/scenes/single.yaml", SOURCE_DIR "/scenes/stack.yaml"};
 
@@ -61,11 +59,10 @@ static void change_processor(const char *cpu) {
     assert_int_equal(fscanf(file, "twinbox piece 1\nkey %llx", &key), 1);
     fclose(file);
     head.key = key;
-    char *results = piece_file_read(path, &head, &size, &error);
+    FREED char *results = piece_file_read(path, &head, &size, &error);
     assert_ok(results != NULL, error);
     snprintf(head.cpu, sizeof head.cpu, "%s", cpu);
     assert_ok(piece_file_write(path, &head, results, size, &error), error);
-    free(results);
 }
 
 TEST(times_of_other_processors_are_refused_or_left_out) {
@@ -79,7 +76,7 @@ TEST(times_of_other_processors_are_refused_or_left_out) {
     assert_ok(run_study(&first, &error), error);
     assert_true(drawn == 2 && timed[0] && !timed[1]);
 
-    CsvTable table;
+    OWN(CsvTable) table;
     char note[CHART_TIMES_SIZE], cpu[CPU_NAME_SIZE], wanted[CHART_TIMES_SIZE];
     cpu_name(cpu);
     assert_ok(csv_table_read(&table, temporary_path("chart.csv"), &chart_layout, &error), error);
@@ -101,7 +98,6 @@ TEST(times_of_other_processors_are_refused_or_left_out) {
     chart_times_note(note, table.rows, table.count);
     snprintf(wanted, sizeof wanted, "Times measured on %s. Those of other processors are left out.", cpu);
     assert_memory_equal(note, wanted, strlen(wanted)); /* then, on a busy machine, that some times vary */
-    csv_table_free(&table);
 }
 
 RUN_TESTS(NULL, NULL)

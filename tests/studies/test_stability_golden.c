@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Both sides of every border in golden/stability.csv (made by golden/renew): each method still holds at holds_at and
    fails at fails_at. */
-#include "testing.h"
+#include "owned.h"
 #include "sanitized.h"
 
 #include "base/machine.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
-
-#include <math.h>
 
 static const char scenes[] = SOURCE_DIR "/scenes";
 
@@ -18,9 +16,8 @@ typedef struct Golden {
 } Golden;
 
 static bool method_of(const BorderRow *row, Method *method, Error *error) {
-    char text[METHOD_TEXT_SIZE];
-    snprintf(text, sizeof text, "%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting);
-    return method_parse(method, text, error);
+    return method_parse(method, printed("%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting),
+                        error);
 }
 
 /* One side of a row; a side without a value is not checked. The row's verdict is the worst: of the failing seeds or,
@@ -45,11 +42,10 @@ static bool check_refusal(const Golden *golden, int i, const StabilityScan *scan
     Method method;
     Error reason = {0};
     const StabilityPlace place = {.scenes = scenes, .scene = scan->study->scene};
-    Scene *scene = stability_scene(&place, NULL, 0, error);
+    OWN(Scene) *scene = stability_scene(&place, NULL, 0, error);
     bool ok = scene != NULL && method_of(border_row(&golden->table, i), &method, error);
     if (ok && stability_applies(&method, scene, &reason))
         ok = csv_table_error(&golden->table, i, 0, error, "%s, %s: it does apply", scan->study->name, method.text);
-    scene_destroy(scene);
     return ok;
 }
 

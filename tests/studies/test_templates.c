@@ -13,8 +13,8 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
     static int cases;
     if (cases++ % sampled(4) != 0) return;
     Error error = {0};
-    EnergyLog converged = {0};
-    Scene *scene = scene_read_with(path, settings, count, &error);
+    OWN(EnergyLog) converged = {0};
+    OWN(Scene) *scene = scene_read_with(path, settings, count, &error);
     assert_ok(scene != NULL, error);
     scene->bomb.present = false;
     scene->frames = STEPS;
@@ -32,14 +32,11 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
                      count > 0 ? settings->value : 0, methods[i], verdict_name(reading.verdict), reading.body,
                      reading.frame);
     }
-    energy_log_free(&converged);
-    scene_destroy(scene);
 }
 
 static void check_template(const char *name) {
-    char path[512];
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/templates/%s.yaml", name);
-    Scene *scene = scene_from(path);
+    const char *path = printed(SOURCE_DIR "/scenes/templates/%s.yaml", name);
+    OWN(Scene) *scene = scene_from(path);
     assert_true(scene->bomb.present && scene_span_varies(&scene->bomb.x));
     assert_in_range(scene->parameter_count, 1, 2);
     check_stands(path, NULL, 0);
@@ -51,7 +48,6 @@ static void check_template(const char *name) {
         setting.value = scene->parameters[i].to;
         check_stands(path, &setting, 1);
     }
-    scene_destroy(scene);
 }
 
 TEST(wall) { check_template("wall"); }
@@ -69,7 +65,7 @@ TEST(the_pile_comes_to_rest) {
     for (int i = 0; i < 5 * 3; i += sampled(4)) {
         const SceneSetting settings[] = {{"tilt", values[i % 5][0]}, {"friction", values[i % 5][1]}};
         VerdictReading reading;
-        Scene *scene = scene_read_with(SOURCE_DIR "/scenes/templates/pile.yaml", settings, 2, &error);
+        OWN(Scene) *scene = scene_read_with(SOURCE_DIR "/scenes/templates/pile.yaml", settings, 2, &error);
         assert_ok(scene != NULL, error);
         const Method method = method_named(methods[i / 5]);
         scene->bomb.present = false;
@@ -79,16 +75,15 @@ TEST(the_pile_comes_to_rest) {
         if (reading.verdict != VERDICT_SETTLES)
             fail_msg("%s with tilt %g and friction %g: %s, body %d", methods[i / 5], values[i % 5][0], values[i % 5][1],
                      verdict_name(reading.verdict), reading.body);
-        scene_destroy(scene);
     }
 }
 
 /* "With 10 iterations it falls." */
 TEST(the_arch_needs_its_iterations) {
-    EnergyLog converged = {0};
+    OWN(EnergyLog) converged = {0};
     Method reference, engine;
     VerdictReading reading;
-    Scene *scene = scene_named("templates/arch");
+    OWN(Scene) *scene = scene_named("templates/arch");
     scene->bomb.present = false;
     scene->frames = STEPS;
     scene->iterations = 10;
@@ -98,8 +93,6 @@ TEST(the_arch_needs_its_iterations) {
     run.converged = &converged;
     assert_ok(verdict_run(&reading, scene, &engine, &run, &error), error);
     assert_string_equal(verdict_name(reading.verdict), "falls");
-    energy_log_free(&converged);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -14,7 +14,6 @@
 #include "studies/rollout.h"
 #include "studies/timing.h"
 
-#include <math.h>
 #include <time.h>
 
 int __real_clock_gettime(clockid_t clock, struct timespec *now);
@@ -152,7 +151,7 @@ typedef struct Measured {
 
 static void measure(Measured *measured, const char *const *texts, int count, int last_frame) {
     Error error = {0};
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     const Contender *contenders[MARKED];
     const SnapshotList none = {0};
     const TimingOptions options = {.launches = scene,
@@ -166,7 +165,6 @@ static void measure(Measured *measured, const char *const *texts, int count, int
     }
     assert_ok(timing_measure(contenders, count, &options, &none, measured->closed, measured->frozen, NULL, &error),
               error);
-    scene_destroy(scene);
 }
 
 /* Steps of 1 to 9 times 2 us. */
@@ -229,7 +227,7 @@ TEST(what_varies_like_the_others_is_measured_once) {
 
 /* The engine's solver takes no time here. */
 TEST(a_method_is_timed_beside_the_engine) {
-    Scene *scene = scene_named("single");
+    OWN(Scene) *scene = scene_named("single");
     const Method known = method_named(A_2_US);
     const Sampling sampling = {1, 20};
     SnapshotList states = {0};
@@ -239,7 +237,6 @@ TEST(a_method_is_timed_beside_the_engine) {
     assert_near(us_step_engine, COLLISION / 1000.0, 1e-9);
     assert_near(us_step, 2 + COLLISION / 1000.0, 1e-9);
     snapshots_free(&states);
-    scene_destroy(scene);
 }
 
 TEST(reading_the_clock_does_not_count) { assert_int_equal(meter_time_overhead(), READING); }

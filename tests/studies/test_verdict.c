@@ -2,8 +2,6 @@
 /* Both sides of the limits of holding, falling and sinking, on synthetic runs. */
 #include "studies/trial.h"
 
-#include <math.h>
-
 TEST(a_resting_box_settles) {
     Trial trial;
     trial_begin(&trial);

@@ -158,11 +158,10 @@ TEST(falling_is_judged_until_the_bomb_touches) {
 TEST(scenes_without_bomb_and_speed_stand) {
     for (int i = 0; i < stability_study_count; i++) {
         const StabilityStudy *study = &stability_studies[i];
-        Scene *scene = stability_study_scene(study, SOURCE_DIR "/scenes", study->scan.to, &error);
+        OWN(Scene) *scene = stability_study_scene(study, SOURCE_DIR "/scenes", study->scan.to, &error);
         assert_ok(scene != NULL, error);
         if (verdict_run_of(scene).stands != study->stands && study->rigid == NULL)
             fail_msg("%s is %smeant to stand", study->name, study->stands ? "" : "not ");
-        scene_destroy(scene);
     }
 }
 
@@ -188,15 +187,13 @@ TEST(verdicts_agree_with_those_beside_the_converged_run) {
         double values[BORDER_POINTS_MAX];
         const int value_count = border_scan_values(&study->scan, values);
         for (int v = 0; v < value_count; v++) {
-            EnergyLog converged = {0};
-            Scene *scene = stability_study_scene(study, SOURCE_DIR "/scenes", values[v], &error);
+            OWN(EnergyLog) converged = {0};
+            OWN(Scene) *scene = stability_study_scene(study, SOURCE_DIR "/scenes", values[v], &error);
             assert_ok(scene != NULL, error);
             if (scene->frames > 600) scene->frames = 600;
             assert_ok(converged_run_once(&converged, scene, &error), error);
             for (size_t m = 0; m < sizeof methods / sizeof *methods; m++, count++)
                 judge_both(scene, methods[m], study->stands, &converged, found);
-            energy_log_free(&converged);
-            scene_destroy(scene);
         }
     }
     printf("%d runs, %d explode or are NaN or infinite, %d have another verdict alone\n", count, found[0], found[1]);

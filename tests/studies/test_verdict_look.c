@@ -4,8 +4,6 @@
 
 #include "studies/stability.h"
 
-#include <math.h>
-
 /* CIE 1931 luminance from sRGB, as in a grey print. */
 static double luminance(uint32_t rgb) {
     double sum = 0;

@@ -7,7 +7,7 @@
    at 0, 70 of 70 J are lost. It is removed with 5 J that it had regained: 65 of 65 J are lost then, and 75 at -1 m.
    Lifted to 80 J, the highest level so far, 120 J are lost down to -4 m. */
 TEST(lost_energy_is_available) {
-    EnergyLog log = {0};
+    OWN(EnergyLog) log = {0};
     Body bodies[2] = {trial_box, trial_box};
     const struct {
         int count;
@@ -26,13 +26,12 @@ TEST(lost_energy_is_available) {
         assert_near(log.energy[i], rows[i].energy, 1e-6);
         assert_near(log.balance.available, rows[i].available, 1e-6);
     }
-    energy_log_free(&log);
 }
 
 /* A stack of ten boxes, 1 kg and 10 m/s^2: 0 + 1 + ... + 9 m are 450 J. A bomb of 2 kg is added 9 m above the lowest:
    180 J; one below the lowest adds nothing. */
 TEST(the_height_of_a_stack_is_available) {
-    EnergyLog log = {0};
+    OWN(EnergyLog) log = {0};
     Body bodies[14];
     for (int i = 0; i < 14; i++) bodies[i] = trial_box;
     for (int i = 1; i < 11; i++) bodies[i].position.y = (float)i - 0.5f;
@@ -56,7 +55,6 @@ TEST(the_height_of_a_stack_is_available) {
     assert_ok(energy_log_begin(&log, vec2(0, -10), 3, bodies, 1, &error), error);
     energy_log_step(&log, 1, bodies, 2);
     assert_near(log.balance.available, 0, 0);
-    energy_log_free(&log);
 }
 
 static void parse(Method *method, const char *text) {
@@ -88,14 +86,13 @@ TEST(a_stack_of_two_settles) {
                         {.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}},
                         {.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 1.5f}}};
     const Scene scene = scene_of_bodies(bodies, 3, 1500);
-    EnergyLog converged = {0};
+    OWN(EnergyLog) converged = {0};
     converge(&converged, &scene);
     assert_near(converged.balance.available, 10, 1e-5);
     assert_true(converged.balance.level - converged.energy[1500] < 0.3);
     VerdictReading reading = judge(&scene, true, &converged);
     assert_verdict(reading, VERDICT_SETTLES);
     assert_true(reading.frame < 60);
-    energy_log_free(&converged);
 }
 
 /* Dropped on a slab of 0.25 m from 1.5 m above its centre; added after frame 5. */
@@ -112,7 +109,7 @@ static Scene shot_at_slab(BodyDef *slab, float speed) {
 /* 200 m/s are 3.3 m per step: the next position is 1.8 m below, without a contact. */
 TEST(a_fast_box_tunnels_through_a_thin_slab) {
     BodyDef slab;
-    EnergyLog converged = {0};
+    OWN(EnergyLog) converged = {0};
     Scene scene = shot_at_slab(&slab, 200);
     converge(&converged, &scene);
     assert_reading(judge(&scene, false, &converged), VERDICT_TUNNELS, 1, 6, 200 + 10.0 / 60, 1e-3, "m/s");
@@ -122,21 +119,19 @@ TEST(a_fast_box_tunnels_through_a_thin_slab) {
     /* It starts at 1.5 m with 2 m/s and ends 0.625 m above the centre: 8.75 + 2 J. It penetrates by less than a step at
        its 4.6 m/s: at most 0.8 J more. */
     assert_near(converged.balance.available, 10.75 + 0.4, 0.4);
-    energy_log_free(&converged);
 }
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step. */
 TEST(a_run_that_overflows_is_judged) {
     Method method;
     BodyDef slab;
-    EnergyLog converged = {0};
+    OWN(EnergyLog) converged = {0};
     Scene scene = shot_at_slab(&slab, 2);
     converge(&converged, &scene);
     scene = shot_at_slab(&slab, 3e38f);
     assert_reading(judge(&scene, false, &converged), VERDICT_NON_FINITE, -1, 5 + 69, 3e38, 1e33, "m/s");
     parse(&method, "reference");
     assert_refused(energy_log_run(&converged, &scene, &method, &error), "is NaN or infinite");
-    energy_log_free(&converged);
 }
 
 RUN_TESTS(NULL, NULL)

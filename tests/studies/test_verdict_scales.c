@@ -83,8 +83,8 @@ static VerdictReading judge(const Recording *recording, const Scene *scene, Scal
     run.dt = (float)(scene->dt * sqrt(scale.length));
     for (int i = 0; i < recording->count; i++) {
         const Frame *frame = &recording->frames[i];
-        Body *bodies = copy(frame->bodies, (size_t)frame->body_count * sizeof(Body));
-        ContactPoint *contacts = copy(frame->contacts, (size_t)frame->contact_count * sizeof(ContactPoint));
+        FREED Body *bodies = copy(frame->bodies, (size_t)frame->body_count * sizeof(Body));
+        FREED ContactPoint *contacts = copy(frame->contacts, (size_t)frame->contact_count * sizeof(ContactPoint));
         for (int k = 0; k < frame->body_count; k++) bodies[k] = scaled_body(&frame->bodies[k], scale);
         for (int k = 0; k < frame->contact_count; k++) {
             contacts[k].position = scaled(contacts[k].position, scale.length);
@@ -94,8 +94,6 @@ static VerdictReading judge(const Recording *recording, const Scene *scene, Scal
         assert_ok(i == 0 ? verdict_watch_begin(&watch, &run, bodies, frame->body_count, &error)
                          : verdict_watch_step(&watch, &step, &error),
                   error);
-        free(bodies);
-        free(contacts);
     }
     const VerdictReading reading = verdict_watch_end(&watch);
     verdict_watch_free(&watch);
@@ -134,12 +132,12 @@ TEST(copies_in_other_units_have_the_same_verdict) {
         double values[BORDER_POINTS_MAX];
         const int count = border_scan_values(&study->scan, values);
         for (int end = 0; end < 3; end++) {
-            Scene *scene = stability_study_scene(study, SOURCE_DIR "/scenes", values[(count - 1) * end / 2], &error);
+            OWN(Scene) *scene =
+                stability_study_scene(study, SOURCE_DIR "/scenes", values[(count - 1) * end / 2], &error);
             assert_ok(scene != NULL, error);
             if (scene->frames > FRAMES) scene->frames = FRAMES;
             for (size_t m = 0; m < sizeof methods / sizeof *methods; m++)
                 differ += compare(scene, methods[m], study->name, seen);
-            scene_destroy(scene);
         }
     }
     assert_int_equal(differ, 0);

@@ -10,13 +10,12 @@ static Scene *scene_of_text(const char *bodies, int frames) {
 }
 
 static VerdictReading run_of(const char *bodies, int frames, const char *text) {
-    Scene *scene = scene_of_text(bodies, frames);
+    OWN(Scene) *scene = scene_of_text(bodies, frames);
     const Method method = method_named(text);
     const VerdictRun run = verdict_run_of(scene);
     VerdictReading reading;
     Error error = {0};
     assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
-    scene_destroy(scene);
     return reading;
 }
 
@@ -51,15 +50,15 @@ TEST(what_slides_for_ever_moves) {
 
 /* The bomb starts in the box. */
 TEST(a_refused_launch_is_no_failed_method) {
-    Scene *scene = scene_of_text(GROUND "0.2}\n  - {mass: 1, size: [1, 1], position: [0, 0.5]}\n"
-                                        "bomb: {x: 0, y: 0.5, size: [1, 1], mass: 1, velocity: [0, 0], frame: 5}\n",
-                                 20);
+    OWN(Scene) *scene =
+        scene_of_text(GROUND "0.2}\n  - {mass: 1, size: [1, 1], position: [0, 0.5]}\n"
+                             "bomb: {x: 0, y: 0.5, size: [1, 1], mass: 1, velocity: [0, 0], frame: 5}\n",
+                      20);
     const Method method = method_named("engine");
     const VerdictRun run = verdict_run_of(scene);
     VerdictReading reading;
     assert_refused(verdict_run(&reading, scene, &method, &run, &error), "the bomb would start ");
     assert_int_equal(error.failure, FAILURE_NONE);
-    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)
