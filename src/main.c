@@ -51,8 +51,8 @@ static int refuse_command(const char *name) {
     return ERROR_INPUT;
 }
 
-/* OpenMP exits with status 1 when it gets no memory or no thread, which must not pass for "different". Help that cannot be
-   written is no success; argp exits after it. */
+/* OpenMP exits with status 1 when it gets no memory or no thread, which must not pass for "different". Help that cannot
+   be written is no success; argp exits after it. */
 static void check_exit(int status, void *command_ended) {
     if (status == 1 && !*(const bool *)command_ended) _exit(ERROR_SYSTEM);
     if (status != 0 || (fflush(stdout) == 0 && !ferror(stdout))) return;
@@ -71,8 +71,8 @@ static void replace_closed_streams(void) {
     }
 }
 
-/* OpenMP takes any number that the environment asks for, and an area of the stack for each. More threads than processors gain
-   nothing. */
+/* OpenMP takes any number that the environment asks for, and an area of the stack for each. More threads than
+   processors gain nothing. */
 static void limit_threads(void) {
     enum { ENOUGH = 256 };
     const int processors = omp_get_num_procs(), most = processors > ENOUGH ? processors : ENOUGH;

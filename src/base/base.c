@@ -22,8 +22,8 @@
 /* A path can be longer than a message: what is wrong must still be in it. */
 enum { WHERE_SIZE = 1024, RAW_SIZE = 8192 };
 
-/* Only a format with lines (an excerpt of a file, the output of a program) gets lines from its arguments: a name must not
-   look like a message of its own. */
+/* Only a format with lines (an excerpt of a file, the output of a program) gets lines from its arguments: a name must
+   not look like a message of its own. */
 PRINTF_LIKE(2, 0) static void append(Error *error, const char *format, va_list arguments) {
     char raw[RAW_SIZE];
     const size_t used = strlen(error->message), room = sizeof error->message - used;

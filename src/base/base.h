@@ -9,8 +9,8 @@
 
    A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return false,
    so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller passes it on
-   unchanged. Arguments may be any text: control characters in them become visible (visible_text()). Ends of lines do, too,
-   unless the format has one. */
+   unchanged. Arguments may be any text: control characters in them become visible (visible_text()). Ends of lines do,
+   too, unless the format has one. */
 
 /* The values are the program's exit statuses. */
 typedef enum ErrorKind {
@@ -117,15 +117,15 @@ static inline const char *plural_es(int count) { return count == 1 ? "" : "es"; 
 
 typedef enum VisibleLines { VISIBLE_ONE_LINE, VISIBLE_LINES } VisibleLines;
 
-/* Copies text to out[size], size > 16. Control characters, bytes that are not UTF-8 and characters that turn the direction
-   of text become "\x1b", "\xff", "\u202e"; ends of lines "\n", unless `lines` keeps them. Text that does not fit loses its
-   middle: "begin...end". Returns the length. */
+/* Copies text to out[size], size > 16. Control characters, bytes that are not UTF-8 and characters that turn the
+   direction of text become "\x1b", "\xff", "\u202e"; ends of lines "\n", unless `lines` keeps them. Text that does not
+   fit loses its middle: "begin...end". Returns the length. */
 size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines);
 
 bool text_is_utf8(const char *text);
 
-/* The first character of the text that a terminal or a page would obey: a control character (C0, DEL, C1, which includes ends
-   of lines), or one that turns the direction of text; 0 without one. */
+/* The first character of the text that a terminal or a page would obey: a control character (C0, DEL, C1, which
+   includes ends of lines), or one that turns the direction of text; 0 without one. */
 unsigned control_in_text(const char *text);
 
 /* Suggestions for mistyped words, and lists of names. Own code: no library in use has an edit distance. */
@@ -189,8 +189,8 @@ typedef struct ArrayPart {
     { &(items), (size_t)(count) * sizeof *(items) }
 
 /* Lets the pointers of all parts point into the block; each array begins at a cache line. The items are undefined
-   afterwards. Allocates nothing if the block was as large before; the block at least doubles otherwise. False when memory
-   is short; pointers and items then stay. */
+   afterwards. Allocates nothing if the block was as large before; the block at least doubles otherwise. False when
+   memory is short; pointers and items then stay. */
 bool array_block_reserve(ArrayBlock *block, const ArrayPart *parts, size_t count);
 
 #define ARRAY_BLOCK_RESERVE(block, ...)                            \
@@ -238,7 +238,8 @@ typedef enum SettingType {
     SETTING_IS_BOOL /* on|off */
 } SettingType;
 
-/* A key that a method knows ("*": any), what it means, and the member that gets its value; a table of these ends with {0}. */
+/* A key that a method knows ("*": any), what it means, and the member that gets its value; a table of these ends with
+   {0}. */
 typedef struct SettingSpec {
     const char *key, *summary;
     SettingType type;   /* type and what follows: one of the macros below */
@@ -254,7 +255,8 @@ typedef struct SettingSpec {
 #define SETTING_FLOAT(T, member, minimum, maximum) \
     .type = SETTING_IS_FLOAT, .at = SETTING_AT(T, member, float), .least = (double)(minimum), .most = (double)(maximum)
 
-/* Parses "key=value,..." (may be empty). Every key must be in the table (NULL: none), once. `where` begins the message. */
+/* Parses "key=value,..." (may be empty). Every key must be in the table (NULL: none), once. `where` begins the
+   message. */
 bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where, Error *error);
 
 /* True if the table, which may be NULL, has the key. */
@@ -269,8 +271,8 @@ bool settings_default(Settings *settings, const char *key, const char *value);
 /* Sets the members of *values for which a setting is given; the table has their types and bounds. */
 bool settings_read(const Settings *settings, const SettingSpec *known, void *values, Error *error);
 
-/* A copy of the `size` bytes of *standard with the settings, which the caller frees; NULL with error set. what: begins the
-   message when memory is short. */
+/* A copy of the `size` bytes of *standard with the settings, which the caller frees; NULL with error set. what: begins
+   the message when memory is short. */
 void *settings_make(const Settings *settings, const SettingSpec *known, const void *standard, size_t size,
                     const char *what, Error *error);
 

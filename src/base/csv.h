@@ -23,7 +23,8 @@ typedef struct Csv {
 
 /* Reads a file of at most max_size bytes with min_rows (0 or 1) to max_rows lines after the header. Line ends are LF or
    CRLF; a byte order mark is dropped. Refused, with path:line:column: control characters (so no field contains a line
-   end), empty lines, lines with more or fewer fields than the header, stray quotes. On failure nothing is to be freed. */
+   end), empty lines, lines with more or fewer fields than the header, stray quotes. On failure nothing is to be
+   freed. */
 bool csv_read(Csv *csv, const char *path, size_t max_size, int min_rows, int max_rows, Error *error);
 void csv_free(Csv *csv);
 
@@ -141,8 +142,8 @@ bool csv_table_path(char path[CSV_PATH_SIZE], const char *folder, const CsvLayou
 bool csv_table_error(const CsvTable *table, int row, int column, Error *error, const char *format, ...)
     PRINTF_LIKE(5, 6);
 
-/* Writes the file atomically. Refused, since they could not be read back: control characters in a text, infinite numbers,
-   and NAN in a column that is not optional. */
+/* Writes the file atomically. Refused, since they could not be read back: control characters in a text, infinite
+   numbers, and NAN in a column that is not optional. */
 bool csv_table_write(const char *path, const CsvLayout *layout, const void *rows, int count, Error *error);
 
 /* A header line; a row's line. The latter fails where csv_table_write() would, and writes nothing then. */

@@ -187,8 +187,8 @@ static bool read_number(const CsvCell *cell, double *member, Error *error) {
     return parse_double(text, member) ? is_in_range(cell, *member, error) : refuse_cell(cell, error, "is not a number");
 }
 
-/* Reads the field into its member of the row's struct. False with an error at the field if it is not of its column's kind
-   or range. */
+/* Reads the field into its member of the row's struct. False with an error at the field if it is not of its column's
+   kind or range. */
 static bool read_cell(const CsvCell *cell, void *row, Error *error) {
     void *member = (char *)row + cell->column->offset;
     switch (cell->column->kind) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads files, standard input and folders; paths; and what is printed on standard output while a file is written to it. */
+/* Reads files, standard input and folders; paths; and what is printed on standard output while a file is written to
+   it. */
 #include "base/file.h"
 
 #include "base/base.h"

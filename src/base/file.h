@@ -14,8 +14,8 @@
    *size). NULL with error set if the file is missing, not regular, too large or unreadable. */
 char *file_read(const char *path, size_t limit, size_t *size, Error *error);
 
-/* Opens what file_read() would read, for a caller that reads it in pieces and closes it. *size: its bytes now. -1 with error
-   set. */
+/* Opens what file_read() would read, for a caller that reads it in pieces and closes it. *size: its bytes now. -1 with
+   error set. */
 int file_open(const char *path, size_t limit, size_t *size, Error *error);
 
 /* The same of standard input, up to its end; it may be a pipe. */
@@ -51,11 +51,12 @@ bool file_write_at(int folder, const char *name, const char *path, const void *d
 int file_draft(const char *path, Error *error);
 bool file_draft_write(int draft, const char *path, const void *data, size_t size, Error *error);
 
-/* Makes the draft that file `path`, atomically, or copies it there if `path` is a pipe or a device. Still to be closed. */
+/* Makes the draft that file `path`, atomically, or copies it there if `path` is a pipe or a device. Still to be
+   closed. */
 bool file_draft_publish(int draft, const char *path, Error *error);
 
-/* Writes all, or reads all that there is of `size` bytes, also after a signal. file_write_all() is false and file_read_all()
-   is -1 with errno set. */
+/* Writes all, or reads all that there is of `size` bytes, also after a signal. file_write_all() is false and
+   file_read_all() is -1 with errno set. */
 bool file_write_all(int file, const void *data, size_t size);
 ssize_t file_read_all(int file, void *data, size_t size);
 
@@ -66,8 +67,8 @@ bool file_copy(int to, int from);
    descriptors, or the disk fails. Returns false. */
 bool file_open_error(const char *path, Error *error);
 
-/* Sets ERROR_INPUT and returns false if this is the content of a pointer that Git LFS leaves in place of a file that was not
-   downloaded: text of about 130 bytes. */
+/* Sets ERROR_INPUT and returns false if this is the content of a pointer that Git LFS leaves in place of a file that
+   was not downloaded: text of about 130 bytes. */
 bool lfs_pointer_refuse(const void *data, size_t size, const char *path, Error *error);
 
 /* Names of files and folders. */
@@ -101,8 +102,8 @@ void file_name_clean(char *name);
 /* Returns the output of `print` as a malloc'ed string, with the C locale's decimal point; NULL when memory is short. */
 char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size);
 
-/* open_memstream(), but memory that runs out sets the stream's error flag: the C library's own stream then drops what does
-   not fit, and ferror() and fclose() report success. What cannot be written is dropped from there to the end.
+/* open_memstream(), but memory that runs out sets the stream's error flag: the C library's own stream then drops what
+   does not fit, and ferror() and fclose() report success. What cannot be written is dropped from there to the end.
 
    Returns NULL when memory is short. After fclose(), *text is a malloc'ed string of *size characters, for the caller to
    free, even if writing failed; fflush() makes both current, too. */
@@ -121,8 +122,8 @@ typedef struct FolderList {
     size_t skipped; /* files in subfolders, if these are not listed */
 } FolderList;
 
-/* Lists the files that `wanted` accepts by their own names, also in subfolders if recursive. Hidden files and folders are
-   ignored. Links to folders are not followed; links to files are, within the folder.
+/* Lists the files that `wanted` accepts by their own names, also in subfolders if recursive. Hidden files and folders
+   are ignored. Links to folders are not followed; links to files are, within the folder.
 
    ERROR_INPUT for a link that leads out of the folder, or to a hidden place in it: what lies there would be left out
    silently; and for a folder that does not exist. ERROR_SYSTEM if an entry cannot be read: half a list must never pass
@@ -156,10 +157,10 @@ int standard_output(void);
 /* Whether standard output is the file of this status: /dev/stdout may be a regular file. */
 bool standard_output_is(const struct stat *status);
 
-/* Files that get their name when they are whole. Before, they have none where the file system can do that; otherwise, and
-   for the moment in which one replaces a file, the name is `.twinbox-MACHINE-PID-....tmp` and the file is locked by flock():
-   so a file that a killed process left can be told from one in use, also in a folder that machines share. Functions set
-   errno when they fail. */
+/* Files that get their name when they are whole. Before, they have none where the file system can do that; otherwise,
+   and for the moment in which one replaces a file, the name is `.twinbox-MACHINE-PID-....tmp` and the file is locked by
+   flock(): so a file that a killed process left can be told from one in use, also in a folder that machines share.
+   Functions set errno when they fail. */
 
 typedef struct TemporaryFile {
     int at;              /* the open directory that names are relative to, or AT_FDCWD */
@@ -183,8 +184,8 @@ bool temporary_remove_name(TemporaryFile *temporary);
 /* The same, and closes the file. Leaves errno unchanged. */
 void temporary_close(TemporaryFile *temporary);
 
-/* Removes what killed processes of this machine left in the folder of path: once for each folder, as it reads the whole of
-   it. Best effort: nothing depends on it. */
+/* Removes what killed processes of this machine left in the folder of path: once for each folder, as it reads the whole
+   of it. Best effort: nothing depends on it. */
 void temporary_sweep(int at, const char *path);
 
 /* The folder for temporary files: TMPDIR, or /tmp. */
@@ -201,8 +202,8 @@ typedef struct FileReservation {
 bool file_reserve(FileReservation *reservation, const char *path, Error *error);
 bool file_release(FileReservation *reservation, Error *error);
 
-/* Makes the folder where missing, and reserves it until this process ends: by an advisory lock on the folder itself, so that
-   no file is left when the process is killed. Calls after the first have no effect. Waits shortly for the children of a
-   process that has ended. ERROR_SYSTEM names the process that has the folder. Where the file system has no locks, nothing
-   is reserved. */
+/* Makes the folder where missing, and reserves it until this process ends: by an advisory lock on the folder itself, so
+   that no file is left when the process is killed. Calls after the first have no effect. Waits shortly for the children
+   of a process that has ended. ERROR_SYSTEM names the process that has the folder. Where the file system has no locks,
+   nothing is reserved. */
 bool folder_reserve(const char *folder, Error *error);

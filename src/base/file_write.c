@@ -183,7 +183,8 @@ bool file_sync(const char *path, Error *error) {
     return sync_entry(path) || error_system(error, path, "cannot write: %s", strerror(errno));
 }
 
-/* A path in the folder where a draft of `path` can become that file; for pipes and devices in that for temporary files. */
+/* A path in the folder where a draft of `path` can become that file; for pipes and devices in that for temporary
+   files. */
 static bool draft_place(const char *path, char place[PATH_MAX]) {
     struct stat status;
     if (path_is_standard(path) ||

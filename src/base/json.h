@@ -18,7 +18,8 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* Bytes of one value in a file, and in memory; of text in memory, a value may have all bytes, and so many times these more. */
+/* Bytes of one value in a file, and in memory; of text in memory, a value may have all bytes, and so many times these
+   more. */
 enum { JSON_VALUE_SIZE = 1 << 16, JSON_VALUE_MEMORY = 1 << 20, JSON_TEXT_TIMES = 32 };
 
 typedef struct JsonReader {

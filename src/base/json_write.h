@@ -13,8 +13,8 @@
 /* Containers inside each other. */
 enum { JSON_DEPTH_MAX = 32 };
 
-/* Writes to `out`, which must be in the C locale (file_write_text): a line for each value, or all that is in a container
-   on one. The same calls give the same bytes. */
+/* Writes to `out`, which must be in the C locale (file_write_text): a line for each value, or all that is in a
+   container on one. The same calls give the same bytes. */
 typedef struct JsonWriter {
     FILE *out;
     int depth;
@@ -32,8 +32,8 @@ void json_begin_object(JsonWriter *writer, const char *key, JsonLayout layout);
 void json_begin_array(JsonWriter *writer, const char *key, JsonLayout layout);
 void json_end(JsonWriter *writer);
 
-/* Bytes that are no UTF-8 become U+FFFD; NULL becomes null. What has a meaning in HTML is escaped, so that it may stand in
-   a script. */
+/* Bytes that are no UTF-8 become U+FFFD; NULL becomes null. What has a meaning in HTML is escaped, so that it may stand
+   in a script. */
 void json_put_text(JsonWriter *writer, const char *key, const char *text);
 void json_put_int(JsonWriter *writer, const char *key, int64_t value);
 

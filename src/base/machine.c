@@ -194,8 +194,8 @@ static int redirect(posix_spawn_file_actions_t *actions, const int streams[3]) {
     return code;
 }
 
-/* Returns an errno, or 0. streams: its standard input, output and error. group_signals: NULL, or the signals that are blocked in
-   a process group of its own. */
+/* Returns an errno, or 0. streams: its standard input, output and error. group_signals: NULL, or the signals that are
+   blocked in a process group of its own. */
 static int spawn(pid_t *pid, const char *const *argv, const int streams[3], const sigset_t *group_signals) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
@@ -307,8 +307,8 @@ static void close_pair(const int ends[2]) {
         if (ends[i] >= 0) close(ends[i]);
 }
 
-/* Programs that talk, for a handler of signals: it ends them, as the process is about to end. A signal may come to any thread, so
-   one that starts a program holds its own back, and the handler waits for the others. */
+/* Programs that talk, for a handler of signals: it ends them, as the process is about to end. A signal may come to any
+   thread, so one that starts a program holds its own back, and the handler waits for the others. */
 enum { TALKS_MAX = 4096 };
 static atomic_int talking[TALKS_MAX]; /* process ids; 0: free */
 static atomic_int starting;
@@ -403,7 +403,8 @@ static void hear_complaint(Talk *talk) {
     talk->complaints = -1;
 }
 
-/* Of all that the program complained about, the line that names an error, else the last. Frames of a stack are indented. */
+/* Of all that the program complained about, the line that names an error, else the last. Frames of a stack are
+   indented. */
 static const char *complaint_line(Talk *talk) {
     char *last = NULL, *named = NULL, *rest = talk->complaint;
     talk->complaint[talk->complaint_size] = '\0';
@@ -437,8 +438,8 @@ static bool talk_stopped(Talk *talk, const char *what) {
     return false;
 }
 
-/* Waits until the file can be read or written. Slices of a tenth of a second find a program that has ended while one that it
-   started keeps its output open. */
+/* Waits until the file can be read or written. Slices of a tenth of a second find a program that has ended while one
+   that it started keeps its output open. */
 static bool talk_wait(Talk *talk, int fd, short events, double until, const char *late) {
     siginfo_t info;
     for (bool over = false;;) {

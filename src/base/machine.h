@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The machine and the process: memory, clocks, work on all threads or on a second one, its progress, and programs that are
-   run. */
+/* The machine and the process: memory, clocks, work on all threads or on a second one, its progress, and programs that
+   are run. */
 #pragma once
 #include "base/base.h"
 
 #include <stdio.h>
 #include <sys/types.h>
 
-/* The processor's model, as the system names it, in plain characters of ASCII: "Intel(R) Xeon(R) CPU @ 2.20GHz"; else the
-   architecture. */
+/* The processor's model, as the system names it, in plain characters of ASCII: "Intel(R) Xeon(R) CPU @ 2.20GHz"; else
+   the architecture. */
 enum { CPU_NAME_SIZE = 96 };
 void cpu_name(char name[CPU_NAME_SIZE]);
 
@@ -106,7 +106,8 @@ typedef struct Process {
 /* Starts argv[0], found in PATH; argv ends with NULL and must outlive the process. ERROR_SYSTEM if it is missing. */
 bool process_start(Process *process, const char *const *argv, Error *error);
 
-/* False if the program no longer reads, or the system fails; process_finish() then returns its output, or the reason. */
+/* False if the program no longer reads, or the system fails; process_finish() then returns its output, or the
+   reason. */
 bool process_write(Process *process, const void *data, size_t size);
 
 /* Closes its input, waits, and copies its output (cut to size - 1 bytes) into text. ERROR_SYSTEM with that text unless
@@ -116,8 +117,9 @@ bool process_finish(Process *process, char *text, size_t size, Error *error);
 /* Kills it. */
 void process_kill(Process *process);
 
-/* Talks with another program, which answers on its standard output, without a shell. It has a process group of its own, which
-   ends as a whole. Nothing here but talk_end() waits longer than `until`, by clock_seconds(), or takes more memory than it is told. */
+/* Talks with another program, which answers on its standard output, without a shell. It has a process group of its own,
+   which ends as a whole. Nothing here but talk_end() waits longer than `until`, by clock_seconds(), or takes more
+   memory than it is told. */
 
 enum { TALK_WHY_SIZE = 400, TALK_COMPLAINT_SIZE = 4096 };
 
@@ -138,8 +140,8 @@ bool talk_start(Talk *talk, const char *const *argv);
 /* Sends all of it, while the program reads. */
 bool talk_send(Talk *talk, const void *data, size_t size, double until);
 
-/* The next `size` bytes of its answer, or its next line, ended by NUL instead of its line end (LF or CRLF) and of at most
-   `most` bytes; valid until the next call. NULL after a failure. */
+/* The next `size` bytes of its answer, or its next line, ended by NUL instead of its line end (LF or CRLF) and of at
+   most `most` bytes; valid until the next call. NULL after a failure. */
 char *talk_read(Talk *talk, size_t size, double until);
 char *talk_line(Talk *talk, size_t most, double until);
 

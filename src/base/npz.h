@@ -45,10 +45,10 @@ typedef struct NpzFile NpzFile;
 NpzFile *npz_open(const char *path, Error *error);
 void npz_close(NpzFile *file);
 
-/* From now on, reading accepts arrays that programs write without a thought for the type: any type of number, big-endian,
-   Fortran order, and one number in an array of one dimension as a scalar. It converts them to the type that is read: a
-   float64 is rounded to float32. A value out of that type's range is an error, and so is a fraction read as an integer.
-   Without this call only the type that is read is accepted. */
+/* From now on, reading accepts arrays that programs write without a thought for the type: any type of number,
+   big-endian, Fortran order, and one number in an array of one dimension as a scalar. It converts them to the type that
+   is read: a float64 is rounded to float32. A value out of that type's range is an error, and so is a fraction read as
+   an integer. Without this call only the type that is read is accepted. */
 void npz_convert(NpzFile *file);
 
 /* The names of all arrays, in the order of the file; NULL from the last on. */
@@ -59,9 +59,10 @@ const char *npz_path(const NpzFile *file);
 
 bool npz_has(const NpzFile *file, const char *name);
 
-/* What the arrays of a file may take in memory together, as they are stored and as they are converted: NPZ_ALWAYS bytes and
-   NPZ_RATIO times its size, at most 2 GiB. Files of npz_write() do: its fastest deflate, which large arrays get, shrinks
-   zeros to 1/230. A program that deflates better reaches 1/1032, but only with arrays that hold almost nothing. */
+/* What the arrays of a file may take in memory together, as they are stored and as they are converted: NPZ_ALWAYS bytes
+   and NPZ_RATIO times its size, at most 2 GiB. Files of npz_write() do: its fastest deflate, which large arrays get,
+   shrinks zeros to 1/230. A program that deflates better reaches 1/1032, but only with arrays that hold almost
+   nothing. */
 #define NPZ_ALWAYS (UINT64_C(16) << 20)
 #define NPZ_RATIO UINT64_C(256)
 uint64_t npz_budget(uint64_t size);
@@ -69,8 +70,9 @@ uint64_t npz_budget(uint64_t size);
 /* Fills shape[rank] of an array. False with error set if it is missing or has another type or rank. */
 bool npz_shape(const NpzFile *file, const char *name, NpzType type, int rank, int64_t *shape, Error *error);
 
-/* False with error set unless the file has all these arrays, each of this type, rank and shape; their data is not used. A
-   reader calls this for all its arrays before it inflates the first: a contradiction costs neither time nor memory. */
+/* False with error set unless the file has all these arrays, each of this type, rank and shape; their data is not used.
+   A reader calls this for all its arrays before it inflates the first: a contradiction costs neither time nor
+   memory. */
 bool npz_expect(const NpzFile *file, const NpzArray *arrays, size_t count, Error *error);
 
 /* Inflates one array into a malloc'ed block that the caller frees. Its type, rank and shape must be those given; the
@@ -115,8 +117,8 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
 /* Writes the file, atomically. */
 bool npz_stream_finish(NpzStream *stream, Error *error);
 
-/* Inside this room: the archive of an .npz, a zip (npz_zip.c). Members are numbered from 0; `array` is the name of one in
-   messages. */
+/* Inside this room: the archive of an .npz, a zip (npz_zip.c). Members are numbered from 0; `array` is the name of one
+   in messages. */
 
 typedef struct NpzArchive NpzArchive;
 
@@ -139,8 +141,8 @@ int64_t npz_archive_begin(NpzArchive *archive, int64_t index, const char *array,
 bool npz_archive_read(NpzArchive *archive, int64_t index, const char *array, size_t head, void *data, uint64_t size,
                       Error *error);
 
-/* Inside this room (npy.c): the header of one .npy array (NumPy format specification), which npz_write.c writes before the
-   data of each member and npz.c parses. */
+/* Inside this room (npy.c): the header of one .npy array (NumPy format specification), which npz_write.c writes before
+   the data of each member and npz.c parses. */
 
 /* Enough for the longest header of four dimensions; a longer one is refused. */
 enum { NPY_HEAD_MAX = 512, NPY_REASON_SIZE = 128 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes .npz: the data of an array is packed, packed arrays become members of a zip, and a stream of arrays that grow is
-   both. */
+/* Writes .npz: the data of an array is packed, packed arrays become members of a zip, and a stream of arrays that grow
+   is both. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
@@ -131,9 +131,9 @@ static void pack_free(Pack *pack) {
     pack->begun = false;
 }
 
-/* Writes a zip piece by piece into a draft. libzip takes a member's data only when it closes the archive, in one thread;
-   and which bytes it writes depends on its version. The same members give the same bytes here: time stamps are fixed. The
-   format: PKWARE, APPNOTE.TXT, sections 4.3.7 to 4.3.16. */
+/* Writes a zip piece by piece into a draft. libzip takes a member's data only when it closes the archive, in one
+   thread; and which bytes it writes depends on its version. The same members give the same bytes here: time stamps are
+   fixed. The format: PKWARE, APPNOTE.TXT, sections 4.3.7 to 4.3.16. */
 
 enum { NAME_SIZE = 72 };
 

@@ -39,8 +39,8 @@ static bool refuse_damaged(const NpzArchive *archive, const char *name, zip_erro
     return error_input(error, archive->path, "array '%s' is damaged: %s", name, zip_error_strerror(cause));
 }
 
-/* Before any data is inflated, the file and its directory are checked. libzip reads every directory that the last 64 KiB
-   point to, with all entries; a malicious file costs it minutes and gigabytes (tests/base/test_npz_hostile.c). */
+/* Before any data is inflated, the file and its directory are checked. libzip reads every directory that the last 64
+   KiB point to, with all entries; a malicious file costs it minutes and gigabytes (tests/base/test_npz_hostile.c). */
 
 /* The end record (its size, and the longest comment that may follow it), and the locator before it in a zip64. */
 enum { END_SIZE = 22, COMMENT_MAX = 65535, LOCATOR_SIZE = 20, TAIL_MAX = LOCATOR_SIZE + END_SIZE + COMMENT_MAX };

@@ -20,9 +20,9 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Whose a temporary file is. Several machines may share a folder, and their process ids and clocks may be equal; locks may
-   hold on one machine only, or nowhere. So the machine is in the name, and only there can a process be looked up. Two
-   machines, two starts of one, and two containers of one have different names. */
+/* Whose a temporary file is. Several machines may share a folder, and their process ids and clocks may be equal; locks
+   may hold on one machine only, or nowhere. So the machine is in the name, and only there can a process be looked up.
+   Two machines, two starts of one, and two containers of one have different names. */
 
 /* "MACHINE-PID-", with which names of temporary files begin. */
 enum { OWNER_SIZE = 48 };
@@ -208,8 +208,8 @@ static bool temporary_remember(const struct stat *folder) {
     return !known;
 }
 
-/* The lock is held while the name is removed; else a process could take the file in between. Over NFS, only a file that is
-   open for writing can be locked. */
+/* The lock is held while the name is removed; else a process could take the file in between. Over NFS, only a file that
+   is open for writing can be locked. */
 static void remove_dead(int folder, const char *name, bool (*lock)(int)) {
     struct stat status, named;
     const int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -276,9 +276,10 @@ static bool temporary_refuse(const char *path, const char *what, long holder, Er
     return error_system(error, path, "%s %s; wait until it ends, or choose another name", name, what);
 }
 
-/* Locks an open file or folder until all copies of it are closed. ERROR_SYSTEM names the process that has the lock: "another
-   process (NUMBER) `what`". True where the file system has no locks. Waits shortly for the children of a process that has
-   ended: the drawing processes of a render that was killed end after their frame, which must not replace one drawn later. */
+/* Locks an open file or folder until all copies of it are closed. ERROR_SYSTEM names the process that has the lock:
+   "another process (NUMBER) `what`". True where the file system has no locks. Waits shortly for the children of a
+   process that has ended: the drawing processes of a render that was killed end after their frame, which must not
+   replace one drawn later. */
 static bool take_lock(int file, const char *path, const char *what, Error *error) {
     struct stat status;
     static const double patience = 0.2, patience_with_children = 30; /* s */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What reads a YAML tree: messages that show a place in the text, nodes, mappings by tables of keys. The tree itself is made
-   by yaml_read.c, of a file, or by live/bundle.c. */
+/* What reads a YAML tree: messages that show a place in the text, nodes, mappings by tables of keys. The tree itself is
+   made by yaml_read.c, of a file, or by live/bundle.c. */
 #include "base/yaml.h"
 
 #include "base/base.h"

@@ -28,8 +28,8 @@ size_t source_offset(const Source *source, Place place);
 /* Copies UTF-8 text for a message: non-printable characters become '?', text that does not fit ends with "...". */
 void source_printable(char *out, size_t room, const char *text);
 
-/* A YAML file as a small tree: plain arrays, built from libyaml's events within fixed limits. It allows no aliases, anchors,
-   tags or second documents. */
+/* A YAML file as a small tree: plain arrays, built from libyaml's events within fixed limits. It allows no aliases,
+   anchors, tags or second documents. */
 
 enum {
     YAML_MAX_DEPTH = 8,      /* nested lists and mappings */

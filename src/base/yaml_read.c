@@ -46,8 +46,8 @@ static bool check_text(const Source *source, Error *error) {
     return true;
 }
 
-/* Reads a file of UTF-8 text: no control characters but tab and line end, no YAML directive (a line that begins with '%').
-   A byte order mark is dropped. On failure there is nothing to free. */
+/* Reads a file of UTF-8 text: no control characters but tab and line end, no YAML directive (a line that begins with
+   '%'). A byte order mark is dropped. On failure there is nothing to free. */
 static bool source_read(Source *source, const char *path, Error *error) {
     static const char byte_order_mark[] = "\xef\xbb\xbf";
     *source = (Source){.path = path};
@@ -203,7 +203,8 @@ static bool take_event(Builder *builder, const yaml_event_t *event, Error *error
     }
 }
 
-/* A text without end, or a key without colon, is shown where it begins. check_text() has refused what libyaml's reader would. */
+/* A text without end, or a key without colon, is shown where it begins. check_text() has refused what libyaml's reader
+   would. */
 static bool syntax_error(const Builder *builder, const yaml_parser_t *parser, Error *error) {
     const Source *source = &builder->tree->source;
     if (parser->error == YAML_MEMORY_ERROR) return error_memory(error, source->path);

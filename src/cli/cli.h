@@ -7,8 +7,8 @@
 #include <stdio.h>
 
 /* The commands of twinbox. Each is one file, with its option table and glue only, and one line here: name, summary, and
-   the heading of the group that begins with it, or NULL. Help, manual page and completion have these groups. One without a
-   summary is not listed. */
+   the heading of the group that begins with it, or NULL. Help, manual page and completion have these groups. One
+   without a summary is not listed. */
 
 #define COMMANDS(COMMAND)                                                                    \
     COMMAND(new, "write a commented scene to start from", "Make")                            \
@@ -34,8 +34,9 @@
 typedef struct Command {
     const char *name, *summary; /* summary NULL: not listed */
     const char *heading;        /* of the group that begins with it; NULL: of the group of the command before it */
-    /* True: done and equal (exit status 0). False: different (1) or, with error set, failed: the caller prints the error
-       and exits with its kind. argv[0] is "twinbox NAME". Bad options and --help end the program from within argp. */
+    /* True: done and equal (exit status 0). False: different (1) or, with error set, failed: the caller prints the
+       error and exits with its kind. argv[0] is "twinbox NAME". Bad options and --help end the program from within
+       argp. */
     bool (*run)(int argc, char **argv, Error *error);
 } Command;
 

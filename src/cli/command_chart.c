@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox chart: the command, and the pages of a chart, each of which plays the launch that was worst for a point beside the
-   converged run. */
+/* twinbox chart: the command, and the pages of a chart, each of which plays the launch that was worst for a point
+   beside the converged run. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -151,9 +151,9 @@ static bool write_contender(void *context, int part, FILE *rows, const Progress 
 }
 
 /* Runs again what the chart has measured, and writes folder/pages/SCENE-METHOD-N-launch-L.html, folder/chart_pages.csv
-   (studies/chart_pages.h) and folder/chart.html, whose points and table link to the pages. A page begins a quarter of a second
-   before the bomb touches and ends as long after the last scored step. Prints how many pages there are, and what was left
-   out. */
+   (studies/chart_pages.h) and folder/chart.html, whose points and table link to the pages. A page begins a quarter of a
+   second before the bomb touches and ends as long after the last scored step. Prints how many pages there are, and what
+   was left out. */
 static bool chart_pages_write(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key,
                               Error *error) {
     Pages pages = {

@@ -318,8 +318,9 @@ static void complete_command(const char *typed, bool is_first) {
 }
 
 /* Prints what the last word may become, one line each: the whole word, a tab, a description. A line
-   "<files>BEGIN<tab>npz csv" stands for files with these endings, or with any if none is given, whose names follow BEGIN
-   in the word; "<folders>BEGIN" stands for folders; "<group>Make" is the heading of the commands that follow, in this order. */
+   "<files>BEGIN<tab>npz csv" stands for files with these endings, or with any if none is given, whose names follow
+   BEGIN in the word; "<folders>BEGIN" stands for folders; "<group>Make" is the heading of the commands that follow, in
+   this order. */
 static void print_completions(const CompletionWords *words) {
     if (words->count == 0 || strlen(words->words[words->count - 1]) >= COMPLETION_WORD_SIZE) return;
     const bool help = words->count == 2 && strcmp(words->words[0], "help") == 0;

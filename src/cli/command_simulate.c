@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox simulate: the verdict on its run, what it prints (a line, or with --json an object: src/runs/README.md), the command. */
+/* twinbox simulate: the verdict on its run, what it prints (a line, or with --json an object: src/runs/README.md), the
+   command. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"

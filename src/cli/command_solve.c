@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox solve: takes a contact problem from a file, or from a step of a scene; writes it, and scores methods on it. */
+/* twinbox solve: takes a contact problem from a file, or from a step of a scene; writes it, and scores methods on
+   it. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"

@@ -139,8 +139,8 @@ static void print_verdict(const TrainingScore *score) {
            share(score) < 1 ? "" : ": no better than the constant");
 }
 
-/* False, without an error, if a network would be replaced by a worse one. Only training that continues may: a new one is
-   begun on purpose. */
+/* False, without an error, if a network would be replaced by a worse one. Only training that continues may: a new one
+   is begun on purpose. */
 static bool may_replace(const Dataset *dataset, const TrainRequest *request, const TrainingOptions *training,
                         const TrainingScore *score, Error *error) {
     TrainingScore before;

@@ -39,7 +39,8 @@ bool camera_option_load(const char *path, const CameraView *view, Trajectory **r
     "--shard", 0, "I/N", "Do share I of N only; 'twinbox merge' joins them (default: as Slurm or MPI says, or all)", \
         OPTION_TEXT(T, member)
 
-/* How the command is to run: as a merge, a shard or the whole. A note tells what the environment says. argv must last. */
+/* How the command is to run: as a merge, a shard or the whole. A note tells what the environment says. argv must
+   last. */
 bool shard_option_take(PiecesRun *run, const char *option, int argc, char **argv, Error *error);
 
 /* The result of a shard: "shard 3 of 16: 30 pieces ...". output: as given to pieces_open(). */

@@ -108,8 +108,8 @@ static void print_counts(const Regression *regression) {
     if (different > 0 || run_failed > 0) printf("\n");
 }
 
-/* Pictures that belong to no sequence: a line each, the worst first. No line begins with a name, which a CI system could
-   take for a command. */
+/* Pictures that belong to no sequence: a line each, the worst first. No line begins with a name, which a CI system
+   could take for a command. */
 static bool print_cases(const Regression *regression, Error *error) {
     enum { SHOWN = 50 };
     const RegressionFrame **failures = regression_failures(regression, error);

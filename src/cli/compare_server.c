@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox compare --server: the protocol of `odiff --server` (odiff-bin 4.5), so that its clients work unchanged. A request is
-   a line of JSON; with "type": "buffer", the bytes of both files follow it. Each request gets a line, in their order. */
+/* twinbox compare --server: the protocol of `odiff --server` (odiff-bin 4.5), so that its clients work unchanged. A
+   request is a line of JSON; with "type": "buffer", the bytes of both files follow it. Each request gets a line, in
+   their order. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
@@ -276,8 +277,8 @@ static void read_request(const char *line, size_t size, bool whole, JsonReader *
         guess(line, whole, request);
 }
 
-/* Answers one line. False with error set if nobody can read the answer, or if files follow whose end is not known: their bytes
-   are not requests. */
+/* Answers one line. False with error set if nobody can read the answer, or if files follow whose end is not known:
+   their bytes are not requests. */
 static bool serve(const char *line, size_t size, bool whole, Request *request, Error *error) {
     Error failure = {0};
     JsonReader reader = {.path = name};

@@ -21,13 +21,13 @@ typedef struct DrawVideos {
 /* 1920 x 1080, all frames, one process per core. */
 RenderOptions draw_panels_defaults(const char *directory);
 
-/* Checks the videos before anything is drawn: names and sizes; and, unless a merge is to encode them, programs and where
-   they go. */
+/* Checks the videos before anything is drawn: names and sizes; and, unless a merge is to encode them, programs and
+   where they go. */
 bool draw_videos_check(const DrawVideos *videos, int width, int height, bool of_merge, Error *error);
 bool draw_videos_use_output(const DrawVideos *videos);
 
-/* Draws the frames that `render` selects and encodes the videos; a shard draws only. study: render_study(). `result` owns
-   no memory afterwards. */
+/* Draws the frames that `render` selects and encodes the videos; a shard draws only. study: render_study(). `result`
+   owns no memory afterwards. */
 bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderStudy *study,
                  RenderResult *result, Error *error);
 
@@ -44,8 +44,8 @@ bool note_foreign_files(const char *directory, const RenderResult *result, const
 
 /* What 'twinbox render' does for the shards of a film (render_study()). */
 
-/* Everything that decides the files beside what the manifest tells: the program, the runs, as read or as simulated here, and
-   the videos. costs: FILE.csv, or NULL. */
+/* Everything that decides the files beside what the manifest tells: the program, the runs, as read or as simulated
+   here, and the videos. costs: FILE.csv, or NULL. */
 bool render_key(StudyKey *key, const Panels *panels, const DrawVideos *videos, const char *costs, Error *error);
 
 /* Whether the merge can read an input again; path may be NULL. */

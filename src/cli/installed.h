@@ -2,16 +2,17 @@
 /* Finds the scenes that `cmake --install` put beside the program. */
 #pragma once
 
-/* A file or folder given on the command line: the path itself; but if it is relative and there is nothing under it in the
-   working directory, the one of the installed data, if that exists: "/usr/share/twinbox/scenes/stack.yaml" for
+/* A file or folder given on the command line: the path itself; but if it is relative and there is nothing under it in
+   the working directory, the one of the installed data, if that exists: "/usr/share/twinbox/scenes/stack.yaml" for
    "scenes/stack.yaml". A name without "/" and "." is a scene's, too: "stack" for "scenes/stack.yaml", of the working
    directory or installed. Valid until the program ends. */
 const char *installed_path(const char *path);
 
-/* The text of a method, in which the file of its network is looked for in the same way. Valid until the program ends. */
+/* The text of a method, in which the file of its network is looked for in the same way. Valid until the program
+   ends. */
 const char *installed_network(const char *method);
 
-/* Calls found("stack", context) and found("scenes/stack.yaml", context) for each scene that installed_path() finds by its
-   name, or, but for what the working directory has, by its path. Names may come twice. */
+/* Calls found("stack", context) and found("scenes/stack.yaml", context) for each scene that installed_path() finds by
+   its name, or, but for what the working directory has, by its path. Names may come twice. */
 typedef void InstalledScene(const char *scene, void *context);
 void installed_scenes(InstalledScene *found, void *context);

@@ -82,9 +82,9 @@ bool compare_json_pictures(const Regression *regression, Error *error);
 
 typedef bool CompareRun(const CompareOptions *options, Error *error);
 
-/* Compares, and again whenever a picture or trajectory below the two inputs has changed and all have been still for half
-   a second, until Ctrl-C or SIGTERM. An error, such as a folder that is gone, is printed and does not end it. Returns
-   what the last comparison that ended returned, with its error. */
+/* Compares, and again whenever a picture or trajectory below the two inputs has changed and all have been still for
+   half a second, until Ctrl-C or SIGTERM. An error, such as a folder that is gone, is printed and does not end it.
+   Returns what the last comparison that ended returned, with its error. */
 bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
 
 /* Answers the requests of standard input until it ends. False with error set if standard output cannot be written. */
@@ -170,8 +170,8 @@ typedef struct CellRuns {
 enum { CELL_NOTE_SIZE = 160 };
 
 /* Runs the cell's method and, unless it holds, that of `holder`, if not NULL, until three seconds after the frame that
-   decided the cell's verdict, at most 60 frames per second. The runs have the verdicts of the cells. `progress` NULL: each run
-   has a bar. Errors name `input`. cell_runs_free() also after a failure. */
+   decided the cell's verdict, at most 60 frames per second. The runs have the verdicts of the cells. `progress` NULL:
+   each run has a bar. Errors name `input`. cell_runs_free() also after a failure. */
 bool cell_runs_make(CellRuns *runs, const CellMap *map, const MapCell *holder, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error);
 void cell_runs_free(CellRuns *runs);
@@ -182,8 +182,8 @@ const CellMap *cell_map_find(const CellMap *maps, int count, const char *name, E
 /* The first method that holds in the same cell, or NULL. */
 const MapCell *stability_cell_holder(const CsvTable *table, const MapCell *row);
 
-/* The pages of stability: each plays what happened in a cell of a map, or where a border fails, beside the first method that
-   holds there. */
+/* The pages of stability: each plays what happened in a cell of a map, or where a border fails, beside the first method
+   that holds there. */
 
 typedef struct StabilityPages {
     const StabilityOptions *study; /* whose folder has the tables */
@@ -192,8 +192,8 @@ typedef struct StabilityPages {
 } StabilityPages;
 
 /* Runs cells again (studies/stability.h tells which) and writes folder/pages/MAP-METHOD-X_Y.html, map_pages.csv and
-   stability.html. A page begins six seconds before the verdict was decided. key: of the study (runs/pieces.h). Prints how
-   many pages there are, and what was left out. */
+   stability.html. A page begins six seconds before the verdict was decided. key: of the study (runs/pieces.h). Prints
+   how many pages there are, and what was left out. */
 bool stability_pages_write(const StabilityPages *pages, uint64_t key, Error *error);
 
 /* The kinds of network that `twinbox train` trains. To add a kind, write one file that defines train_NAME, and add one

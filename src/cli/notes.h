@@ -19,8 +19,8 @@ void note_print(const char *format, ...) PRINTF_LIKE(1, 2);
 /* "twinbox: TEXT": how the result came about. Only with -v. */
 void note_verbose(const char *format, ...) PRINTF_LIKE(1, 2);
 
-/* "next: twinbox WORD...", which ends with NULL, on standard output: what to type next. Words are quoted for a shell. Not with
-   -q. */
+/* "next: twinbox WORD...", which ends with NULL, on standard output: what to type next. Words are quoted for a shell.
+   Not with -q. */
 void next_print(const char *const words[]);
 
 /* "out/NAME" and the ending: for what the next command writes. */
@@ -32,8 +32,8 @@ NextPath next_path(const char *name, const char *ending);
 /* To render a scene or a run as a film: "next: twinbox render wall.yaml -o out/wall --video out/wall.mp4". */
 void next_film(const char *path);
 
-/* Keeps back what is printed on standard output from now on. With -q, of commands whose results are files; main() prints it if
-   the command does not succeed. */
+/* Keeps back what is printed on standard output from now on. With -q, of commands whose results are files; main()
+   prints it if the command does not succeed. */
 void results_keep(void);
 void results_end(bool print);
 

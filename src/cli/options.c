@@ -335,7 +335,8 @@ static bool check_words(const struct argp_option *rows, char **argv, Error *erro
     return true;
 }
 
-/* Whether the results are files that the command line names: then -q prints nothing beside them, unless it is asked to. */
+/* Whether the results are files that the command line names: then -q prints nothing beside them, unless it is asked
+   to. */
 static bool writes_files(const Parsing *parsing) {
     const Option *rows = parsing->spec->options;
     bool writes = false;

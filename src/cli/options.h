@@ -61,7 +61,8 @@ struct Option {
 #define OPTION_TEXTS(T, array, count)                                                                       \
     .read = option_texts, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
     .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
-/* Methods, which may be programs: those that are named here may be started (programs_allow). One or a list; or repeated. */
+/* Methods, which may be programs: those that are named here may be started (programs_allow). One or a list; or
+   repeated. */
 #define OPTION_METHOD(T, member) .read = option_method, .at = OPTION_AT(T, member, const char *)
 #define OPTION_METHOD_TEXTS(T, array, count)                                                                       \
     .read = option_method_texts, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \

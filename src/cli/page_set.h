@@ -13,7 +13,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* All pages of a folder together, and the states in one page, which has only every n-th frame if they would take more. */
+/* All pages of a folder together, and the states in one page, which has only every n-th frame if they would take
+   more. */
 #define PAGE_SET_MAX_BYTES (256 << 20)
 #define PAGE_SET_STATE_BYTES (8 << 20)
 
@@ -24,9 +25,9 @@ typedef struct PageSet {
     const char *folder;
     const CsvLayout *layout; /* of the table; its last columns are a link into a page and the page's bytes */
     int parts;
-    /* Writes the pages of a part, and the table's rows that list them (piece_tables_print). Parts come in their order, but for
-       those that an earlier run did. Rows of one page follow each other; where a page was left out, their last columns are
-       empty and 0. */
+    /* Writes the pages of a part, and the table's rows that list them (piece_tables_print). Parts come in their order,
+       but for those that an earlier run did. Rows of one page follow each other; where a page was left out, their last
+       columns are empty and 0. */
     bool (*write)(void *context, int part, FILE *rows, const Progress *progress, Error *error);
     void *context;
     Pieces pieces;
@@ -43,8 +44,8 @@ bool page_set_make(PageSet *set, uint64_t key, const Progress *progress, Error *
 /* Removes what the parts have left, once all that the caller makes of the table is written. */
 bool page_set_end(const PageSet *set, Error *error);
 
-/* For `write`: makes `name` fit a file, and path "pages/NAME.html" of it; writes that page. path is empty and bytes is 0 if
-   there is no room for it. */
+/* For `write`: makes `name` fit a file, and path "pages/NAME.html" of it; writes that page. path is empty and bytes is
+   0 if there is no room for it. */
 typedef struct PageFile {
     char path[PAGE_NAME_SIZE];
     int bytes;

@@ -39,8 +39,8 @@ static bool contains(const Settings *all, const Settings *some) {
     return true;
 }
 
-/* In any order, and whether given or not: "engine" is "engine:k=10" in a scene with 10 iterations. The chart has no setting
-   for the network that the scene names. */
+/* In any order, and whether given or not: "engine" is "engine:k=10" in a scene with 10 iterations. The chart has no
+   setting for the network that the scene names. */
 static bool has_settings(const ChartRow *row, const Trajectory *run) {
     char text[METHOD_TEXT_SIZE];
     Settings charted, own;
@@ -52,8 +52,8 @@ static bool has_settings(const ChartRow *row, const Trajectory *run) {
     return contains(&charted, &own) && contains(&own, &charted);
 }
 
-/* The row with the settings of the run. A run without settings that does not state its scene's iterations is the only row
-   of its method. NULL if there is no row. */
+/* The row with the settings of the run. A run without settings that does not state its scene's iterations is the only
+   row of its method. NULL if there is no row. */
 static const ChartRow *find_cost(const CsvTable *table, const Trajectory *run) {
     const ChartRow *found = NULL;
     int fitting = 0;

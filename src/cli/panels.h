@@ -17,7 +17,8 @@ typedef struct Panels {
     const char *inputs[RENDER_PANELS_MAX]; /* the file of each run, or its scene's */
 } Panels;
 
-/* What a CommandSpec says of such inputs. T is the command's Options, with inputs[RENDER_PANELS_MAX] and input_count. */
+/* What a CommandSpec says of such inputs. T is the command's Options, with inputs[RENDER_PANELS_MAX] and
+   input_count. */
 #define PANELS_INPUTS(T)                                             \
     .input = {.value = "RUN_OR_SCENE...",                            \
               .needed = "a run (.npz) or a scene (.yaml) is needed", \
@@ -35,8 +36,8 @@ typedef struct PanelMethods {
         "Simulate the scene by this method, for a panel of its own (may be repeated; " defaults ")", \
         OPTION_METHOD_TEXTS(T, member.texts, member.count)
 
-/* Settings need exactly one scene among the inputs, methods one at least. After an error, panels_free frees what was loaded
-   before it. */
+/* Settings need exactly one scene among the inputs, methods one at least. After an error, panels_free frees what was
+   loaded before it. */
 bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set,
                  const PanelMethods *methods, Error *error);
 
@@ -61,8 +62,8 @@ typedef struct PanelCosts {
     char texts[RENDER_PANELS_MAX][64];
 } PanelCosts;
 
-/* Reads the costs of the panels from a chart.csv: the same scene, closed loop, at the impact. A run without a row has no
-   cost; a file without any row for the runs is refused. The look then points into `costs`. */
+/* Reads the costs of the panels from a chart.csv: the same scene, closed loop, at the impact. A run without a row has
+   no cost; a file without any row for the runs is refused. The look then points into `costs`. */
 bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels, RenderLook *look, Error *error);
 
 /* The last frame of the longest panel. */

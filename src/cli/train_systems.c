@@ -50,7 +50,8 @@ static void sain_print_score(void *context, const SainScore *score) {
     fflush(stdout);
 }
 
-/* Reads the scene of the command line, if there is one, and those of a list, each with an impact; *count grows with them, also in a failure. */
+/* Reads the scene of the command line, if there is one, and those of a list, each with an impact; *count grows with
+   them, also in a failure. */
 static bool read_scenes(const char *first, const char *more, const char *option, Scene **scenes, int most, int *count,
                         Error *error) {
     char list[LIST_SIZE], *rest = list;

@@ -220,8 +220,8 @@ static uint32_t feature_of(const ClipVertex *v, bool reference_is_b) {
     return reference_is_b ? incident | reference << 16 : reference | incident << 16;
 }
 
-/* Returns the separation along the reference face. Inlined, so that contacts by all faces without a gap cost no more than if there
-   were no others. */
+/* Returns the separation along the reference face. Inlined, so that contacts by all faces without a gap cost no more
+   than if there were no others. */
 static inline __attribute__((always_inline)) float compute(Manifold *manifold, const Box *a, const Box *b,
                                                            const Vec2 *across, float gap) {
     manifold->count = 0;

@@ -76,8 +76,8 @@ static void refresh(SortAndSweep *sweep, const Bounds *bounds, const bool *fixed
     }
 }
 
-/* Insertion sort: linear in a list that is almost sorted. Ends early, with the rest as it was, after `most` moves; called again, it
-   goes on there, as what is sorted makes no moves. */
+/* Insertion sort: linear in a list that is almost sorted. Ends early, with the rest as it was, after `most` moves;
+   called again, it goes on there, as what is sorted makes no moves. */
 static bool insertion_sort(SweptBounds *items, int count, size_t most, size_t *moved) {
     for (int i = 1; i < count; i++) {
         SweptBounds item = items[i];

@@ -103,17 +103,17 @@ static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter 
 
 static bool contact_problem_before(int a, int b, int of_a, int of_b) { return a < of_a || (a == of_a && b < of_b); }
 
-/* Ghosts at seams. A box that slides from a tile onto the next overlaps this one along the way by less, at first, than it
-   has sunk into both. So separating axes find the side of the tile, which stops the box, although the tile before covers it.
-   A box that has not sunk at all is not stopped, because its overlap of such a side is empty: so converged steps, which
-   start on the floor, slide over seams, and others do not.
+/* Ghosts at seams. A box that slides from a tile onto the next overlaps this one along the way by less, at first, than
+   it has sunk into both. So separating axes find the side of the tile, which stops the box, although the tile before
+   covers it. A box that has not sunk at all is not stopped, because its overlap of such a side is empty: so converged
+   steps, which start on the floor, slide over seams, and others do not.
 
-   Here the pair takes the faces across instead, if a support, which is another pair of one of the two boxes with that normal,
-   is beside it and the box overlaps the tile no deeper than it overlaps the support: then the tile does not stick out. Jolt
-   Physics drops such contacts, too, of the triangles of a mesh ("enhanced internal edge removal"). */
+   Here the pair takes the faces across instead, if a support, which is another pair of one of the two boxes with that
+   normal, is beside it and the box overlaps the tile no deeper than it overlaps the support: then the tile does not
+   stick out. Jolt Physics drops such contacts, too, of the triangles of a mesh ("enhanced internal edge removal"). */
 
-/* For each body a list of its arbiters: heads [bodies], then for each arbiter the next one of a and of b; -1 ends it. An
-   entry is 2 * arbiter + (0: the body is a, 1: it is b). */
+/* For each body a list of its arbiters: heads [bodies], then for each arbiter the next one of a and of b; -1 ends it.
+   An entry is 2 * arbiter + (0: the body is a, 1: it is b). */
 static bool list_partners(ContactSet *set, int body_count) {
     const size_t size = (size_t)body_count + 2 * (size_t)set->arbiter_count;
     if (!array_reserve((void **)&set->partners, &set->partner_capacity, size, sizeof *set->partners)) return false;
@@ -147,8 +147,8 @@ static bool may_be_covered(Side *side, const ContactSet *set, const Box *boxes) 
     return side->depth >= 0 && side->depth < side->least;
 }
 
-/* Whether the tile does not stick out of the support, compared where their points are nearest. A box that only just touches
-   the tile has no point across. */
+/* Whether the tile does not stick out of the support, compared where their points are nearest. A box that only just
+   touches the tile has no point across. */
 static bool is_flush(const Side *side, const ContactSet *set, const Arbiter *support) {
     const float tolerance = 1e-3f * side->least;
     const ManifoldPoint touch = {set->contacts[set->arbiters[side->arbiter].first].position, -side->depth, 0};

@@ -132,7 +132,8 @@ typedef struct PairList {
    memory is short. */
 bool broad_phase_find(PairList *list, const Bounds *bounds, const bool *fixed, int count);
 
-/* A hundred for each of 10,000 boxes. Boxes that lie on one another have a pair for every two: 10,000 would need 16 GB. */
+/* A hundred for each of 10,000 boxes. Boxes that lie on one another have a pair for every two: 10,000 would need 16
+   GB. */
 enum { BROAD_PHASE_MAX_PAIRS = 1 << 20 };
 
 typedef struct SweptBounds SweptBounds;
@@ -157,8 +158,8 @@ typedef struct SortAndSweep {
 void sort_and_sweep_free(SortAndSweep *sweep);
 bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *bounds, const bool *fixed, int count);
 
-/* How deep boxes overlap, by separating axes in double. For what a scene places, not for contacts: the narrow phase prefers
-   the face of the last step to the axis of the smallest overlap. */
+/* How deep boxes overlap, by separating axes in double. For what a scene places, not for contacts: the narrow phase
+   prefers the face of the last step to the axis of the smallest overlap. */
 
 /* The smallest overlap of two boxes along the axes of their faces, m; negative: they are apart by that much along one.
    */
@@ -300,12 +301,12 @@ typedef struct ContactSet {
 
 /* How contacts are found. Zeros: as Box2D-Lite finds them, with its bits.
 
-   keep > 0: a pair of two points in the last step is kept instead of being found again, while its boxes have shifted along its face,
-   or apart, by less than `keep` of the smaller side since its points were found, and neither has turned by more than 0.2 rad.
-   Its separations follow the boxes and may be positive; lever arms and normal stay as they were in world coordinates. So a
-   column that leans a little has no tipping moment from contacts that give way under its own weight, which it would
-   otherwise buckle by. The price: support up to `keep` beyond an edge. Sweeps that end early still let boxes sink.
-   Source: Catto, Box2D's contact recycling (2026), whose tolerance is a length.
+   keep > 0: a pair of two points in the last step is kept instead of being found again, while its boxes have shifted
+   along its face, or apart, by less than `keep` of the smaller side since its points were found, and neither has turned
+   by more than 0.2 rad. Its separations follow the boxes and may be positive; lever arms and normal stay as they were
+   in world coordinates. So a column that leans a little has no tipping moment from contacts that give way under its own
+   weight, which it would otherwise buckle by. The price: support up to `keep` beyond an edge. Sweeps that end early
+   still let boxes sink. Source: Catto, Box2D's contact recycling (2026), whose tolerance is a length.
 
    mend: no ghosts at seams (contact_problem.c); and thin boxes (CONTACT_THIN) touch before they overlap. */
 typedef struct ContactRules {
@@ -313,12 +314,13 @@ typedef struct ContactRules {
     bool mend;
 } ContactRules;
 
-/* m: the smallest side below which boxes are thin. As Box2D-Lite finds contacts, boxes that rounding or the end of sweeps sets
-   apart fall until they overlap. In a stack of thin boxes this presses the centre of one past that of another; and contacts,
-   which push centres apart, then push it out on the wrong side. */
+/* m: the smallest side below which boxes are thin. As Box2D-Lite finds contacts, boxes that rounding or the end of
+   sweeps sets apart fall until they overlap. In a stack of thin boxes this presses the centre of one past that of
+   another; and contacts, which push centres apart, then push it out on the wrong side. */
 #define CONTACT_THIN (5 * CONTACT_SLOP)
 
-/* m: the distance from which on a thin box touches others, where contacts are mended; 0: not before it overlaps them. */
+/* m: the distance from which on a thin box touches others, where contacts are mended; 0: not before it overlaps
+   them. */
 float contact_gap(const Box *box, ContactRules rules);
 
 void contact_set_free(ContactSet *set);
@@ -326,8 +328,8 @@ void contact_set_free(ContactSet *set);
 /* Makes `to` equal to `from`. False when memory is short. */
 bool contact_set_copy(ContactSet *to, const ContactSet *from);
 
-/* Narrow phase over the candidate pairs; fills positions, normals, lever arms, separations and feature ids, not masses or
-   impulses. `last`: the contacts of the last step, for those that are kept. False when memory is short. */
+/* Narrow phase over the candidate pairs; fills positions, normals, lever arms, separations and feature ids, not masses
+   or impulses. `last`: the contacts of the last step, for those that are kept. False when memory is short. */
 bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last,
                          ContactRules rules);
 
@@ -341,8 +343,9 @@ void contact_set_forget(ContactSet *set, int body);
    1/s. */
 float contact_bias(float separation, float inverse_dt);
 
-/* Effective masses, friction and bias (the pre-step of Box2D-Lite). friction: coefficient of each body. Without position
-   correction the bias of contacts that overlap is 0; where a gap is, it lets the gap close in this step, and no more. */
+/* Effective masses, friction and bias (the pre-step of Box2D-Lite). friction: coefficient of each body. Without
+   position correction the bias of contacts that overlap is 0; where a gap is, it lets the gap close in this step, and
+   no more. */
 void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,
                          bool position_correction);
 
@@ -373,7 +376,8 @@ typedef struct Body {
 /* The mutable state of a simulation: bodies, the contacts that persist between them, and the step.
 
    Collision detection, then gravity, then the contact problem with its warm start, then a contact solver, then
-   integration (semi-implicit Euler): the loop of Box2D-Lite (Catto 2006), with the same bits (tests/runs/test_reference.c). */
+   integration (semi-implicit Euler): the loop of Box2D-Lite (Catto 2006), with the same bits
+   (tests/runs/test_reference.c). */
 
 typedef struct WorldDef {
     Vec2 gravity;             /* m/s^2 */
@@ -406,8 +410,8 @@ bool world_copy(World *to, const World *from, Error *error);
    a step need not be ended.
 
    Begins a step of dt seconds (dt > 0): collision detection, gravity, the contact problem. The world owns the problem's
-   arrays and the solution, which the caller fills; they are valid until the next step. False with error set when memory is
-   short, or for more than BROAD_PHASE_MAX_PAIRS. */
+   arrays and the solution, which the caller fills; they are valid until the next step. False with error set when memory
+   is short, or for more than BROAD_PHASE_MAX_PAIRS. */
 bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error);
 
 /* Ends the step: moves the bodies by the velocities of the solution. On failure the world is unchanged and error names
@@ -423,8 +427,8 @@ typedef struct BodyPose {
 /* The same, with the final poses [body_count] given, for steppers that integrate in substeps. */
 bool world_end_step_at(World *world, const BodyPose *poses, Error *error);
 
-/* Advances the world by dt seconds with a solver and its state. On failure the world is unchanged; error names the first
-   body whose state is NaN or infinite, or is the solver's. */
+/* Advances the world by dt seconds with a solver and its state. On failure the world is unchanged; error names the
+   first body whose state is NaN or infinite, or is the solver's. */
 bool world_step(World *world, ContactSolve *solve, void *state, float dt, Error *error);
 
 int world_body_count(const World *world);

@@ -67,8 +67,8 @@ const FigureKind *const *figure_kinds(void);
 /* Draws a kind with the title of its files: "strip of stack: engine, momentum:k=20". As FigureKind.draw. */
 bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error);
 
-/* Writes \caption{...} for LaTeX to a file: what the figure shows, of which scene, by which methods, at which times, and
-   the version. spec->facts are those of the figure, which was drawn. */
+/* Writes \caption{...} for LaTeX to a file: what the figure shows, of which scene, by which methods, at which times,
+   and the version. spec->facts are those of the figure, which was drawn. */
 bool figure_write_caption(const FigureKind *kind, const FigureSpec *spec, const char *path, Error *error);
 
 /* NULL with error set, which lists the kinds, if there is no such kind. */
@@ -131,8 +131,8 @@ static inline uint32_t ink_of(const Collision *collision, int i) {
 
 static inline const char *name_of(const Collision *collision, int i) { return collision->names[i]; }
 
-/* Draws the projections of both boxes on the axes of each, and their overlaps, in the window, with a scale below them and,
-   unless `down` is NULL, an arrow in this direction. ERROR_INPUT if the labels have no room. */
+/* Draws the projections of both boxes on the axes of each, and their overlaps, in the window, with a scale below them
+   and, unless `down` is NULL, an arrow in this direction. ERROR_INPUT if the labels have no room. */
 bool draw_overlaps(Sketch *sketch, View window, const Collision *collision, const Vec2 *down, Error *error);
 
 /* Draws an enlarged view of the overlap: edges, normal and contact points, in the window. ERROR_INPUT as above. */

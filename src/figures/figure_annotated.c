@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figure of one moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
-   step, for which the contacts were found. */
+/* The figure of one moment with the contacts, normals and impulses of the step that starts there. The poses are those
+   before the step, for which the contacts were found. */
 #include "base/base.h"
 #include "base/numbers.h"
 #include "engine/engine.h"

@@ -156,7 +156,8 @@ static WrappedText entry_of(const Divergence *d, int run, double width) {
                      ever_diverges(d->distance[run], d->frames) ? "" : ": identical");
 }
 
-/* Rows above the plot, down from `top`, `width` mm wide. Returns their number; without a sketch, it only counts them. */
+/* Rows above the plot, down from `top`, `width` mm wide. Returns their number; without a sketch, it only counts
+   them. */
 static int draw_legend(const Divergence *d, Sketch *sketch, Point top, double width) {
     const FigureSpec *spec = d->spec;
     const double line = line_height(spec->points), indent = sample + number_gap(spec->points);

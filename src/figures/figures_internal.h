@@ -42,7 +42,8 @@ typedef struct Flow {
 Point flow_place(Flow *flow, double width, int lines);
 void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text); /* sketch NULL: takes its place */
 
-/* mm: between the end of a line or an arrow and the text that it belongs to; nearer it would be read as a minus sign. */
+/* mm: between the end of a line or an arrow and the text that it belongs to; nearer it would be read as a minus
+   sign. */
 double number_gap(double points);
 
 /* From a mark to its label, and along below it if the mark is beside it (label_place_led). */
@@ -150,7 +151,8 @@ double contact_sample_width(const ContactLook *look);
 
 /* Text for LaTeX. */
 
-/* A text in which every character stands for itself, in any font encoding; bytes beyond ASCII stay as they are (UTF-8). */
+/* A text in which every character stands for itself, in any font encoding; bytes beyond ASCII stay as they are
+   (UTF-8). */
 void latex_text(FILE *out, const char *text);
 
 /* The same as \texttt{...}. */
@@ -213,6 +215,6 @@ static inline bool has_alpha(const Image *image) {
     return false;
 }
 
-/* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. drawn: of lines and text alone, which
-   take a tenth to a quarter less room without filters. */
+/* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. drawn: of lines and text alone,
+   which take a tenth to a quarter less room without filters. */
 char *picture_as_png(const Image *image, double dpi, bool drawn, size_t *size, Error *error);

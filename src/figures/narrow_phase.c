@@ -387,7 +387,8 @@ static void draw_bar(Sketch *sketch, const Gauge *gauge, double low, double high
     sketch_shape(sketch, corners, 4, pen);
 }
 
-/* mm: from the boxes to their gauges; from a gauge's line to the outline of its overlap, and from there to the label. */
+/* mm: from the boxes to their gauges; from a gauge's line to the outline of its overlap, and from there to the
+   label. */
 static const double far_gauge = 7, near_gauge = 3, outline = 4.1, label_gap = 0.8;
 
 /* The gauge of an axis is outside the boxes, on the side of the box that owns the axis. */
@@ -558,7 +559,8 @@ static bool quads_meet(const Point a[4], const Point b[4]) {
     return true;
 }
 
-/* Moves the view so that all is in the middle of its window. False if there is no room, or if a label meets anything. */
+/* Moves the view so that all is in the middle of its window. False if there is no room, or if a label meets
+   anything. */
 static bool centre_overlaps(View *view, const Collision *collision) {
     Quads quads;
     Point low = {HUGE_VAL, HUGE_VAL}, high = {-HUGE_VAL, -HUGE_VAL};

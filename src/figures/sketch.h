@@ -56,7 +56,8 @@ typedef struct PlotAxis {
 
 PlotAxis plot_linear_axis(double low, double high, const char *label);
 
-/* For values in [least, most], both above 0, with padding on both sides and at least one decade, so that it has ticks. */
+/* For values in [least, most], both above 0, with padding on both sides and at least one decade, so that it has
+   ticks. */
 PlotAxis plot_log_axis(double least, double most, const char *label);
 
 /* The same for a range clamped to [lowest, highest]. with_zero: adds a place for 0, left of the ticks. */
@@ -185,13 +186,13 @@ void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen
 /* One line of text, truncated to SKETCH_TEXT_SIZE - 1 bytes, vertically centred on `at`. */
 void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *format, ...) PRINTF_LIKE(4, 5);
 
-/* A digit times 10 to a power ("2·10"; of 1, the power alone), aligned as the style says and its width in mm. Extracted from
-   a PDF it reads "2·10⁻³". */
+/* A digit times 10 to a power ("2·10"; of 1, the power alone), aligned as the style says and its width in mm. Extracted
+   from a PDF it reads "2·10⁻³". */
 void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int digit, int power);
 double sketch_power_width(double points, int digit, int power);
 
-/* Breaks a text into lines ('\n') of at most this width in mm: at spaces and behind colons and commas, else behind other
-   signs, else anywhere. Returns the number of lines. A text without room for its breaks ends there. */
+/* Breaks a text into lines ('\n') of at most this width in mm: at spaces and behind colons and commas, else behind
+   other signs, else anywhere. Returns the number of lines. A text without room for its breaks ends there. */
 int text_wrap(char *words, size_t size, double points, double width);
 
 /* Draws such lines, the first at `first`, each below the one before. */
@@ -231,8 +232,8 @@ typedef struct PlotStyle {
 /* The style of series i, which is no method. */
 PlotStyle plot_style(int i);
 
-/* The style of a series that is a method: further settings of one have a shade, the first with an open symbol, others with
-   other symbols. */
+/* The style of a series that is a method: further settings of one have a shade, the first with an open symbol, others
+   with other symbols. */
 PlotStyle plot_method_style(const RunColours *colours);
 
 /* A mark of this radius in mm; the lines of open symbols and crosses are `line` wide (LINE_UNIT). */
@@ -307,7 +308,8 @@ void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *l
 /* Lines (text_wrap), the first at `at`. */
 void plot_text(Sketch *sketch, Point at, TextAlign align, double points, const char *text);
 
-/* A legend in columns over [left, page width], the middle of its first row at `top`. Looks without a name are left out. */
+/* A legend in columns over [left, page width], the middle of its first row at `top`. Looks without a name are left
+   out. */
 #define LEGEND_ROW 3.7
 #define LEGEND_SAMPLE 8.0
 #define LEGEND_GAP 1.2 /* between sample and name */
@@ -355,12 +357,12 @@ typedef struct LabelWish {
     double width, height;
     bool left;   /* try the left before the right */
     bool across; /* the line to the label may cross others, and crossable boxes */
-    bool
-        shelf; /* a line from beside ends at the lower corner and goes on below, not to be read as a number's minus sign */
+    /* a line from beside ends at the lower corner and goes on below, not to be read as a number's minus sign */
+    bool shelf;
 } LabelWish;
 
-/* Finds the nearest free place for a label, to which a straight line from its mark crosses nothing that is drawn; *leader is
-   that line, from the mark's edge to the label, and *led whether it is long enough to be drawn. Adds label
+/* Finds the nearest free place for a label, to which a straight line from its mark crosses nothing that is drawn;
+   *leader is that line, from the mark's edge to the label, and *led whether it is long enough to be drawn. Adds label
    and line to the field. False if there is no place. */
 bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, Segment *leader, bool *led);
 

@@ -137,8 +137,8 @@ static bool pdf_write_font(Pdf *pdf) {
            write_to_unicode(pdf, &font);
 }
 
-/* A sketch as PDF 1.5 (ISO 32000-1): one page with its embedded font and its title, without date and document ID. Text can
-   be searched and copied. */
+/* A sketch as PDF 1.5 (ISO 32000-1): one page with its embedded font and its title, without date and document ID. Text
+   can be searched and copied. */
 
 static void write_colour(FILE *content, uint32_t colour, bool line) {
     fprintf(content, "%.4f %.4f %.4f %s\n", (colour >> 16 & 255) / 255.0, (colour >> 8 & 255) / 255.0,

@@ -388,8 +388,8 @@ static PageBox box_towards(const LabelWish *wish, double angle, double distance)
     return (PageBox){x - wish->width / 2, y - wish->height / 2, x + wish->width / 2, y + wish->height / 2};
 }
 
-/* Beside its label, a mark leads to the lower corner and along below: a line that ended at the middle of a number would be
-   read as its minus sign. */
+/* Beside its label, a mark leads to the lower corner and along below: a line that ended at the middle of a number would
+   be read as its minus sign. */
 static bool has_shelf(double from_y, const PageBox *box) { return from_y > box->bottom && from_y < box->top; }
 
 static Segment leader_to(const LabelWish *wish, const PageBox *box) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sketch as SVG 1.1, in mm. Text is text: it can be searched and edited. The font is embedded; programs that ignore it
-   take the next of its family, and alignment holds with any. As outlines text looks the same everywhere; then aria-label
-   holds its content. */
+/* A sketch as SVG 1.1, in mm. Text is text: it can be searched and edited. The font is embedded; programs that ignore
+   it take the next of its family, and alignment holds with any. As outlines text looks the same everywhere; then
+   aria-label holds its content. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/figures_internal.h"

@@ -23,8 +23,9 @@ typedef struct LaunchRuns {
     BodyPose *poses;  /* [count, frames, bodies] NaN while the bomb does not exist */
 } LaunchRuns;
 
-/* Runs the launches [count] of a scene with a bomb by a method, in parallel; the same bits for any number of threads. False
-   with error set if a run fails, the poses take more than 1 GiB, or progress requests a stop. Free it in any case. */
+/* Runs the launches [count] of a scene with a bomb by a method, in parallel; the same bits for any number of threads.
+   False with error set if a run fails, the poses take more than 1 GiB, or progress requests a stop. Free it in any
+   case. */
 bool launch_runs_record(LaunchRuns *runs, const Scene *scene, const Method *method, const Launch *launches, int count,
                         const Progress *progress, Error *error);
 void launch_runs_free(LaunchRuns *runs);
@@ -98,13 +99,14 @@ typedef struct DatasetOptions {
 } DatasetOptions;
 
 /* Runs every launch of every scene with the engine and records it. The result does not depend on the number of threads.
-   ERROR_INPUT if a scene cannot be read, has no bomb or needs a family and has none, the launches vary in mass or frame,
-   there are fewer than 5 launches per scene (one must be held out), the target has no such labels, or progress
+   ERROR_INPUT if a scene cannot be read, has no bomb or needs a family and has none, the launches vary in mass or
+   frame, there are fewer than 5 launches per scene (one must be held out), the target has no such labels, or progress
    requests a stop. */
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
 
-/* Arrays for so many launches, zero, and for so many rows, not zeroed; view and target are set. False when memory is short. */
+/* Arrays for so many launches, zero, and for so many rows, not zeroed; view and target are set. False when memory is
+   short. */
 bool dataset_make_launches(Dataset *dataset, int launches);
 bool dataset_make_rows(Dataset *dataset, int64_t rows, bool context);
 
@@ -168,7 +170,8 @@ typedef struct DatasetArrays {
     char scenes[DATASET_SCENES_SIZE];
 } DatasetArrays;
 
-/* The arrays in the order of the file; they point to the dataset and to *arrays. Returns their number, which is one less without context. */
+/* The arrays in the order of the file; they point to the dataset and to *arrays. Returns their number, which is one
+   less without context. */
 int dataset_arrays(const Dataset *dataset, DatasetArrays *arrays);
 
 /* Bytes of a row in an array of rows, which all have numbers of 4 bytes. */

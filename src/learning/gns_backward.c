@@ -98,8 +98,8 @@ static void mlp_back(const Back *back, const GnsMlp *mlp, const GnsLayerTape *ta
     relu_back(first, tape->first, rows * width);
 }
 
-/* One part of the inputs of a first layer: its weights' gradient from in[rows, width] and sums[rows, width]; adds the slopes
-   of `in` to of_in. */
+/* One part of the inputs of a first layer: its weights' gradient from in[rows, width] and sums[rows, width]; adds the
+   slopes of `in` to of_in. */
 static void part_back(const Back *back, const GnsMlp *mlp, int part, const float *in, const float *sums, int rows,
                       float *of_in) {
     const int width = back->width;

@@ -13,13 +13,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Half of the examples are taken from these frames around the bomb's first touch, and a quarter from the first frames, where
-   boxes begin to fall. One in FLIGHT_ONE_IN is a box alone in free flight. Otherwise nearly every slow box would be one at
-   rest, and the network would take a box that hangs in the air for one that is held. */
+/* Half of the examples are taken from these frames around the bomb's first touch, and a quarter from the first frames,
+   where boxes begin to fall. One in FLIGHT_ONE_IN is a box alone in free flight. Otherwise nearly every slow box would
+   be one at rest, and the network would take a box that hangs in the air for one that is held. */
 enum { BEFORE_TOUCH = 3, AFTER_TOUCH = 120, FIRST_FRAMES = 6, FLIGHT_ONE_IN = 8, TOURNAMENT = 3 };
 
-/* Of boxes in free flight: height above the ground, up to that of the bomb's launch, speed up to the bomb's, spin. The square
-   of a uniform number makes slow ones frequent. */
+/* Of boxes in free flight: height above the ground, up to that of the bomb's launch, speed up to the bomb's, spin. The
+   square of a uniform number makes slow ones frequent. */
 static const float flight_low = 0.8f, flight_height = 15, flight_speed = 20, flight_spin = 5; /* m, m, m/s, rad/s */
 
 static const float off_flight = 0.01f;    /* m: a bomb that is this far off its free flight has touched */
@@ -248,7 +248,8 @@ static float often_small(uint64_t *random) {
 
 static float either_sign(uint64_t *random) { return gns_examples_below(random, 2) == 0 ? -1.0f : 1.0f; }
 
-/* A box of the scene, or the bomb, alone, with a past of free flight or of constant velocity, as at the start of a run. */
+/* A box of the scene, or the bomb, alone, with a past of free flight or of constant velocity, as at the start of a
+   run. */
 static void fill_flight(GnsExample *example, int launch, float noise, uint64_t *random) {
     const GnsRuns *runs = example->from;
     const int body = body_of(runs, gns_examples_below(random, runs->moving_count + 1));

@@ -15,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Beyond this error, in units of the acceleration, the loss is linear (Huber), so that a hit does not outweigh all else. */
+/* Beyond this error, in units of the acceleration, the loss is linear (Huber), so that a hit does not outweigh all
+   else. */
 static const float knee = 1.0f;
 
 void gns_fit_free(GnsFit *fit) {
@@ -51,8 +52,8 @@ static int count_particles(const GnsExample *example) {
     return count;
 }
 
-/* The loss of the example in the worker, whose pass has run: the mean over particles that count of the squared error, in units
-   of the net's acceleration. Fills worker->slopes. */
+/* The loss of the example in the worker, whose pass has run: the mean over particles that count of the squared error,
+   in units of the net's acceleration. Fills worker->slopes. */
 static double gns_example_loss(GnsWorker *worker, const GnsScales *scales) {
     const GnsExample *example = &worker->example;
     const int count = count_particles(example);

@@ -10,15 +10,15 @@
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 
-/* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
-   nets/kinds.h's.
+/* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix
+   of nets/kinds.h's.
 
-   Noise: a random walk of each particle's velocities, with the standard deviation `noise` in the newest; positions move by
-   its sum. The target is the acceleration from the noisy velocity to the true next one, less a tenth of what would undo the
-   noise of the position in one step: so overlaps and gaps close again. The paper corrects the velocity only; the tenth is that
-   of Pfaff, Fortunato, Sanchez-Gonzalez, Battaglia, "Learning Mesh-Based Simulation with Graph Networks" (2021), for
-   second-order dynamics. In half of the examples each box is also displaced as a whole, so that there are overlaps as deep as
-   those of runs; the paper's particles are disturbed one by one only. */
+   Noise: a random walk of each particle's velocities, with the standard deviation `noise` in the newest; positions move
+   by its sum. The target is the acceleration from the noisy velocity to the true next one, less a tenth of what would
+   undo the noise of the position in one step: so overlaps and gaps close again. The paper corrects the velocity only;
+   the tenth is that of Pfaff, Fortunato, Sanchez-Gonzalez, Battaglia, "Learning Mesh-Based Simulation with Graph
+   Networks" (2021), for second-order dynamics. In half of the examples each box is also displaced as a whole, so that
+   there are overlaps as deep as those of runs; the paper's particles are disturbed one by one only. */
 
 enum {
     GNS_MAX_SCENES = 8,
@@ -103,13 +103,13 @@ typedef struct GnsTraining {
     int pass_boxes;     /* out: of that scene, with the bomb */
 } GnsTraining;
 
-/* Makes the net, which the caller frees. False with error set if the state cannot be written or read, memory is short or a
-   run fails. ERROR_INTERRUPTED if progress requests a stop: the state stays. The same bits for any number of threads, and
-   however often it was interrupted. */
+/* Makes the net, which the caller frees. False with error set if the state cannot be written or read, memory is short
+   or a run fails. ERROR_INTERRUPTED if progress requests a stop: the state stays. The same bits for any number of
+   threads, and however often it was interrupted. */
 bool gns_training_run(GnsTraining *training, GnsNet *net, const Progress *progress, Error *error);
 
-/* The time of a forward pass with its neighbour search, on one thread, over all boxes of the recorded scene once the bomb is
-   there: their number in *boxes. The least of a few. */
+/* The time of a forward pass with its neighbour search, on one thread, over all boxes of the recorded scene once the
+   bomb is there: their number in *boxes. The least of a few. */
 bool gns_training_time_pass(const GnsNet *net, const GnsRuns *runs, double *seconds, int *boxes, Error *error);
 
 /* The backward pass of the network of gns: reverse mode, by hand, the steps of methods/gns_graph.c in reverse order.
@@ -126,11 +126,12 @@ typedef struct GnsBackward {
 
 void gns_backward_free(GnsBackward *back);
 
-/* Every weight matrix of the parameters that a backward pass uses, transposed, at its place; that of a round's first layer part by part. */
+/* Every weight matrix of the parameters that a backward pass uses, transposed, at its place; that of a round's first
+   layer part by part. */
 void gns_transpose(const GnsLayout *layout, const float *parameters, float *transposed);
 
-/* After gns_forward with a tape: adds d loss / d parameters to gradient, from output_slopes[nodes, GNS_OUTPUTS] = d loss /
-   d outputs. False when memory is short. */
+/* After gns_forward with a tape: adds d loss / d parameters to gradient, from output_slopes[nodes, GNS_OUTPUTS] = d
+   loss / d outputs. False when memory is short. */
 bool gns_backward(GnsBackward *back, const GnsPass *pass, const GnsLayout *layout, const float *parameters,
                   const float *transposed, const GnsGraph *graph, const float *output_slopes, float *gradient);
 

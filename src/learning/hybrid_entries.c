@@ -20,8 +20,8 @@
 /* An ellipsoid grows by steps of at most this: farther points are accurate by chance. m/s; 2 are 17 cm of the bomb's
    place. */
 static const float step_max = 2;
-/* Share of the neighbours' mean squared distance that is added to the normal equations: neighbours in one direction leave
-   them singular. */
+/* Share of the neighbours' mean squared distance that is added to the normal equations: neighbours in one direction
+   leave them singular. */
 static const double ridge = 1e-4;
 
 float velocity_error(const ContactProblem *problem, const BodyVelocity *a, const BodyVelocity *b) {

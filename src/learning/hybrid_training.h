@@ -9,11 +9,12 @@
 
 #include <stdint.h>
 
-/* What a memory learns from a solved impact: nothing, a larger ellipsoid, or a new entry. Source: Pope (1997), 3, and Lu, Pope
-   (2009) for the checks of answers; the linear map is a fit over neighbours instead of a derivative (hybrid_memory.h).
+/* What a memory learns from a solved impact: nothing, a larger ellipsoid, or a new entry. Source: Pope (1997), 3, and
+   Lu, Pope (2009) for the checks of answers; the linear map is a fit over neighbours instead of a derivative
+   (hybrid_memory.h).
 
-   A derivative by finite differences would take a converged solve for each direction of the key, most of which no launch
-   takes, and the contacts change their features under small turns. The fit takes none, and is exact along the
+   A derivative by finite differences would take a converged solve for each direction of the key, most of which no
+   launch takes, and the contacts change their features under small turns. The fit takes none, and is exact along the
    launches. */
 
 /* RMS over the dynamic bodies of |dv|^2 + dspin^2 / 6, as in methods/reference.h, m/s. */
@@ -37,8 +38,8 @@ typedef enum Lesson {
 bool entry_learn(HybridMemory *memory, const SolvedStep *step, size_t limit, ContactSolution *answer, Lesson *lesson,
                  Error *error);
 
-/* Checks an entry that answered the step: if the answer's error exceeds the tolerance, its ellipsoid shrinks. Returns the
-   error, m/s. */
+/* Checks an entry that answered the step: if the answer's error exceeds the tolerance, its ellipsoid shrinks. Returns
+   the error, m/s. */
 float entry_check(HybridMemory *memory, int entry, const SolvedStep *step, ContactSolution *answer);
 
 /* Runs launches by hybrid, one after the other, and keeps the steps that ask the memory. */
@@ -70,8 +71,8 @@ void asked_steps_free(AskedSteps *steps);
 /* The world of the scene, which must have a bomb, just before the bomb appears. NULL with error set. */
 World *hybrid_prefix(const Scene *scene, Error *error);
 
-/* Runs one launch from that world up to `steps` steps from the bomb's first touch, and appends the asked ones. The memory, or
-   NULL, is not changed. A launch ends if its state becomes NaN or infinite. */
+/* Runs one launch from that world up to `steps` steps from the bomb's first touch, and appends the asked ones. The
+   memory, or NULL, is not changed. A launch ends if its state becomes NaN or infinite. */
 bool launch_steps_run(const Scene *scene, const World *prefix, const Launch *launch, const HybridMemory *memory,
                       int steps, AskedSteps *asked, Error *error);
 
@@ -96,9 +97,10 @@ typedef struct HybridLaunch {
 } HybridLaunch;
 
 typedef struct HybridTraining {
-    int launches;    /* in all */
-    int turned_from; /* from this launch on, counted from 0, bombs have a random rotation and spin; negative: only if the
-                        scene's family has */
+    int launches; /* in all */
+    /* from this launch on, counted from 0, bombs have a random rotation and spin; negative: only if the scene's family
+       has */
+    int turned_from;
     int steps;       /* that each launch runs from the bomb's first touch */
     int components;  /* of the keys */
     float tolerance; /* m/s */
@@ -115,13 +117,14 @@ typedef struct HybridTraining {
 Launch hybrid_launch(const Scene *scene, uint64_t seed, int i, bool turns);
 
 /* NULL with error set: a scene without a bomb, launches that touch nothing, memory. If progress stops it, the state is
-   stored and the memory so far returned; ERROR_INTERRUPTED if it has none yet. The same bits for any number of threads. */
+   stored and the memory so far returned; ERROR_INTERRUPTED if it has none yet. The same bits for any number of
+   threads. */
 HybridMemory *hybrid_training_run(const Scene *scene, const HybridTraining *training, const Progress *progress,
                                   Error *error);
 
 /* The principal directions of a memory's keys. */
 
 /* others: [count, memory->numbers] numbers of the bodies but the bomb in `count` > 0 steps. Sets the memory's centre to
-   their mean and its rows to their strongest directions. False with error set when memory is short, or if a number is not
-   finite. */
+   their mean and its rows to their strongest directions. False with error set when memory is short, or if a number is
+   not finite. */
 bool key_fit(HybridMemory *memory, const float *others, int count, uint64_t seed, Error *error);

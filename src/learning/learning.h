@@ -8,8 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Of a symmetric matrix[size, size], which is destroyed: values[size] falling; vectors[size, size]: row i belongs to value i,
-   has length 1, and its largest entry is positive. By GSL. False when memory is short. */
+/* Of a symmetric matrix[size, size], which is destroyed: values[size] falling; vectors[size, size]: row i belongs to
+   value i, has length 1, and its largest entry is positive. By GSL. False when memory is short. */
 bool symmetric_eigenvectors(double *matrix, size_t size, double *values, double *vectors);
 
 /* Adam: each weight steps by its mean slope, divided by the root of its mean squared slope. Same bits on every machine.
@@ -59,12 +59,12 @@ double adam_cosine(double done);
 /* One step; slopes[count] are d loss / d weights. */
 void adam_step(Adam *adam, const double *slopes, double rate);
 
-/* Shortens slopes that are longer than `most`: one strange batch must not throw the weights far. False, and all are 0, if
-   one is NaN or infinite. */
+/* Shortens slopes that are longer than `most`: one strange batch must not throw the weights far. False, and all are 0,
+   if one is NaN or infinite. */
 bool slopes_limit(double *slopes, int64_t count, double most);
 
-/* A training that survives an interruption: the same command continues from its state on disk, with the same result. What
-   follows from command and weights, such as recorded launches, is not stored. */
+/* A training that survives an interruption: the same command continues from its state on disk, with the same result.
+   What follows from command and weights, such as recorded launches, is not stored. */
 
 enum { FIT_COMMAND_SIZE = 512 };
 
@@ -80,12 +80,13 @@ typedef struct Fit {
 /* Nothing is read yet; the share of the progress is 0 until progress_next_stage(). The fit stays where it is. */
 void fit_init(Fit *fit, const char *command, const char *path, const Progress *progress);
 
-/* Weights 0. Continues with the state of the command if there is one: *found. ERROR_INPUT, with the file, if it is damaged
-   or of another number of weights: the user can delete it. Free it in any case. */
+/* Weights 0. Continues with the state of the command if there is one: *found. ERROR_INPUT, with the file, if it is
+   damaged or of another number of weights: the user can delete it. Free it in any case. */
 bool fit_begin(Fit *fit, int64_t weights, bool *found, Error *error);
 void fit_free(Fit *fit);
 
-/* Writes the state, atomically. A training writes it before any work: an output folder that cannot be written to is refused. */
+/* Writes the state, atomically. A training writes it before any work: an output folder that cannot be written to is
+   refused. */
 bool fit_write(const Fit *fit, Error *error);
 
 /* Begins a stage: no steps, and no moments, as its loss is another. */
@@ -99,6 +100,6 @@ typedef struct FitSteps {
     void *context;
 } FitSteps;
 
-/* Does what is left of the steps, on weights [at, at + count) of the fit. *loss: the sum since the last state but one, 0
-   without a step. ERROR_INTERRUPTED if progress requests a stop: the state stays. */
+/* Does what is left of the steps, on weights [at, at + count) of the fit. *loss: the sum since the last state but one,
+   0 without a step. ERROR_INTERRUPTED if progress requests a stop: the state stays. */
 bool fit_run(Fit *fit, int64_t at, int64_t count, const FitSteps *steps, double *loss, Error *error);

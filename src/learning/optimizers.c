@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Adam (learning/learning.h) on full batches, so the gradient has no noise; the rate decays to 0 by half a cosine. Converges
-   slowly in narrow valleys of the loss; lm does not. */
+/* Adam (learning/learning.h) on full batches, so the gradient has no noise; the rate decays to 0 by half a cosine.
+   Converges slowly in narrow valleys of the loss; lm does not. */
 static const double first_rate = 0.05;
 
 static bool adam_minimize(Trainer *trainer, double *parameters, Error *error) {

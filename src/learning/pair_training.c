@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of pair networks: rows in normalised blocks, option words, first weights, visits of the optimiser, scores. */
+/* Training of pair networks: rows in normalised blocks, option words, first weights, visits of the optimiser,
+   scores. */
 #include "learning/pair_training.h"
 
 #include "base/base.h"
@@ -48,8 +49,8 @@ static Spread column_spread(const Dataset *dataset, int outputs, int column) {
     return spread;
 }
 
-/* A column keeps its scale if it varies by no more than the rounding of the largest number beside it: it is constant, but for
-   the rounding of what it was computed from. Else a network would take rounding errors for its input. */
+/* A column keeps its scale if it varies by no more than the rounding of the largest number beside it: it is constant,
+   but for the rounding of what it was computed from. Else a network would take rounding errors for its input. */
 static void set_scale(Normalisation *normalisation, int column, double offset, double width, double largest) {
     const float scale = (float)(1 / width);
     normalisation->offset[column] = (float)offset;
@@ -163,8 +164,8 @@ static bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Erro
     return true;
 }
 
-/* NULL words take the defaults of TrainingOptions. ERROR_INPUT: an unknown word, or output targets outside the range of the
-   output activation. */
+/* NULL words take the defaults of TrainingOptions. ERROR_INPUT: an unknown word, or output targets outside the range of
+   the output activation. */
 static bool network_config_parse(NetworkConfig *config, const TrainingOptions *options, Error *error) {
     bool two = options->widths[options->layers] == 2;
     int hidden = ACTIVATION_SIGMOID, output = two ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;

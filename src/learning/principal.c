@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Principal components of sparse rows: products with their covariance, and the subspace iteration that needs no more. */
+/* Principal components of sparse rows: products with their covariance, and the subspace iteration that needs no
+   more. */
 #include "base/base.h"
 #include "learning/learning.h"
 #include "learning/scene_training_internal.h"

@@ -116,8 +116,8 @@ bool sain_fit_step(SainFit *fit, Adam *adam, uint64_t seed, int64_t number, doub
    on. */
 bool sain_fit_errors(SainFit *fit, const double *weights, const SainSamples *samples, SainErrors *errors, Error *error);
 
-/* The launches that a round of training records, of several scenes: contact problems with their converged velocities, all
-   impact frames, and some of those after and of those at rest. */
+/* The launches that a round of training records, of several scenes: contact problems with their converged velocities,
+   all impact frames, and some of those after and of those at rest. */
 
 /* sain with a network in memory. */
 typedef struct SainDriver {
@@ -135,8 +135,8 @@ typedef struct SainLaunches {
 } SainLaunches;
 
 /* Appends to the problems. Omits those whose reference does not converge (to 1e-6 m/s), and counts them. A launch ends
-   60 frames after its impact, or where the driver's network makes its state NaN or infinite. ERROR_INPUT: a scene's bomb
-   has no family of launches, a launch starts inside a body, or a step without a driver fails. */
+   60 frames after its impact, or where the driver's network makes its state NaN or infinite. ERROR_INPUT: a scene's
+   bomb has no family of launches, a launch starts inside a body, or a step without a driver fails. */
 bool sain_launches_record(const SainLaunches *launches, ImpactProblems *problems, const Progress *progress,
                           Error *error);
 

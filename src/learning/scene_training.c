@@ -103,7 +103,8 @@ static bool network_error(const SceneNet *network, const SceneNetSamples *sample
     return ok;
 }
 
-/* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs (scene_net_samples_compute_inputs). */
+/* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs
+   (scene_net_samples_compute_inputs). */
 static bool scene_net_score(const SceneNet *network, const SceneNetSamples *samples, const SceneNetSamples *held_out,
                             SceneNetScore *score, Error *error) {
     PairMoment space = {0};

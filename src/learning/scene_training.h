@@ -202,10 +202,11 @@ bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem
 /* Appends the items of `from`, which is empty afterwards. False when memory is short. */
 bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from);
 
-/* The launches of a training of a scene network. Those that are held out, and those of the first round, do not depend on the
-   network. */
+/* The launches of a training of a scene network. Those that are held out, and those of the first round, do not depend
+   on the network. */
 
-/* RMS residual of the warm start over the contacts, m/s: below it at rest, above it during a shock. Only the latter are samples. */
+/* RMS residual of the warm start over the contacts, m/s: below it at rest, above it during a shock. Only the latter are
+   samples. */
 #define SCENE_RECORDING_GATE 0.3f
 
 /* Launches by who runs them. */
@@ -221,9 +222,9 @@ typedef struct SceneRecording {
     int first[SCENE_SETS + 1]; /* launch of each set, then the end */
 } SceneRecording;
 
-/* Draws the launches of the first round, and checks those of all rounds: the last round must not be the first to be refused.
-   ERROR_INPUT also for a scene without a bomb or with one x. All pointers must outlive the recording, which must stay where
-   it is. */
+/* Draws the launches of the first round, and checks those of all rounds: the last round must not be the first to be
+   refused. ERROR_INPUT also for a scene without a bomb or with one x. All pointers must outlive the recording, which
+   must stay where it is. */
 bool scene_recording_begin(SceneRecording *recording, const Scene *scene, const SceneTraining *training, Error *error);
 void scene_recording_end(SceneRecording *recording);
 

@@ -108,8 +108,8 @@ World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *err
 /* Sees the contact problem of a step after the step; since: steps since the bomb's first touch. */
 typedef bool LaunchSee(void *context, const ContactProblem *problem, Phase phase, int since, Error *error);
 
-/* Runs a launch from that world on, up to `steps` steps from the bomb's first touch, which are its impact phase. Ends if the
-   state becomes NaN or infinite. */
+/* Runs a launch from that world on, up to `steps` steps from the bomb's first touch, which are its impact phase. Ends
+   if the state becomes NaN or infinite. */
 bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, const ContactSolver *solver, int steps,
                 LaunchSee *see, void *context, Error *error);
 
@@ -133,8 +133,8 @@ typedef struct SceneNetRollout {
 bool scene_net_rollout(const SceneNetRollout *rollout, SceneNetSamples *samples, const Progress *progress,
                        Error *error);
 
-/* Fits scene-net's network to samples by mini-batch Adam; the rate decays to 0 by half a cosine. Quantisation-aware: loss
-   and gradient are computed with the packed rows (nets/kernels.h), the step changes the float rows, which are
+/* Fits scene-net's network to samples by mini-batch Adam; the rate decays to 0 by half a cosine. Quantisation-aware:
+   loss and gradient are computed with the packed rows (nets/kernels.h), the step changes the float rows, which are
    then packed again. Source: straight-through estimator, Bengio, Leonard, Courville, "Estimating or Propagating
    Gradients Through Stochastic Neurons for Conditional Computation" (2013), 4. */
 
@@ -148,8 +148,8 @@ typedef struct SceneNetFit {
 } SceneNetFit;
 
 /* Changes the network's parameters and, if learn_factors, its factors. The samples have its inputs
-   (scene_net_samples_compute_inputs). If progress stops the fit, keeps the current parameters. Same bits for any number of
-   threads. False with error set: memory, or a NaN or infinite loss (the message names the epoch). */
+   (scene_net_samples_compute_inputs). If progress stops the fit, keeps the current parameters. Same bits for any number
+   of threads. False with error set: memory, or a NaN or infinite loss (the message names the epoch). */
 bool scene_net_fit(SceneNet *network, const SceneNetSamples *samples, const SceneNetFit *fit, const Progress *progress,
                    Error *error);
 

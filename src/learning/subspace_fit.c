@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Shares of a component's root mean square: noise of the two states that a window starts with, and of their difference. */
+/* Shares of a component's root mean square: noise of the two states that a window starts with, and of their
+   difference. */
 static const double noise_of_state = 0.01, noise_of_change = 0.01;
 
 void window_linear(const WindowData *data, double *linear) {

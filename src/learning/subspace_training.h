@@ -28,16 +28,16 @@ static inline const float *pose_row(const PoseRows *rows, int launch, int state)
     return rows->rows + ((size_t)launch * (size_t)rows->states + (size_t)state) * (size_t)rows->numbers;
 }
 
-/* Fills rest and basis of a net. poses[bodies of the scene]: where they rest without a bomb; the rest of the bomb is the
-   mean of its rows. */
+/* Fills rest and basis of a net. poses[bodies of the scene]: where they rest without a bomb; the rest of the bomb is
+   the mean of its rows. */
 bool pose_components_fit(const PoseRows *rows, const Scene *scene, const BodyPose *poses, SubspaceNet *net,
                          Error *error);
 
 /* components[launches, states, components of the net] of all rows; fills low and high. */
 void pose_components_project(const PoseRows *rows, SubspaceNet *net, float *components);
 
-/* What the training of a predictor takes from the recorded launches alone: its linear term, and the scales of its inputs
-   and outputs. Holden et al. 2019, section 5. */
+/* What the training of a predictor takes from the recorded launches alone: its linear term, and the scales of its
+   inputs and outputs. Holden et al. 2019, section 5. */
 
 /* What a predictor is trained on. */
 typedef struct WindowData {
@@ -63,8 +63,8 @@ static inline const float *window_state(const WindowData *data, int launch, int 
 /* Least squares of z' = a z + b z_before over all rows, for each component by itself. linear[2, count] */
 void window_linear(const WindowData *data, double *linear);
 
-/* Writes the linear term and a network of two hidden layers (in the order of NetworkBlock's parameters), with the scales
-   in its weights, to a predictor of the same sizes. */
+/* Writes the linear term and a network of two hidden layers (in the order of NetworkBlock's parameters), with the
+   scales in its weights, to a predictor of the same sizes. */
 void window_scales_store(const WindowData *data, const WindowScales *scales, const double *parameters,
                          SubspacePredictor *predictor);
 
@@ -91,9 +91,9 @@ bool subspace_score(const SubspaceNet *net, const SubspacePredictor *predictor, 
 /* How far other runs of the same launches end up from the recorded ones. */
 bool subspace_distance(const PoseRows *rows, const PoseRows *others, SubspaceErrors *errors, Error *error);
 
-/* Trains one predictor on windows of recorded launches, through its own predictions: the components that it predicts in a
-   frame are its inputs in the next. Holden et al. 2019, section 5: windows of 32 frames, starts with noise, the error of
-   components and of their change. Backpropagation through time: Werbos (1990). */
+/* Trains one predictor on windows of recorded launches, through its own predictions: the components that it predicts in
+   a frame are its inputs in the next. Holden et al. 2019, section 5: windows of 32 frames, starts with noise, the error
+   of components and of their change. Backpropagation through time: Werbos (1990). */
 
 enum {
     WINDOW_FRAMES = 32,
@@ -143,8 +143,8 @@ enum { SUBSPACE_HELD_OUT = 20 }; /* launches */
 bool subspace_record(PoseRows *rows, const Scene *scene, const char *method, const Launch *launches, int count,
                      const Progress *progress, Error *error);
 
-/* NULL with error set if the scene has no family of launches or too many bodies, a run fails, the state cannot be written
-   or read, or memory is short; ERROR_INTERRUPTED if progress requests a stop: the state stays. Same bits for any number of
-   threads, and however often it was interrupted. */
+/* NULL with error set if the scene has no family of launches or too many bodies, a run fails, the state cannot be
+   written or read, or memory is short; ERROR_INTERRUPTED if progress requests a stop: the state stays. Same bits for
+   any number of threads, and however often it was interrupted. */
 SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training, const Progress *progress,
                             Error *error);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs in a page: scenes are stepped in a browser with the bits of this program.
 
-   The room is compiled twice. As a WebAssembly module (the option TWINBOX_LIVE of CMake) it is what a page runs: one instance in
-   each worker, without imports, threads and files. As part of the program it packs what a page needs, and tests link it.
+   The room is compiled twice. As a WebAssembly module (the option TWINBOX_LIVE of CMake) it is what a page runs: one
+   instance in each worker, without imports, threads and files. As part of the program it packs what a page needs, and
+   tests link it.
 
    A page, in JavaScript, where `live` are the exports of the module, `memory` among them:
 
@@ -16,9 +17,9 @@
        const x = new Float32Array(live.memory.buffer, live.live_positions(run), 2 * frames * bodies);
        const hash = BigInt.asUintN(64, live.live_hash(run, frame)).toString(16).padStart(16, "0");
 
-   All texts are UTF-8 with a NUL. A text that a function returns is valid until the next call that returns one. Any call may
-   move or grow the memory: make views of it again after each call. Pointers are numbers; 0 is NULL. tests/live/live.mjs
-   is a small client. */
+   All texts are UTF-8 with a NUL. A text that a function returns is valid until the next call that returns one. Any
+   call may move or grow the memory: make views of it again after each call. Pointers are numbers; 0 is NULL.
+   tests/live/live.mjs is a small client. */
 #pragma once
 #include "base/base.h"
 #include "methods/methods.h"
@@ -32,9 +33,9 @@
 #define LIVE_EXPORT(name)
 #endif
 
-/* The methods that a page can run: the registry of the module. All but exec, whose programs no browser starts, and playback, which
-   records a hundred launches before each of its own. There are two modules: the plain one has no networks, and is two thirds as
-   large. */
+/* The methods that a page can run: the registry of the module. All but exec, whose programs no browser starts, and
+   playback, which records a hundred launches before each of its own. There are two modules: the plain one has no
+   networks, and is two thirds as large. */
 #define LIVE_PLAIN_METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                           \
     SOLVER(momentum)                         \
@@ -71,8 +72,9 @@ LIVE_EXPORT(live_release) void live_release(void *memory);
 /* Why the last function failed that returned NULL: "scene.yaml:7:12: error: ...". Empty: none has. */
 LIVE_EXPORT(live_error) const char *live_error(void);
 
-/* The methods of this module as JSON: an array of objects with name, summary, caption (or null), needs_network, and settings:
-   an array of {key, summary, type: "int" | "float" | "bool" | "text", from, to}, where only numbers have from and to. */
+/* The methods of this module as JSON: an array of objects with name, summary, caption (or null), needs_network, and
+   settings: an array of {key, summary, type: "int" | "float" | "bool" | "text", from, to}, where only numbers have from
+   and to. */
 LIVE_EXPORT(live_methods) const char *live_methods(void);
 
 /* Takes over the memory of the bundle, also on failure. NULL: it is damaged. */
@@ -81,15 +83,16 @@ LIVE_EXPORT(live_open) LiveScene *live_open(void *bundle, int size);
 /* After the last of its runs has ended. */
 LIVE_EXPORT(live_close) void live_close(LiveScene *scene);
 
-/* The scene with these settings ("name=value,name=value", as --set takes them; empty: none) as JSON: name, dt, steps, iterations,
-   scene_hash (of Trajectory), bodies (with the bomb), gravity [x, y], camera {center, size} (size [0, 0]: fitted to the run), bomb (or null) with frame,
-   x, y, mass, speed, velocity [x, y], size [x, y] and reach [from, to] of x; parameters, an array of
-   {name, unit, value, from, to, whole, common}. common: every scene has it; from and to are then no bounds, only a sensible
-   range. NULL: a setting is refused. */
+/* The scene with these settings ("name=value,name=value", as --set takes them; empty: none) as JSON: name, dt, steps,
+   iterations, scene_hash (of Trajectory), bodies (with the bomb), gravity [x, y], camera {center, size} (size [0, 0]:
+   fitted to the run), bomb (or null) with frame, x, y, mass, speed, velocity [x, y], size [x, y] and reach [from, to]
+   of x; parameters, an array of {name, unit, value, from, to, whole, common}. common: every scene has it; from and to
+   are then no bounds, only a sensible range. NULL: a setting is refused. */
 LIVE_EXPORT(live_describe) const char *live_describe(LiveScene *scene, const char *settings);
 
-/* A run of the scene with these settings by a method as on the command line, "interior:near=0.02". It has frame 0. contacts:
-   whether they are recorded; they take most of the memory. NULL: settings, method or launch are refused, or memory is short. */
+/* A run of the scene with these settings by a method as on the command line, "interior:near=0.02". It has frame 0.
+   contacts: whether they are recorded; they take most of the memory. NULL: settings, method or launch are refused, or
+   memory is short. */
 LIVE_EXPORT(live_begin)
 LiveRun *live_begin(LiveScene *scene, const char *settings, const char *method, int contacts);
 LIVE_EXPORT(live_end) void live_end(LiveRun *run);
@@ -105,7 +108,8 @@ LIVE_EXPORT(live_frames) int live_frames(const LiveRun *run);
 LIVE_EXPORT(live_bodies) int live_bodies(const LiveRun *run);
 LIVE_EXPORT(live_bomb) int live_bomb(const LiveRun *run);
 
-/* [bodies] width and height, m; kg; names of 32 bytes, with zeros behind them, or NULL if no body has one; 1: static. */
+/* [bodies] width and height, m; kg; names of 32 bytes, with zeros behind them, or NULL if no body has one; 1:
+   static. */
 LIVE_EXPORT(live_sizes) const float *live_sizes(const LiveRun *run);
 LIVE_EXPORT(live_masses) const float *live_masses(const LiveRun *run);
 LIVE_EXPORT(live_names) const BodyName *live_names(const LiveRun *run);
@@ -117,9 +121,9 @@ LIVE_EXPORT(live_angles) const float *live_angles(const LiveRun *run);
 LIVE_EXPORT(live_velocities) const float *live_velocities(const LiveRun *run);
 LIVE_EXPORT(live_spins) const float *live_spins(const LiveRun *run);
 
-/* The contacts of the step that led to frame k, up to the last one, are live_contact_start(k) ... live_contact_start(k + 1) - 1
-   of the array, nine 32-bit words each: a, b, feature (integers), point x, y, normal x, y, normal and tangent impulse (floats;
-   TrajectoryContact). */
+/* The contacts of the step that led to frame k, up to the last one, are live_contact_start(k) ... live_contact_start(k
+   + 1) - 1 of the array, nine 32-bit words each: a, b, feature (integers), point x, y, normal x, y, normal and tangent
+   impulse (floats; TrajectoryContact). */
 LIVE_EXPORT(live_contact_start) int live_contact_start(const LiveRun *run, int frame);
 LIVE_EXPORT(live_contacts) const void *live_contacts(const LiveRun *run);
 
@@ -130,8 +134,8 @@ LIVE_EXPORT(live_hash) uint64_t live_hash(const LiveRun *run, int frame);
    NULL if a step failed for another reason than a NaN or infinite state. */
 LIVE_EXPORT(live_verdict) const char *live_verdict(const LiveRun *run);
 
-/* What a picture of the run so far shows, as twinbox render frames it, as JSON: set, left, right, bottom, top, action_left,
-   action_right, room_left, room_right, middle (CameraFrame in runs/framing.h), m. */
+/* What a picture of the run so far shows, as twinbox render frames it, as JSON: set, left, right, bottom, top,
+   action_left, action_right, room_left, room_right, middle (CameraFrame in runs/framing.h), m. */
 LIVE_EXPORT(live_framing) const char *live_framing(const LiveRun *run);
 
 /* The functions of the program. */
@@ -152,6 +156,6 @@ bool live_has_method(const MethodDescription *description);
 extern const unsigned char live_networks_wasm[], live_plain_wasm[];
 extern const size_t live_networks_wasm_size, live_plain_wasm_size;
 
-/* A bundle: the scene file and the networks of these methods [count], as on the command line. The paths in it are without the
-   scene's folder. *bundle: to be freed. ERROR_INPUT also for a method that the module does not have. */
+/* A bundle: the scene file and the networks of these methods [count], as on the command line. The paths in it are
+   without the scene's folder. *bundle: to be freed. ERROR_INPUT also for a method that the module does not have. */
 bool live_pack(const char *scene, const char *const *methods, int count, void **bundle, size_t *size, Error *error);

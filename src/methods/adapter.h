@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Programs that step scenes or solve contact problems for twinbox: how they are started, asked and ended. The protocol is in
-   scenes/engines/README.md. */
+/* Programs that step scenes or solve contact problems for twinbox: how they are started, asked and ended. The protocol
+   is in scenes/engines/README.md. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -33,9 +33,10 @@ typedef struct AdapterFrame {
 /* Keeps the text for programs_failure(). */
 void program_failed(const char *text);
 
-/* An adapter of the program in the setting `program`, to which the other settings are passed, but for those in the method's
-   table, which twinbox reads itself: one that runs already and has nothing to do, else a new one. NULL with `why` set: the
-   program cannot be run, does not answer in `seconds` as it should, or answers what another method takes. */
+/* An adapter of the program in the setting `program`, to which the other settings are passed, but for those in the
+   method's table, which twinbox reads itself: one that runs already and has nothing to do, else a new one. NULL with
+   `why` set: the program cannot be run, does not answer in `seconds` as it should, or answers what another method
+   takes. */
 Adapter *adapter_take(const MethodDescription *method, const Settings *settings, double seconds, char why[],
                       size_t size);
 
@@ -54,7 +55,7 @@ const char *adapter_why(const Adapter *adapter);
 /* Frames that were asked for and have not been read. */
 int adapter_frames_left(const Adapter *adapter);
 
-/* Asks for the impulses [contact_count] of a contact problem, N s: any finite numbers. *ns: that the program took, as it
-   says; 0: unknown. */
+/* Asks for the impulses [contact_count] of a contact problem, N s: any finite numbers. *ns: that the program took, as
+   it says; 0: unknown. */
 bool adapter_solve(Adapter *adapter, const ContactProblem *problem, ContactImpulse *impulses, int64_t *ns,
                    double until);

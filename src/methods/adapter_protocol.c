@@ -17,8 +17,8 @@
 
 enum { NUMBER_MAX = 32 };
 
-/* Numbers of a body in a request. For an engine: static, width, height, x, y, angle, vx, vy, omega, mass, friction. For a
-   solver, and of a contact behind its two bodies: put_problem(). */
+/* Numbers of a body in a request. For an engine: static, width, height, x, y, angle, vx, vy, omega, mass, friction. For
+   a solver, and of a contact behind its two bodies: put_problem(). */
 enum { BODY_NUMBERS = 11, PROBLEM_BODY_NUMBERS = 10, CONTACT_NUMBERS = 11 };
 
 /* Of the binary form, little-endian. */

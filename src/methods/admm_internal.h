@@ -10,9 +10,9 @@
    divided by (L / e)^0.05, and the matrix factorized again, while one of |x - y| and |r dy + e dx| is ten times the
    other (the spectral rule). Source of the method and of all these numbers: Carpentier, Le Lidec, Montaut, "From
    Compliant to Rigid Contact Simulation: a Unified and Efficient Approach" (2024), and Pinocchio, their program. That
-   keeps r from step to step; here each step begins with its own, so that a problem has one answer. Rows are scaled by the roots of
-   their effective masses, as a preconditioner may there: G has ones on its diagonal, and no unit of length or mass
-   changes an iteration.
+   keeps r from step to step; here each step begins with its own, so that a problem has one answer. Rows are scaled by
+   the roots of their effective masses, as a preconditioner may there: G has ones on its diagonal, and no unit of length
+   or mass changes an iteration.
 
    With D = r + e and w = (M + J^T J / D)^-1 J^T q / D, the solution for q is (q - J w) / D: so what is factorized has
    a block for each pair of touching bodies (block_lu.h), however many contacts they have. Same bits on every

@@ -120,7 +120,8 @@ static AvbdRow make_row(Vec2 axis, Vec2 arm_a, Vec2 arm_b, float start) {
 }
 
 /* A contact that was there begins with the penalty that it had; a new one with the smallest. In a step of unknown past,
-   only the impulse tells which it is: then the penalty is that at which a pass moves as far as a rigid contact would. */
+   only the impulse tells which it is: then the penalty is that at which a pass moves as far as a rigid contact
+   would. */
 static float first_penalty(const Avbd *avbd, const AvbdRow *last, bool loaded, float mass, float dt) {
     float penalty = last != NULL ? avbd->gamma * last->penalty : loaded ? mass / (dt * dt) : 0;
     return contact_clamp(penalty, PENALTY_MIN, PENALTY_MAX);
@@ -210,8 +211,8 @@ static float tangent_force(const AvbdRow *row, float gap, float most) {
     return contact_clamp(row->force - row->penalty * gap, -most, most);
 }
 
-/* N/m: at its bound a force hardly resists more, the less the further the contact slides (its secant). The 2D program has the
-   penalty there, too: then each pass gives a box that slides only a part of its friction. */
+/* N/m: at its bound a force hardly resists more, the less the further the contact slides (its secant). The 2D program
+   has the penalty there, too: then each pass gives a box that slides only a part of its friction. */
 static float tangent_stiffness(const AvbdRow *row, float gap, float most) {
     const float way = fabsf(gap);
     return row->penalty * way > most ? most / way : row->penalty;
@@ -292,8 +293,8 @@ static void update_multipliers(Avbd *avbd, float share) {
     }
 }
 
-/* Makes the passes of a step: moves the bodies, and fills the velocities of the solution, which come from the displacements
-   before the pass that only moves bodies out. */
+/* Makes the passes of a step: moves the bodies, and fills the velocities of the solution, which come from the
+   displacements before the pass that only moves bodies out. */
 static void make_passes(Avbd *avbd, const Step *step, const ContactProblem *problem, ContactSolution *solution) {
     const bool correct = step->scene->position_correction, stabilize = avbd->alpha < 0 && correct;
     const float share = avbd->alpha < 0 || !correct ? 0.0f : 1.0f - avbd->alpha, inverse_dt = 1.0f / problem->dt;

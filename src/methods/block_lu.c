@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The symbolic part: the graph of a contact problem, and the pattern with fill. A row's blocks are the columns on the paths
-   from its neighbours towards the root of the elimination tree: each is found once, so the time is that of writing the
-   pattern. Source: Liu, "The Role of Elimination Trees in Sparse Factorization" (1990). */
+/* The symbolic part: the graph of a contact problem, and the pattern with fill. A row's blocks are the columns on the
+   paths from its neighbours towards the root of the elimination tree: each is found once, so the time is that of
+   writing the pattern. Source: Liu, "The Role of Elimination Trees in Sparse Factorization" (1990). */
 #include "methods/block_lu.h"
 
 #include "base/base.h"

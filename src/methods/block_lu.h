@@ -82,8 +82,8 @@ static inline Block3 *block_lu_upper(const BlockLu *lu) { return block_lu_lower(
 /* Index of a block that is written but never read: of pairs with a body that does not move. */
 static inline int32_t block_lu_spare(const BlockLu *lu) { return lu->count + 1 + lu->below; }
 
-/* The contact graph of a problem, and the rows of its contacts. Nodes are the moving bodies that touch something, in the
-   order of the bodies; an edge is a pair of two of them. */
+/* The contact graph of a problem, and the rows of its contacts. Nodes are the moving bodies that touch something, in
+   the order of the bodies; an edge is a pair of two of them. */
 
 enum { BLOCK_SLOTS = 4, BLOCK_PAIRS = 2 }; /* contacts that are computed together: two of each of two pairs */
 

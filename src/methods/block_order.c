@@ -35,7 +35,8 @@ static int bits_of(const uint64_t *row, size_t words) {
     return bits;
 }
 
-/* The nodes that are left: a row of bits per node, for its neighbours, and one per degree, for the nodes that have it. */
+/* The nodes that are left: a row of bits per node, for its neighbours, and one per degree, for the nodes that have
+   it. */
 typedef struct Rows {
     int count, lowest;           /* no degree is below `lowest` */
     size_t words;                /* of a row */
@@ -230,8 +231,8 @@ static void measure_elements(Quotient *q, int pivot) {
     }
 }
 
-/* Removes what is absorbed or connected by the pivot from a node's list, and adds the pivot as its first element. Returns the
-   weight that it has beyond the pivot; 0: it is eliminated with the pivot. */
+/* Removes what is absorbed or connected by the pivot from a node's list, and adds the pivot as its first element.
+   Returns the weight that it has beyond the pivot; 0: it is eliminated with the pivot. */
 static int block_order_shorten(Quotient *q, int node, int pivot, uint32_t *sum) {
     int32_t *list = q->list + q->start[node];
     int kept = 0, weight = 0;

@@ -7,9 +7,9 @@
 
    Larger graphs by approximate degrees on a quotient graph. An eliminated node becomes an element: the list of its
    neighbours, which are then all connected. Elements whose lists lie in the new one are absorbed by it. So a node's
-   neighbours are those in its own list and those of its elements, and its degree is at most the sum of what each element has
-   beyond the newest. Nodes with equal lists are merged, and eliminated together. As little fill as AMD of SuiteSparse,
-   within 7% on pyramids of 10 to 3,916 boxes. Nested dissection left 8% to 34% more to multiply.
+   neighbours are those in its own list and those of its elements, and its degree is at most the sum of what each
+   element has beyond the newest. Nodes with equal lists are merged, and eliminated together. As little fill as AMD of
+   SuiteSparse, within 7% on pyramids of 10 to 3,916 boxes. Nested dissection left 8% to 34% more to multiply.
 
    Sources: George, Liu, "The Evolution of the Minimum Degree Ordering Algorithm" (1989); Amestoy, Davis, Duff, "An
    Approximate Minimum Degree Ordering Algorithm" (1996). */

@@ -2,9 +2,9 @@
 /* The physics engine: sequential impulses with warm starting, as in Box2D-Lite. Method, source and where it fails:
    methods/sweeps_scalar.c.
 
-   It also has Box2D-Lite's contacts, bit for bit, and so fails where they do: a box that slides over flush tiles catches at
-   seams once it has sunk a little, and thin plates that lie on one another change places. With `keep`, and in other
-   methods, contacts are mended (ContactRules). */
+   It also has Box2D-Lite's contacts, bit for bit, and so fails where they do: a box that slides over flush tiles
+   catches at seams once it has sunk a little, and thin plates that lie on one another change places. With `keep`, and
+   in other methods, contacts are mended (ContactRules). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

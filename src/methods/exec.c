@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Another program steps the scene: a real engine behind an adapter of some lines (scenes/engines/README.md).
 
-   The program gets the bodies once, and is asked for several steps at a time, so that a round trip costs less than a step. Its
-   poses and velocities become those of the world; contacts are those that collision detection finds between its poses, without
-   impulses. So it runs whole scenes from the start, not single steps of others.
+   The program gets the bodies once, and is asked for several steps at a time, so that a round trip costs less than a
+   step. Its poses and velocities become those of the world; contacts are those that collision detection finds between
+   its poses, without impulses. So it runs whole scenes from the start, not single steps of others.
 
    Fails where the program does: it ends, is silent for too long, or answers what cannot be. */
 #include "base/base.h"

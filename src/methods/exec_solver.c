@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Another program solves the contact problem of each step: a solver or a network of others behind an adapter of some lines
-   (scenes/engines/README.md).
+/* Another program solves the contact problem of each step: a solver or a network of others behind an adapter of some
+   lines (scenes/engines/README.md).
 
-   The program gets bodies and contacts of the step, and answers with impulses. They are taken as they are, also where they pull
-   or leave the friction cone: scores tell. The velocities that follow conserve momentum whatever it answers. A step without
-   contacts asks nothing.
+   The program gets bodies and contacts of the step, and answers with impulses. They are taken as they are, also where
+   they pull or leave the friction cone: scores tell. The velocities that follow conserve momentum whatever it answers.
+   A step without contacts asks nothing.
 
    Fails where the program does: it ends, is silent for too long, or answers what cannot be. */
 #include "base/base.h"

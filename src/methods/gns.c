@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Graph network-based simulator: boxes are particles, and a network learned how they move. Alvaro Sanchez-Gonzalez, Jonathan
-   Godwin, Tobias Pfaff, Rex Ying, Jure Leskovec and Peter Battaglia, "Learning to Simulate Complex Physics with Graph
-   Networks" (ICML 2020, arXiv 2002.09405).
+/* Graph network-based simulator: boxes are particles, and a network learned how they move. Alvaro Sanchez-Gonzalez,
+   Jonathan Godwin, Tobias Pfaff, Rex Ying, Jure Leskovec and Peter Battaglia, "Learning to Simulate Complex Physics
+   with Graph Networks" (ICML 2020, arXiv 2002.09405).
 
-   Each box is nine particles. Edges connect particles within a radius, of one box or two. A network passes messages along
-   them (nets/kinds.h) and returns each particle's acceleration besides gravity's, and then
+   Each box is nine particles. Edges connect particles within a radius, of one box or two. A network passes messages
+   along them (nets/kinds.h) and returns each particle's acceleration besides gravity's, and then
 
        v' = v + dt (g + a),   x' = x + dt v'       (semi-implicit Euler)
 
-   There are no contacts and no solver: collision detection serves measurement only. With rigid=on each box takes the pose
-   that fits its particles best, and the particles their places on it; with rigid=off, as in the paper, particles stay where
-   they are, and that pose is only shown. The paper's network also learns gravity; here it is given, so that net=off is the
-   same without what was learned: boxes in free fall.
+   There are no contacts and no solver: collision detection serves measurement only. With rigid=on each box takes the
+   pose that fits its particles best, and the particles their places on it; with rigid=off, as in the paper, particles
+   stay where they are, and that pose is only shown. The paper's network also learns gravity; here it is given, so that
+   net=off is the same without what was learned: boxes in free fall.
 
-   A particle's past is kept from step to step. A box in another state than the last step left it in, or new, begins with a
-   past of constant velocity.
+   A particle's past is kept from step to step. A box in another state than the last step left it in, or new, begins
+   with a past of constant velocity.
 
-   Fails where it was not trained: nothing in the method keeps boxes apart, or momentum. It is as good as its data for that
-   motion, and slow: its cost is that of tens of edges of each particle, M times. Under another gravity than in its training
-   boxes rise or sink, as the network holds what rests against the gravity that it learned; such steps are counted as unlike
-   the training. */
+   Fails where it was not trained: nothing in the method keeps boxes apart, or momentum. It is as good as its data for
+   that motion, and slow: its cost is that of tens of edges of each particle, M times. Under another gravity than in its
+   training boxes rise or sink, as the network holds what rests against the gravity that it learned; such steps are
+   counted as unlike the training. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

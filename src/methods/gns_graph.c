@@ -21,8 +21,8 @@ void box_particles_place(Vec2 *particles, Vec2 size, const BodyPose *pose) {
         particles[k] = vec2_add(pose->position, mat22_multiply(rotation, box_particle(k, size)));
 }
 
-/* tan(a/2) = sin a / (1 + cos a), twice more tan(a/2) = t / (1 + sqrt(1 + t^2)); then at most tan(pi / 16) = 0.2, where the
-   series of the arc tangent needs few terms. Beyond a quarter turn: pi less the angle of the mirror image. */
+/* tan(a/2) = sin a / (1 + cos a), twice more tan(a/2) = t / (1 + sqrt(1 + t^2)); then at most tan(pi / 16) = 0.2, where
+   the series of the arc tangent needs few terms. Beyond a quarter turn: pi less the angle of the mirror image. */
 double plane_angle(double cosine, double sine) {
     enum { TERMS = 12, HALVINGS = 2 };
     const double pi = 0x1.921fb54442d18p1, length = sqrt(cosine * cosine + sine * sine);
@@ -238,7 +238,8 @@ static int64_t cell_of(float x, float radius) {
     return (int64_t)(at < -cell_limit ? -cell_limit : at > cell_limit ? cell_limit : at);
 }
 
-/* Two large primes (Teschner et al., "Optimized Spatial Hashing for Collision Detection of Deformable Objects", 2003). */
+/* Two large primes (Teschner et al., "Optimized Spatial Hashing for Collision Detection of Deformable Objects",
+   2003). */
 static int list_of(int64_t x, int64_t y, int lists) {
     return (int)(((uint64_t)x * 73856093u ^ (uint64_t)y * 19349663u) & (uint64_t)(lists - 1));
 }

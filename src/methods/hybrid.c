@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A memory answers familiar impacts; others are solved to convergence. A step whose warm start has a residual of the gate
-   or more is looked up in the memory (methods/hybrid_memory.h): an entry with the same contacts whose ellipsoid of
+/* A memory answers familiar impacts; others are solved to convergence. A step whose warm start has a residual of the
+   gate or more is looked up in the memory (methods/hybrid_memory.h): an entry with the same contacts whose ellipsoid of
    accuracy contains the state answers with its impulses and a linear map,
 
        P = P0 + A (x - x0)     if (x - x0)^T M (x - x0) <= 1,
 
-   clamped to the friction cones. Impulses act on both bodies alike, so momentum is conserved whatever is stored. All other
-   steps are those of `interior:near=0.001` (interior.c), which the reference helps out. The memory does not change while
-   it answers: the same file gives the same run. It grows between launches (learning/hybrid_entries.c).
+   clamped to the friction cones. Impulses act on both bodies alike, so momentum is conserved whatever is stored. All
+   other steps are those of `interior:near=0.001` (interior.c), which the reference helps out. The memory does not
+   change while it answers: the same file gives the same run. It grows between launches (learning/hybrid_entries.c).
 
    Sources: Pope, "Computationally efficient implementation of combustion chemistry using in situ adaptive tabulation"
-   (1997); Lu, Pope, "An improved algorithm for in situ adaptive tabulation" (2009). The combination of engine and memory is
-   the paper's description of Ajay et al. (2019). Fails where impacts do not come back: in a pile each impact has contacts
-   of its own, and a new family of launches starts from nothing. Where an ellipsoid grew over a place it was never
-   checked at, an answer can be wrong by more than the tolerance, and nothing tells at run time. */
+   (1997); Lu, Pope, "An improved algorithm for in situ adaptive tabulation" (2009). The combination of engine and
+   memory is the paper's description of Ajay et al. (2019). Fails where impacts do not come back: in a pile each impact
+   has contacts of its own, and a new family of launches starts from nothing. Where an ellipsoid grew over a place it
+   was never checked at, an answer can be wrong by more than the tolerance, and nothing tells at run time. */
 #include "base/base.h"
 #include "base/hash.h"
 #include "engine/engine.h"

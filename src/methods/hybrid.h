@@ -24,12 +24,12 @@ typedef struct HybridWatch {
     void *context;
 } HybridWatch;
 
-/* m/s: the gate, RMS residual of the warm start, where no memory sets it. As in scene-net: below it at rest, above during a
-   shock. */
+/* m/s: the gate, RMS residual of the warm start, where no memory sets it. As in scene-net: below it at rest, above
+   during a shock. */
 extern const float hybrid_gate;
 
-/* memory: the caller's, or NULL: no step is answered. It must outlive the solver, and may grow between launches. watch: or
-   NULL. */
+/* memory: the caller's, or NULL: no step is answered. It must outlive the solver, and may grow between launches. watch:
+   or NULL. */
 bool hybrid_make(ContactSolver *solver, const HybridMemory *memory, const HybridWatch *watch, Error *error);
 
 /* The answer of an entry: impulses clamped to their friction cones, and the velocities that follow; adds to

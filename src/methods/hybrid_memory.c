@@ -32,7 +32,8 @@ static bool grow_table(HybridMemory *memory) {
     return true;
 }
 
-/* Gives an array that keeps its items room for `count` of `size` bytes. False when memory is short; the array stays valid. */
+/* Gives an array that keeps its items room for `count` of `size` bytes. False when memory is short; the array stays
+   valid. */
 static bool resize(void **items, size_t count, size_t size) {
     void *grown = realloc(*items, count * size);
     if (grown == NULL) return false;
@@ -83,7 +84,8 @@ static int place_of(const HybridMemory *memory, const HybridList *list, float x)
     return low;
 }
 
-/* Room for one more entry in a set's list; false when memory is short. Then the entry, added last, goes to its place. */
+/* Room for one more entry in a set's list; false when memory is short. Then the entry, added last, goes to its
+   place. */
 static bool reserve_list(HybridMemory *memory, int set) {
     HybridList *list = &memory->set_lists[set];
     return array_reserve((void **)&list->entries, &list->capacity, (size_t)list->count + 1, sizeof *list->entries);
@@ -220,8 +222,8 @@ void hybrid_memory_answer(const HybridMemory *memory, int entry, const float *ke
     }
 }
 
-/* With y = M d and s = d^T M d: M' = M + (1 - s) / s^2 y y^T has d^T M' d = 1 and changes no direction that M-orthogonal to d
-   has. For s > 1 this is the smallest ellipsoid that contains the old one and d (Pope 1997, 3.4). */
+/* With y = M d and s = d^T M d: M' = M + (1 - s) / s^2 y y^T has d^T M' d = 1 and changes no direction that
+   M-orthogonal to d has. For s > 1 this is the smallest ellipsoid that contains the old one and d (Pope 1997, 3.4). */
 void hybrid_memory_stretch(HybridMemory *memory, int entry, const float *key) {
     float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
     const float length = take_away(memory, entry, key, from),

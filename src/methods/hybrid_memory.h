@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A memory of solved impacts of one scene, in the manner of in-situ adaptive tabulation. An entry holds a key x0 (the state
-   before the step), the converged impulses P0, a linear map A, and an ellipsoid of accuracy
+/* A memory of solved impacts of one scene, in the manner of in-situ adaptive tabulation. An entry holds a key x0 (the
+   state before the step), the converged impulses P0, a linear map A, and an ellipsoid of accuracy
    { x : (x - x0)^T M (x - x0) <= 1 }. Inside it the answer is
 
        P = P0 + A (x - x0),   A (x - x0) = sum over up to HYBRID_NEAR entries j of (w_j . (x - x0)) (P_j - P0)
 
    The rows w_j are a least-squares fit over the neighbours when the entry is added: a map of that rank needs no more
-   memory than the rows, and an answer is an affine combination of solutions. An ellipsoid grows to the smallest one of the same
-   centre that holds a new point, too, and shrinks to the largest one that it contains with the point on its border.
+   memory than the rows, and an answer is an affine combination of solutions. An ellipsoid grows to the smallest one of
+   the same centre that holds a new point, too, and shrinks to the largest one that it contains with the point on its
+   border.
 
    The key: the bomb's state, the components of the other bodies' states along principal directions, and their distance
    from the space of these directions. All in m/s (hybrid_memory_numbers). Which contacts exist, with the bodies' sizes
@@ -80,8 +81,8 @@ void hybrid_memory_destroy(HybridMemory *memory);
 size_t hybrid_memory_bytes(const HybridMemory *memory);
 size_t hybrid_memory_entry_bytes(const HybridMemory *memory, int contacts);
 
-/* The state of a body in m/s: metres times the rate at which position correction pushes overlaps apart, angles and spins
-   times half the size. `angle` replaces the body's. */
+/* The state of a body in m/s: metres times the rate at which position correction pushes overlaps apart, angles and
+   spins times half the size. `angle` replaces the body's. */
 void hybrid_memory_numbers(const ProblemBody *body, float angle, float dt, float numbers[HYBRID_NUMBERS]);
 
 /* key[key_size] from the numbers of the bomb and of the other bodies in order [numbers]. */
@@ -126,8 +127,8 @@ void hybrid_memory_stretch(HybridMemory *memory, int entry, const float *key);
 
 bool hybrid_memory_write(const HybridMemory *memory, const char *path, Error *error);
 
-/* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, a NaN or infinite
-   number, a set that is there twice or an entry of an unknown set. */
+/* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, a NaN or
+   infinite number, a set that is there twice or an entry of an unknown set. */
 HybridMemory *hybrid_memory_read(const char *path, Error *error);
 
 /* The sets of contacts of a memory (hybrid_memory.h), found by their hashes. */

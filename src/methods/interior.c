@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interior-point steps with a sparse direct solve over the bodies; equations and sources in methods/interior_point_internal.h.
-   Each island is solved by itself, with no more than it needs in that step (methods/interior_look.h):
+/* Interior-point steps with a sparse direct solve over the bodies; equations and sources in
+   methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step
+   (methods/interior_look.h):
 
-   1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at rest.
+   1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at
+      rest.
    2. A few sweeps with momentum, where they save more than they cost.
-   3. Iterations until the residual is at most `near`: from near the bounds, and if these break down, from far inside them.
+   3. Iterations until the residual is at most `near`: from near the bounds, and if these break down, from far inside
+      them.
    4. At impacts the reference's path from its beginning, also where it turns back (methods/interior_path.h).
    5. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
-   The work of all this is counted in sweeps, and has a bound. Iterations end when it is reached; the best answer so far is the
-   solution. The analysis of the matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a
-   pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is left to sweeps.
+   The work of all this is counted in sweeps, and has a bound. Iterations end when it is reached; the best answer so far
+   is the solution. The analysis of the matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13
+   in a pile or a pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is
+   left to sweeps.
 
    Fails at impacts on more than 128 bodies whose central path turns back, as the bound leaves no room to follow it. The
    difficulty there, for all methods, is to find which contacts open, stick and slide. */
@@ -45,22 +49,22 @@ enum {
 
 /* Work is counted, not timed, in sweeps over the island's contacts; its bound is in methods/interior.h. */
 static const double begin_work = 3, load_work = 5.5;
-/* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and walls, 1.4 in
-   piles. */
+/* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and
+   walls, 1.4 in piles. */
 static const double usual_products = 2;
 /* A factorization of the path, in iterations. */
 static const double path_work = 2;
 /* Kept for sweeps where iterations do not converge. */
 static const double last_work = 20, last_work_of_struck_many = 40;
 
-/* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which exceed the
-   residual more than those of iterations. */
+/* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which
+   exceed the residual more than those of iterations. */
 static const float trusted = 0.3f;
 /* And at rest no more of them follow if it is above this multiple: they rarely make up for it. */
 static const float hopeless = 10;
 
-/* Iterations from the start of the sweeps, near the bounds first. If these break down or cycle, it is better to start from
-   there again, further inside, than from where they are. */
+/* Iterations from the start of the sweeps, near the bounds first. If these break down or cycle, it is better to start
+   from there again, further inside, than from where they are. */
 enum { ATTEMPTS = 3 };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
 static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
@@ -73,7 +77,8 @@ static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty
                                                     {&interior_gentle, 1, patient, 25}};
 /* Those of stacks find back after many jumps. */
 static const InteriorAttempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}};
-/* Beyond INTERIOR_MANY_BODIES iterations that do not converge at once rarely do, and impacts' tolerance would let contacts open. */
+/* Beyond INTERIOR_MANY_BODIES iterations that do not converge at once rarely do, and impacts' tolerance would let
+   contacts open. */
 static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
 /* Impacts of more than INTERIOR_MANY_BODIES seldom converge from near the bounds. */
 static const InteriorAttempt at_impact_of_many[ATTEMPTS] = {{&interior_far, 0.1, patient, 40}};
@@ -137,8 +142,8 @@ static bool interior_start(State *solver, const ContactProblem *problem, bool ca
     return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) && (!calm || sweeps_run(sweeps, FIRST_SWEEPS));
 }
 
-/* Sweeps with momentum after the first ones. Sets *done if they are enough: the solution is stored. False when memory is
-   short. */
+/* Sweeps with momentum after the first ones. Sets *done if they are enough: the solution is stored. False when memory
+   is short. */
 static bool continue_sweeps(State *solver, const ContactProblem *problem, const InteriorLook *step,
                             const float *factors, int count, ContactSolution *solution, bool *done) {
     Sweeps *sweeps = &solver->momentum.sweeps;
@@ -149,11 +154,11 @@ static bool continue_sweeps(State *solver, const ContactProblem *problem, const 
     return true;
 }
 
-/* Where sweeps with momentum save as much of an iteration as they cost. At rest iterations converge at once from the first
-   sweeps, or not at all; impacts of many bodies that are not solved by these are hard, and iterations then converge sooner from
-   the plain start. Sweeps carry little where light bodies hold heavy ones, or where there is no friction. In other calm islands
-   of many bodies, some nearly always slide for long after an impact, and iterations towards the small tolerance cycle; sweeps
-   with momentum then reach it in less time. */
+/* Where sweeps with momentum save as much of an iteration as they cost. At rest iterations converge at once from the
+   first sweeps, or not at all; impacts of many bodies that are not solved by these are hard, and iterations then
+   converge sooner from the plain start. Sweeps carry little where light bodies hold heavy ones, or where there is no
+   friction. In other calm islands of many bodies, some nearly always slide for long after an impact, and iterations
+   towards the small tolerance cycle; sweeps with momentum then reach it in less time. */
 static bool try_sweeps(State *solver, const ContactProblem *problem, const InteriorLook *step,
                        ContactSolution *solution, bool *done) {
     *done = false;
@@ -185,8 +190,8 @@ static int affordable(const State *solver, const InteriorLook *step, double befo
     return (int)fmax((solver->left - before - kept) / iteration_work, 0);
 }
 
-/* Loads the island, unless its iterations are too dear: by what its loops tell, so that its matrix is not analysed in vain; then
-   by the analysis. Sets *cheap. False when memory is short. */
+/* Loads the island, unless its iterations are too dear: by what its loops tell, so that its matrix is not analysed in
+   vain; then by the analysis. Sets *cheap. False when memory is short. */
 static bool load_if_cheap(State *solver, const ContactProblem *problem, const InteriorLook *step, bool *cheap) {
     const double usual =
         interior_work(usual_products * step->loops * sqrt(step->loops), solver->momentum.sweeps.pair_count);
@@ -225,8 +230,8 @@ static bool attempt(State *solver, const ContactProblem *problem, const Interior
     return true;
 }
 
-/* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let them
-   open: a wall that creeps once goes on. False when memory is short. */
+/* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let
+   them open: a wall that creeps once goes on. False when memory is short. */
 static bool iterate_interior(State *solver, const ContactProblem *problem, const InteriorLook *step,
                              ContactSolution *solution) {
     const InteriorAttempt *as_impact = step->many                           ? at_impact_of_many
@@ -256,8 +261,8 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Inte
     return true;
 }
 
-/* Begins, and sweeps with momentum until the residual (methods/residual.h) is below `near`, or the work is done. False when
-   memory is short. */
+/* Begins, and sweeps with momentum until the residual (methods/residual.h) is below `near`, or the work is done. False
+   when memory is short. */
 static bool interior_sweep(State *solver, const ContactProblem *problem, float near, const float *factors, int count) {
     if (!interior_start(solver, problem, false)) return false;
     const int more = (int)fmin(fmax(solver->left - count, 0), MORE_SWEEPS) / STOPPING_BLOCK * STOPPING_BLOCK;

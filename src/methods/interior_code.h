@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An iteration (methods/interior_point_internal.h): first what it does with the contacts of a group, between the solves,
-   then with all. Included once by each interior_*.c. The compiler may use wider registers, but not change the order of
-   operations. */
+/* An iteration (methods/interior_point_internal.h): first what it does with the contacts of a group, between the
+   solves, then with all. Included once by each interior_*.c. The compiler may use wider registers, but not change the
+   order of operations. */
 #include "methods/block_lu_code.h"
 #include "methods/interior_point_internal.h"
 
 #include <math.h>
 
-/* In an iteration l and z keep at least this share of themselves, as do p and q, and the distances of t to its bounds. */
+/* In an iteration l and z keep at least this share of themselves, as do p and q, and the distances of t to its
+   bounds. */
 static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27;
 /* The targets of friction, as a multiple of those of normal impulses. */
 static const double slip_aim = 4;

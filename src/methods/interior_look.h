@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals that it
-   has to reach.
+/* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
+   that it has to reach.
 
-   An island is calm if none of its bodies move fast relative to each other where they touch, whatever the bias: boxes that
-   overlap and are pushed apart are calm, too. There errors add up from step to step: boxes creep at the speed of the error,
-   until a card slides out of a house of cards or a stack leans. So the tolerance is smaller than that of impacts, `near`.
-   After an impact an island is restless for some frames: calm, but the first sweeps leave much. There errors have no time to add
-   up, and `near` will do.
+   An island is calm if none of its bodies move fast relative to each other where they touch, whatever the bias: boxes
+   that overlap and are pushed apart are calm, too. There errors add up from step to step: boxes creep at the speed of
+   the error, until a card slides out of a house of cards or a stack leans. So the tolerance is smaller than that of
+   impacts, `near`. After an impact an island is restless for some frames: calm, but the first sweeps leave much. There
+   errors have no time to add up, and `near` will do.
 
-   No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest by gravity
-   and the engine's slop. */
+   No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest
+   by gravity and the engine's slop. */
 #pragma once
 #include "methods/islands.h"
 #include "methods/residual.h"
@@ -51,6 +51,6 @@ bool interior_look_jams(const InteriorLook *look);
 /* m/s: what attempts measure speeds by. */
 double interior_look_speed(const InteriorLook *look);
 
-/* m/s: how fast contacts of a calm island aim to close. An interior point leaves each contact a little open, and boxes that rest on
-   each other would part. near: of impacts. */
+/* m/s: how fast contacts of a calm island aim to close. An interior point leaves each contact a little open, and boxes
+   that rest on each other would part. near: of impacts. */
 double interior_look_closing(const InteriorLook *look, float near);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference's path for the method interior, on a copy of the problem whose speeds are multiplied by a power of two, so that the
-   fastest is 4 to 8 m/s: the reference has limits in m/s. */
+/* The reference's path for the method interior, on a copy of the problem whose speeds are multiplied by a power of two,
+   so that the fastest is 4 to 8 m/s: the reference has limits in m/s. */
 #include "methods/interior_path.h"
 
 #include "base/base.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference's way along the central path (methods/reference.h), as a last attempt of the method interior. At impacts on walls,
-   piles and pyramids the path may turn back, and quick iterations, which do not stay near it, break down: in 1 to 10% of these
-   impacts. Following it takes 10 to 30 factorizations, rarely more than 100. */
+/* The reference's way along the central path (methods/reference.h), as a last attempt of the method interior. At
+   impacts on walls, piles and pyramids the path may turn back, and quick iterations, which do not stay near it, break
+   down: in 1 to 10% of these impacts. Following it takes 10 to 30 factorizations, rarely more than 100. */
 #pragma once
 #include "methods/reference.h"
 
@@ -22,8 +22,8 @@ void interior_path_free(InteriorPath *path);
 /* Makes room for a solve, so that the step that does need it allocates nothing. False when memory is short. */
 bool interior_path_reserve(InteriorPath *path, const ContactProblem *problem);
 
-/* Follows the path until the residual is at most `near`, for at most so many factorizations. speed: the problem's fastest (m/s):
-   no limit depends on its unit. ERROR_MEMORY. */
+/* Follows the path until the residual is at most `near`, for at most so many factorizations. speed: the problem's
+   fastest (m/s): no limit depends on its unit. ERROR_MEMORY. */
 bool interior_path_follow(InteriorPath *path, const ContactProblem *problem, double speed, double near, int most,
                           Error *error);
 

@@ -10,8 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Tuned on frozen impacts of stacks, towers, gates, pyramids, walls, piles and dominoes of 7 to 45 boxes, for the fewest
-   iterations to 0.02 and 0.001 m/s. On scenes of other kinds: scenes/families/heldout. */
+/* Tuned on frozen impacts of stacks, towers, gates, pyramids, walls, piles and dominoes of 7 to 45 boxes, for the
+   fewest iterations to 0.02 and 0.001 m/s. On scenes of other kinds: scenes/families/heldout. */
 const InteriorRule interior_quick = {
     .impulse = 3, .gap = 0.06, .slip = 0.11, .first = 0.005, .shrink = 0.04, .follow = 0.03};
 /* Hand-tuned: at rest, */
@@ -171,8 +171,8 @@ static bool load_graph(Interior *s, const Sweeps *sweeps, const ContactProblem *
     return true;
 }
 
-/* Measured on stacks, walls, piles, bins and pyramids of 10 to 1,000 boxes, whose iterations take as long as 5 to 50 sweeps:
-   nearly the same for each pair, the products of blocks in the factorization, and waiting for memory. */
+/* Measured on stacks, walls, piles, bins and pyramids of 10 to 1,000 boxes, whose iterations take as long as 5 to 50
+   sweeps: nearly the same for each pair, the products of blocks in the factorization, and waiting for memory. */
 double interior_work(double products, int pair_count) { return 6 + 0.42 * products / pair_count + pair_count / 400.0; }
 
 static double count_products(const BlockLu *lu) {
@@ -257,11 +257,11 @@ bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sw
     return true;
 }
 
-/* m: the overlap that a contact at rest closes to. Both exceed the rounding of positions; where nothing holds sideways, a
-   box that is pressed in on one side tilts, and slides. */
+/* m: the overlap that a contact at rest closes to. Both exceed the rounding of positions; where nothing holds sideways,
+   a box that is pressed in on one side tilts, and slides. */
 static const double closed = (double)CONTACT_SLOP / 200, closed_slippery = 3e-6;
-/* Contacts that lack at most this share of it are left: closing these, too, makes those of a loop take turns. So are those
-   that lack less than positions round to: no box would move, but the speed would come again in every step. */
+/* Contacts that lack at most this share of it are left: closing these, too, makes those of a loop take turns. So are
+   those that lack less than positions round to: no box would move, but the speed would come again in every step. */
 static const double lacking = 0.02, most_lacking = 0.9;
 
 void interior_close(Interior *s, double speed, double dt) {

@@ -12,14 +12,15 @@
    For tau = 0 these are the contact problem: normal complementarity and Coulomb friction (in two dimensions the cone is
    an interval). An iteration linearises them at the current point. Impulses are eliminated contact by contact,
 
-       dl = r_n - D_n J_n dv,   dt = r_t + s dl - D_t J_t dv,   D_n = l / z,   s = mu (p / (mu l - t) - q / (mu l + t)) D_t,
+       dl = r_n - D_n J_n dv,   dt = r_t + s dl - D_t J_t dv,   D_n = l / z,   s = mu (p / (mu l - t) - q / (mu l + t))
+       D_t,
 
    which leaves (M + J_n^T D_n J_n + J_t^T (s D_n J_n + D_t J_t)) dv = r, with 3 x 3 blocks for the bodies in contact
    (block_lu.h). The matrix is not symmetric, as the friction bound follows the normal impulse. The direct solve carries
    a shock through all bodies at once, and D is a soft active set: large where a contact closes, near zero where it
    opens. A second solve with the same factors corrects for the products dl dz, dp dt, dq dt (Mehrotra's corrector).
-   Impulses and slips keep a share of their value in an iteration, each by itself. tau^2 falls by a fixed factor, but not
-   far below the square of the residual: else iterations cycle between sets of closed contacts. The answer of an
+   Impulses and slips keep a share of their value in an iteration, each by itself. tau^2 falls by a fixed factor, but
+   not far below the square of the residual: else iterations cycle between sets of closed contacts. The answer of an
    iteration is its full step, projected into the cones, with the velocities that these impulses make. The velocities of
    the linearised step are closer to the solution, but only impulses outside the cones would make them. They give an
    estimate of the answer's residual without computing its velocities: a little too large, and rarely too small.
@@ -106,12 +107,12 @@ double interior_work(double products, int pair_count);
 /* Friction below this holds nothing. */
 #define INTERIOR_SLIPPERY 0.01f
 
-/* Lets contacts close by up to `speed` (m/s) in a step of dt (s), until they overlap a little: an interior point leaves each
-   a little open, and boxes that rest on each other would part. */
+/* Lets contacts close by up to `speed` (m/s) in a step of dt (s), until they overlap a little: an interior point leaves
+   each a little open, and boxes that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double dt);
 
-/* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus the least scale of the
-   attempt. */
+/* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus the least scale
+   of the attempt. */
 typedef struct InteriorRule {
     double impulse, gap, slip; /* how far they start beyond the values of the start, as shares of the scale */
     bool by_heaviest; /* that share of impulses is of the heaviest body, not of each contact's effective mass */
@@ -120,31 +121,31 @@ typedef struct InteriorRule {
         follow; /* each makes tau^2 this share of itself, but no less than that share of the squared residual */
 } InteriorRule;
 
-/* far: a heavy body passes impulses on through light ones that are many times larger than those that move them. From a start
-   by the contacts' own masses it takes hundreds of iterations to get there, or they cycle. */
+/* far: a heavy body passes impulses on through light ones that are many times larger than those that move them. From a
+   start by the contacts' own masses it takes hundreds of iterations to get there, or they cycle. */
 extern const InteriorRule interior_quick, interior_gentle, interior_far;
 
 /* Speeds are shares of a speed of the problem, so that no limit depends on its units. */
 typedef struct InteriorAttempt {
     const InteriorRule *rule;
-    /* How far inside the bounds the iterations start if the residual is near 0. Contacts that should stick slide at up to about
-       that speed until tau^2 is small: if it is tiny, one iteration from the impulses of the last step suffices at rest. But
-       iterations that start so near the bounds may cycle between sets of closed contacts. */
+    /* How far inside the bounds the iterations start if the residual is near 0. Contacts that should stick slide at up
+       to about that speed until tau^2 is small: if it is tiny, one iteration from the impulses of the last step
+       suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
     double least_scale;
-    /* Iterations end if the residual exceeds this multiple of the best so far and 0.01 together. With friction the path to the
-       solution can turn back. Then iterations jump about for long, and may never converge. */
+    /* Iterations end if the residual exceeds this multiple of the best so far and 0.01 together. With friction the path
+       to the solution can turn back. Then iterations jump about for long, and may never converge. */
     double lost;
     int iterations; /* at most */
 } InteriorAttempt;
 
-/* After interior_load(): iterates until the residual is at most `near` (m/s), at most as often as the attempt says and `most`
-   times, and sets `residual` and `iterations`. If it ends above, its answer is the best so far, the start included. The
-   residual is infinite if float cannot hold the impulses. speed: m/s. */
+/* After interior_load(): iterates until the residual is at most `near` (m/s), at most as often as the attempt says and
+   `most` times, and sets `residual` and `iterations`. If it ends above, its answer is the best so far, the start
+   included. The residual is infinite if float cannot hold the impulses. speed: m/s. */
 void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorAttempt *attempt, double speed,
                       double near, int most);
 
-/* m/s: the most that an impulse over its contact's mass may be. Between jammed bodies impulses can grow without an effect on
-   velocities, until their rounding in float makes velocities of a quarter of the problem's. */
+/* m/s: the most that an impulse over its contact's mass may be. Between jammed bodies impulses can grow without an
+   effect on velocities, until their rounding in float makes velocities of a quarter of the problem's. */
 double interior_most_held(double speed);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is

@@ -46,8 +46,8 @@ static void islands_connect(Islands *s, const ContactProblem *problem) {
     }
 }
 
-/* Of the pair that contact i begins. An island's bodies less one are as many pairs as a tree has; each further pair closes
-   a loop. */
+/* Of the pair that contact i begins. An island's bodies less one are as many pairs as a tree has; each further pair
+   closes a loop. */
 static int32_t count_pair(Islands *s, const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     const bool a = s->parent[contact->a] >= 0, b = s->parent[contact->b] >= 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Islands: bodies that contacts connect, through bodies that move. What happens in one changes nothing in another, so each
-   can be solved as a contact problem of its own. */
+/* Islands: bodies that contacts connect, through bodies that move. What happens in one changes nothing in another, so
+   each can be solved as a contact problem of its own. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -15,8 +15,8 @@ static inline int32_t islands_root(int32_t *parent, int32_t body) {
 
 typedef struct Island {
     int bodies, contacts; /* their numbers; bodies: those that move */
-    /* Touching pairs of its bodies that could open without dividing it. A stack has none, a pyramid or a wall almost as many
-       as boxes. A factorization fills in only where loops are. */
+    /* Touching pairs of its bodies that could open without dividing it. A stack has none, a pyramid or a wall almost as
+       many as boxes. A factorization fills in only where loops are. */
     int loops;
 } Island;
 
@@ -46,8 +46,8 @@ void islands_free(Islands *islands);
 /* Finds the islands of a problem. False when memory is short. */
 bool islands_find(Islands *islands, const ContactProblem *problem);
 
-/* A copy of island k of the problem, valid until the next call, and room for its solution. Bodies keep their order, and so
-   do contacts. Bodies that do not move are in every island that touches them. */
+/* A copy of island k of the problem, valid until the next call, and room for its solution. Bodies keep their order, and
+   so do contacts. Bodies that do not move are in every island that touches them. */
 ContactProblem islands_take(Islands *islands, const ContactProblem *problem, int k, ContactSolution *room);
 
 /* Stores the solution of island k, which was taken last, in that of the whole problem. */

@@ -73,8 +73,8 @@ typedef struct ContactSolver {
 /* The list of methods. To add a contact solver, write one file in this folder that defines solver_NAME, and add one
    line SOLVER(NAME) here. */
 
-/* In the order of lists and charts. SOLVER(x) is solver_x; STEPPING(x) is stepping_x, for methods that need more than one
-   solver call in a step. New methods go to the end. */
+/* In the order of lists and charts. SOLVER(x) is solver_x; STEPPING(x) is stepping_x, for methods that need more than
+   one solver call in a step. New methods go to the end. */
 #define METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                \
     SOLVER(momentum)              \
@@ -204,9 +204,9 @@ bool method_lacks_network(const Method *method, const Scene *scene);
    set. */
 const char *method_network(const Settings *settings, const Scene *scene, const char *name, Error *error);
 
-/* Programs of the methods `exec` and `exec-solver`. Files may name methods, too: of runs that are to be repeated, of tables. So
-   only a program is started that an option for methods names, "exec:PROGRAM", alone or in a list; the text must outlive the
-   methods. Without a call, none is. */
+/* Programs of the methods `exec` and `exec-solver`. Files may name methods, too: of runs that are to be repeated, of
+   tables. So only a program is started that an option for methods names, "exec:PROGRAM", alone or in a list; the text
+   must outlive the methods. Without a call, none is. */
 void programs_allow(const char *methods);
 
 enum { PROGRAM_NAME_SIZE = 48 };
@@ -237,8 +237,8 @@ void stepper_destroy(Stepper *stepper);
 const MethodDescription *stepper_describe(const Stepper *stepper);
 
 /* Advances the world by the scene's dt; on failure the world is unchanged. Its contacts are mended, unless the method
-   has Box2D-Lite's (lite_contacts) or the step is the engine's. Afterwards world_problem() and world_solution() are those
-   of the step. */
+   has Box2D-Lite's (lite_contacts) or the step is the engine's. Afterwards world_problem() and world_solution() are
+   those of the step. */
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error);
 
 /* How methods are named in all pictures: captions, legends, charts and figures. Their colours: pictures/colours.h.
@@ -248,8 +248,8 @@ bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error
 /* Copies a method's text without the folders of its files, which differ between machines. Returns its length. */
 size_t method_name(char *name, size_t size, const char *text);
 
-/* The name of run `index` of a picture whose runs have these methods: without the file of its network, unless another of
-   them has the same settings but for this file. */
+/* The name of run `index` of a picture whose runs have these methods: without the file of its network, unless another
+   of them has the same settings but for this file. */
 size_t method_name_among(char *name, size_t size, const char *const *methods, int count, int index);
 
 /* Length of the part of a name before its settings. */

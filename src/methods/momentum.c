@@ -10,18 +10,18 @@
    gradient steps in place of sweeps. Sweeps visit contacts in the order of colours: as accurate, and faster
    (tests/bench/colours).
 
-   Extrapolation can carry impulses past the solution for ever. It even makes errors grow where boxes slide: there friction
-   follows the normal impulse and acts on the normal velocity, too, so a visit overshoots, by a share e of the error, and the
-   error grows if e (1 + 2 beta) > 1 (its factor z solves z^2 + e (1 + beta) z - e beta = 0). So the first sweeps have a
-   lower beta where contacts slide.
+   Extrapolation can carry impulses past the solution for ever. It even makes errors grow where boxes slide: there
+   friction follows the normal impulse and acts on the normal velocity, too, so a visit overshoots, by a share e of the
+   error, and the error grows if e (1 + 2 beta) > 1 (its factor z solves z^2 + e (1 + beta) z - e beta = 0). So the
+   first sweeps have a lower beta where contacts slide.
 
-   Sweeps are watched there, and in runs of 32 or more: each island's residual is measured after blocks of 16, or of 8 where
-   contacts slide or a stopping rule reads it. If the residual exceeds 4 times the least, one block follows without
-   extrapolation, and momentum restarts (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient Schemes", 2015). An
-   island whose residual is not its least in the end goes back to the solution that was best.
+   Sweeps are watched there, and in runs of 32 or more: each island's residual is measured after blocks of 16, or of 8
+   where contacts slide or a stopping rule reads it. If the residual exceeds 4 times the least, one block follows
+   without extrapolation, and momentum restarts (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient
+   Schemes", 2015). An island whose residual is not its least in the end goes back to the solution that was best.
 
-   Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the first sweeps of an impact
-   gain little. */
+   Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the first sweeps of an
+   impact gain little. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -70,9 +70,9 @@ void momentum_free(Momentum *momentum) {
     *momentum = (Momentum){0};
 }
 
-/* The largest beta of which errors do not grow where a visit overshoots by the share a: below 0 where sweeps alone would make
-   them grow. Two contacts of a box that slides overshoot together: by 1.22 a if it is a cube of friction 0.8; here by
-   a (1 + a). */
+/* The largest beta of which errors do not grow where a visit overshoots by the share a: below 0 where sweeps alone
+   would make them grow. Two contacts of a box that slides overshoot together: by 1.22 a if it is a cube of friction
+   0.8; here by a (1 + a). */
 static float largest_factor(float a) {
     const float both = a * (1 + a);
     return 3 * both <= 1 ? 1 : 0.5f / both - 0.5f;
@@ -141,8 +141,8 @@ typedef struct Run {
     int done, total;
 } Run;
 
-/* Whether the island is judged now. Its looks depend on nothing but itself and the run, so they are no matter of others. The
-   last part is never short; a run with a single part has no look. */
+/* Whether the island is judged now. Its looks depend on nothing but itself and the run, so they are no matter of
+   others. The last part is never short; a run with a single part has no look. */
 static bool is_due(const MomentumIsland *course, const Run *run) {
     const int every = run->total == 0 || course->most < 1 ? SLIDING_EVERY : CALM_EVERY;
     if (run->done == run->total) return run->total >= 2 * every;

@@ -40,15 +40,15 @@ void momentum_free(Momentum *momentum);
 /* momentum->sweeps have begun with this problem, which must stay until the end. False when memory is short. */
 bool momentum_begin(Momentum *momentum, const ContactProblem *problem);
 
-/* `count` sweeps with factors[count]. Of 32 or more, each island's residual is not above the least of those that 16, 32, ... of
-   them left; where contacts slide so that visits overshoot, of 16 or more, that 8, 16, ... of them left. False when memory is
-   short. */
+/* `count` sweeps with factors[count]. Of 32 or more, each island's residual is not above the least of those that 16,
+   32, ... of them left; where contacts slide so that visits overshoot, of 16 or more, that 8, 16, ... of them left.
+   False when memory is short. */
 bool momentum_run(Momentum *momentum, const float *factors, int count);
 
 /* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
    on a whole stack, which need momentum with large factors: so this is one run of sweeps with momentum, not many short
-   ones. Where it ends by rule->more, no island's residual is above the least, before or on the way. False when memory is
-   short. */
+   ones. Where it ends by rule->more, no island's residual is above the least, before or on the way. False when memory
+   is short. */
 bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float *factors);
 
 /* Stores the solution; that of the warm start if it is NaN or infinite. False when memory is short. */

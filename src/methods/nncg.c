@@ -6,9 +6,9 @@
 
        g = p - p',   beta = min(|g|^2 / |previous g|^2, 1),   p = p' + beta d,   d = beta d - g,
 
-   restarted (p = p', d = 0) if the sweep goes against the direction, g . d > 0. Each island has its own products, so its
-   impulses do not depend on what happens elsewhere. Velocities are linear in the impulses, so they follow by the same
-   recursion. A sweep comes last, so the result is inside the friction cones. Source:
+   restarted (p = p', d = 0) if the sweep goes against the direction, g . d > 0. Each island has its own products, so
+   its impulses do not depend on what happens elsewhere. Velocities are linear in the impulses, so they follow by the
+   same recursion. A sweep comes last, so the result is inside the friction cones. Source:
    Silcowitz, Niebuhr, Poulsen, Erleben, "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive Contact Force
    Problems" (2010). They restart if |g| grows, which happens often and without harm at impacts; the test used here is
    that of O'Donoghue and Candes, "Adaptive Restart for Accelerated Gradient Schemes" (2015), and leaves half to four
@@ -34,8 +34,8 @@ typedef struct NncgRow {
 _Static_assert(sizeof(NncgRow) == sizeof(SweepBody), "a body is a row");
 _Static_assert(sizeof(NncgRow) == sizeof((SweepPair){0}).sums, "the sums of a pair are a row");
 
-/* Products of the last sweep's step, -g, in eight partial sums, as in vector registers: of even and odd pairs of the island, of
-   each point and direction. */
+/* Products of the last sweep's step, -g, in eight partial sums, as in vector registers: of even and odd pairs of the
+   island, of each point and direction. */
 typedef struct NncgIsland {
     float squared[2][4]; /* |g|^2 */
     float along[2][4];   /* -g . d */

@@ -122,7 +122,8 @@ void pair_step_changes(const ContactProblem *problem, const ContactSolution *sol
 void pair_to_contact_frame(const ContactPoint *contact, float changes[PAIR_CHANGES]);
 void pair_from_contact_frame(const ContactPoint *contact, float changes[PAIR_CHANGES]);
 
-/* The data of a touching pair that the laws of physics (learning/pair_training.h) need, beyond the inputs of a network. */
+/* The data of a touching pair that the laws of physics (learning/pair_training.h) need, beyond the inputs of a
+   network. */
 
 /* Indices into a pair's context. Vectors in world axes. */
 enum {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Networks of pairs: their files and predictions, the solver that applies them, and the methods contact-net and pair-net. */
+/* Networks of pairs: their files and predictions, the solver that applies them, and the methods contact-net and
+   pair-net. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

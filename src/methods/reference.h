@@ -81,15 +81,16 @@ bool reference_reserve(Reference *reference, const ContactProblem *problem);
 /* Solves until the residual is at most REFERENCE_TOLERANCE. start: initial impulses [contact_count]; NULL: the
    problem's warm start. Not to reach the tolerance is not an error; see `residual`. False only when memory is short.
 
-   Where all attempts end above 1e-5 m/s, the step may have no solution. Its answer is then never one that adds energy: the best
-   that was found, or the solution without position correction, whichever has the smaller residual. Position correction
-   alone makes steps unsolvable: with a bias of 0, rest is allowed, and the problem has a solution (Anitescu, Potra,
-   "Formulating Dynamic Multi-Rigid-Body Contact Problems with Friction as Solvable LCPs", 1997) with no more kinetic
-   energy than before its impulses. An answer with more is shortened: all impulses times the share that has the least energy. */
+   Where all attempts end above 1e-5 m/s, the step may have no solution. Its answer is then never one that adds energy:
+   the best that was found, or the solution without position correction, whichever has the smaller residual. Position
+   correction alone makes steps unsolvable: with a bias of 0, rest is allowed, and the problem has a solution (Anitescu,
+   Potra, "Formulating Dynamic Multi-Rigid-Body Contact Problems with Friction as Solvable LCPs", 1997) with no more
+   kinetic energy than before its impulses. An answer with more is shortened: all impulses times the share that has the
+   least energy. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, const ContactImpulse *start, Error *error);
 
-/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations. `residual` is
-   then the largest change by one more visit of a contact while all others stay. */
+/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations.
+   `residual` is then the largest change by one more visit of a contact while all others stay. */
 bool reference_solve_to(Reference *reference, const ContactProblem *problem, double tolerance, int most, Error *error);
 
 /* Stores the results of the last solve, in float: rounding may take a tangent impulse out of the friction cone. */

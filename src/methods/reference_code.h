@@ -5,7 +5,8 @@
       sliding) are those of a solution, a linear solve finds it (polish): nearly always at rest.
    2. Else the central path is followed to the solution (reference_path_code.h), also where it turns back.
    3. If the path is lost, again from another distance and with another stiffness; then from other starts: what more
-      sweeps make of the best answer so far, and of no impulses. A path that is lost from one start mostly ends from another.
+      sweeps make of the best answer so far, and of no impulses. A path that is lost from one start mostly ends from
+      another.
    4. Then all of these again, with impulses measured by the heaviest body (weigh).
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend

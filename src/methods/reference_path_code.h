@@ -5,11 +5,11 @@
        l z = c m_n,   (mu l - t) p = (mu l + t) q = c m_t mu,
 
    with masses m_n and m_t of each contact (weigh), all of l, z, mu l - t, mu l + t, p, q positive; for c = 0 this is
-   the contact problem. Steps are Newton's, with Mehrotra's choice of the next target and his correction of second order,
-   cut short before the nearest bound. Contacts may be redundant: a tiny compliance around the current impulses keeps the
-   system regular and does not move its solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior
-   Point Method" (1992); Friedlander, Orban, "A Primal-Dual Regularized Interior-Point Method for Convex Quadratic
-   Programs" (2012). */
+   the contact problem. Steps are Newton's, with Mehrotra's choice of the next target and his correction of second
+   order, cut short before the nearest bound. Contacts may be redundant: a tiny compliance around the current impulses
+   keeps the system regular and does not move its solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual
+   Interior Point Method" (1992); Friedlander, Orban, "A Primal-Dual Regularized Interior-Point Method for Convex
+   Quadratic Programs" (2012). */
 #pragma once
 #include "methods/reference.h"
 #include "methods/reference_newton_code.h"
@@ -417,7 +417,8 @@ static double centre_step(Reference *r, double mean) {
     return length;
 }
 
-/* Short steps in a row that end an attempt which had no long one yet: where masses differ much, dozens lead to the path. */
+/* Short steps in a row that end an attempt which had no long one yet: where masses differ much, dozens lead to the
+   path. */
 enum { PATIENCE = 40 };
 
 static bool follow(Reference *r, int most, bool carefully) {

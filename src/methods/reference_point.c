@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference (methods/reference.h): packs a contact problem into groups of four contacts, solves it (reference_code.h),
-   measures the error of a method, and is a method itself. */
+/* The reference (methods/reference.h): packs a contact problem into groups of four contacts, solves it
+   (reference_code.h), measures the error of a method, and is a method itself. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/block_lu.h"
@@ -157,8 +157,8 @@ static bool solve_scaled(Reference *r, const ContactProblem *problem, const Cont
     return true;
 }
 
-/* The share of the change of velocity that has the least kinetic energy if the whole of it adds some, else 1: energy is a
-   square in the share, and at the share 0 what it was before. */
+/* The share of the change of velocity that has the least kinetic energy if the whole of it adds some, else 1: energy is
+   a square in the share, and at the share 0 what it was before. */
 static double share_without_gain(const Reference *r, const ContactProblem *problem) {
     double across = 0, square = 0; /* m v dv and m dv dv */
     for (int i = 0; i < problem->body_count; i++) {

@@ -47,8 +47,8 @@ static inline float residual_measure(OfPoint *of, const SweepPair *pair, int k, 
               relative_velocity(vec2(b->x, b->y), b->spin, point->arm_b, vec2(a->x, a->y), a->spin, point->arm_a));
 }
 
-/* Whether the sum over all points reaches the limit; `or_nan`: or is NaN. Inline, so that the compiler knows the summand.
-   The second point is computed whether it is there or not: a branch would mispredict. */
+/* Whether the sum over all points reaches the limit; `or_nan`: or is NaN. Inline, so that the compiler knows the
+   summand. The second point is computed whether it is there or not: a branch would mispredict. */
 static inline bool sum_reaches(const Sweeps *sweeps, int contact_count, float limit, OfPoint *of, bool or_nan) {
     const float enough = limit * limit * (float)contact_count;
     float sum = 0;

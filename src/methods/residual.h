@@ -15,8 +15,8 @@ bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit);
 /* The same of a solution. Where the sweeps visit contacts in the problem's order, with the same answer. */
 bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit);
 
-/* True if the root mean square over the contacts of what one more visit would change, normal and tangent velocity, is at
-   least `limit` (m/s), or NaN. This is the residual of methods/interior_point_internal.h. */
+/* True if the root mean square over the contacts of what one more visit would change, normal and tangent velocity, is
+   at least `limit` (m/s), or NaN. This is the residual of methods/interior_point_internal.h. */
 bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float limit);
 
 /* (m/s)^2, summed over the contacts of a pair of the sweeps: what one more visit would change (see
@@ -27,15 +27,17 @@ typedef struct PairResidual {
 
 PairResidual residual_of_pair(const Sweeps *sweeps, int pair);
 
-/* squared[pair_count]: `visit` of each pair; NaN if a velocity of its bodies is NaN or infinite. By the sweeps' kernel. */
+/* squared[pair_count]: `visit` of each pair; NaN if a velocity of its bodies is NaN or infinite. By the sweeps'
+   kernel. */
 void residual_of_pairs(const Sweeps *sweeps, float *squared);
 
-/* overshoot[pair_count]: the share of a contact's error by which a visit carries its normal velocity past the aim, because it
-   slides, or is new and will slide: mu |knt| / knn, where the friction acts against the normal velocity; the larger of the
-   pair's points, else 0. knn: what a normal impulse changes the normal velocity by, 1 / mass_normal; knt: what an impulse
-   along the tangent does. For boxes |knt| / knn is at most sqrt(3) / 2, as no point is further from the centre than a corner. */
+/* overshoot[pair_count]: the share of a contact's error by which a visit carries its normal velocity past the aim,
+   because it slides, or is new and will slide: mu |knt| / knn, where the friction acts against the normal velocity; the
+   larger of the pair's points, else 0. knn: what a normal impulse changes the normal velocity by, 1 / mass_normal; knt:
+   what an impulse along the tangent does. For boxes |knt| / knn is at most sqrt(3) / 2, as no point is further from the
+   centre than a corner. */
 void overshoot_of_pairs(const Sweeps *sweeps, float *overshoot);
 
-/* (m/s)^2: how the bodies of a contact move relative to each other there without any impulse, in any direction; or NaN. A
-   step of gravity makes 0.17 m/s at rest, whatever the masses. */
+/* (m/s)^2: how the bodies of a contact move relative to each other there without any impulse, in any direction; or NaN.
+   A step of gravity makes 0.17 m/s at rest, whatever the masses. */
 float residual_of_motion(const ContactProblem *problem, int contact);

@@ -12,12 +12,13 @@
    no more. The arms of impulses stay those of the collision pass; s follows the poses.
 
    Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are SKIN inside the boxes; without it
-   contacts would come and go. With `keep` they stay, as in Box2D since March 2026, and need no skin. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It
-   visits one contact after the other, not four at a time.
+   contacts would come and go. With `keep` they stay, as in Box2D since March 2026, and need no skin. Left out are
+   Box2D's bounds on speed, its continuous collision, sleep and restitution. It visits one contact after the other, not
+   four at a time.
 
    Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. Without
-   `keep`, a stack of more than cbrt(7.84 c / (m g h)) boxes buckles as Euler's column does, whatever the substeps; a pair of
-   contacts has the stiffness c = m (2 pi hertz)^2 / 10 against turning, for boxes of 1 m. */
+   `keep`, a stack of more than cbrt(7.84 c / (m g h)) boxes buckles as Euler's column does, whatever the substeps; a
+   pair of contacts has the stiffness c = m (2 pi hertz)^2 / 10 against turning, for boxes of 1 m. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

@@ -36,11 +36,11 @@ double plane_angle(double cosine, double sine);
 /* What the network of gns sees: particles as nodes, and an edge each way between two that are nearer than the radius.
    Source: nets/kinds.h.
 
-   Inputs of a node: the particle's last GNS_HISTORY velocities, oldest first, over the unit of velocity (10 numbers); 1 for
-   the bomb, else 0; the way to the nearest static box: its distance over the radius, at most 1, and its direction times 1
-   less that (3 numbers). Those of an edge: from the receiver to the sender, over the radius, with the length of it (3
-   numbers); the sender's share of the mass of both; 1 within one box, else 0. The last two are not the paper's: its
-   particles have no masses, and its one rigid body is a material of its own. */
+   Inputs of a node: the particle's last GNS_HISTORY velocities, oldest first, over the unit of velocity (10 numbers); 1
+   for the bomb, else 0; the way to the nearest static box: its distance over the radius, at most 1, and its direction
+   times 1 less that (3 numbers). Those of an edge: from the receiver to the sender, over the radius, with the length of
+   it (3 numbers); the sender's share of the mass of both; 1 within one box, else 0. The last two are not the paper's:
+   its particles have no masses, and its one rigid body is a material of its own. */
 
 enum {
     GNS_NEIGHBOURS = 40 /* of a particle at most, so that a heap of boxes in one place has a bounded number of edges */
@@ -90,8 +90,8 @@ typedef struct GnsLayerTape {
     float *inverse;        /* [rows] 1 / deviation */
 } GnsLayerTape;
 
-/* Zero-initialise; arrays grow and are reused. Inference keeps one set of latents and one tile of a perceptron; training
-   keeps all, and so `tape` must not change between passes. */
+/* Zero-initialise; arrays grow and are reused. Inference keeps one set of latents and one tile of a perceptron;
+   training keeps all, and so `tape` must not change between passes. */
 typedef struct GnsPass {
     bool tape;
     const GnsKernels *kernels; /* NULL: the best */
@@ -120,8 +120,8 @@ float free_flight_momentum(const ContactProblem *problem, const ContactSolution 
 
 /* What the stepper gns (gns.c) knows besides the world. */
 
-/* m: after a step, how far the particles of stepping_gns's state are from the best-fitting rigid boxes: the root of the mean
-   square over the particles of a box, mean over boxes; 0 with rigid=on, but for rounding, and without boxes. */
+/* m: after a step, how far the particles of stepping_gns's state are from the best-fitting rigid boxes: the root of the
+   mean square over the particles of a box, mean over boxes; 0 with rigid=on, but for rounding, and without boxes. */
 float gns_shape_distance(const void *state);
 
 /* Which contacts and bodies of a step are those of the stepper's last step, for steppers that carry more from step to

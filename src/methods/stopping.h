@@ -36,8 +36,8 @@ typedef struct StoppingRule {
         "more", sweeps " that near may add (rounded up to whole blocks; default: 48)", SETTING_OWN                     \
     }
 
-/* Overwrites the rule, which has the method's defaults, with `near` and `more`. ERROR_INPUT for a value out of range, and
-   for `more` where no rule is. */
+/* Overwrites the rule, which has the method's defaults, with `near` and `more`. ERROR_INPUT for a value out of range,
+   and for `more` where no rule is. */
 bool stopping_read(StoppingRule *rule, const Settings *chosen, Error *error);
 
 /* settings_make() and stopping_read() for a state that begins with its rule. */

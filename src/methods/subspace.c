@@ -3,15 +3,16 @@
    next, as principal components of their poses (nets/kinds.h has the equations). Source: Holden, Duong, Datta,
    Nowrouzezahrai, "Subspace Neural Physics: Fast Data-Driven Interactive Simulation" (SCA 2019).
 
-   A step predicts the components, clamps them to their range in training, and reconstructs the poses from them; a velocity
-   is the difference of two poses over dt. A state that the method has not reached itself, as in the first step, is
-   projected: its poses, and those one step before, from the velocities. Before the bomb appears all launches are the same
-   run, so the file has that run's poses and the method repeats them. With net=off the linear term predicts alone.
+   A step predicts the components, clamps them to their range in training, and reconstructs the poses from them; a
+   velocity is the difference of two poses over dt. A state that the method has not reached itself, as in the first
+   step, is projected: its poses, and those one step before, from the velocities. Before the bomb appears all launches
+   are the same run, so the file has that run's poses and the method repeats them. With net=off the linear term predicts
+   alone.
 
    The step is begun, so contacts are detected, only for those who measure them: the method reads none of it.
 
-   Fails by what it does not know: nothing keeps boxes apart or momentum constant; poses that differ from all launches of
-   the training have no components. Another scene, and another size or mass of its bodies, is refused. */
+   Fails by what it does not know: nothing keeps boxes apart or momentum constant; poses that differ from all launches
+   of the training have no components. Another scene, and another size or mass of its bodies, is refused. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

@@ -122,7 +122,8 @@ typedef struct SweepLevel {
 } SweepLevel;
 
 /* With momentum extrapolation: the offsets, in floats, of a visit's sums after the previous sweep and of those of this
-   sweep (which overwrite the sums of two sweeps ago), and the number of its factor in the schedule: of the sweep and group. */
+   sweep (which overwrite the sums of two sweeps ago), and the number of its factor in the schedule: of the sweep and
+   group. */
 typedef struct SweepTurns {
     int32_t from[LEVEL_WIDTH], to[LEVEL_WIDTH], factor[LEVEL_WIDTH];
 } SweepTurns;
@@ -205,19 +206,20 @@ bool sweeps_run(Sweeps *sweeps, int count);
    sweep, including its extrapolation. */
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
 
-/* Continues after sweeps_run_momentum() or itself, as if in one run: here the first sweep's factors count. Both counts are
-   even. */
+/* Continues after sweeps_run_momentum() or itself, as if in one run: here the first sweep's factors count. Both counts
+   are even. */
 bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
 
-/* Islands: groups of pairs that share no moving body with others, so what happens in one changes no bit in another. After
-   sweeps_begin(), which makes a single group of all. */
+/* Islands: groups of pairs that share no moving body with others, so what happens in one changes no bit in another.
+   After sweeps_begin(), which makes a single group of all. */
 
 /* Finds the islands. */
 void sweeps_group(Sweeps *sweeps);
 
-/* Computes the velocities from the sums, for the problem that the sweeps began with: over many sweeps with momentum rounding
-   errors take them apart, by mm/s after a hundred. The velocities before the last sweep move by as much: momentum would go on
-   along the difference, and make it 1 / (1 - beta) times as large. chosen[groups]: of which; NULL: of all. */
+/* Computes the velocities from the sums, for the problem that the sweeps began with: over many sweeps with momentum
+   rounding errors take them apart, by mm/s after a hundred. The velocities before the last sweep move by as much:
+   momentum would go on along the difference, and make it 1 / (1 - beta) times as large. chosen[groups]: of which; NULL:
+   of all. */
 void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem, const bool *chosen);
 
 /* Copies sums, and velocities of moving bodies, of the groups for which chosen[groups] is true. */
@@ -231,10 +233,10 @@ void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses);
 
 /* A contact slides if its tangent impulse times this exceeds the limit. */
 #define SWEEP_AT_LIMIT 1.0001f
-/* Friction below which no contact of boxes overshoots enough to matter (overshoot_of_pairs() in methods/residual.h): an impulse at a
-   corner, r from the middle, in the plane's directions n and t, overshoots by friction times q c s / (1 + q c^2), where
-   c = cos, s = sin of the angle between the arm and t, and q = m r^2 / I = 3: at most 0.75. Less than 0.264 is no matter
-   (largest_factor() in momentum.c). */
+/* Friction below which no contact of boxes overshoots enough to matter (overshoot_of_pairs() in methods/residual.h): an
+   impulse at a corner, r from the middle, in the plane's directions n and t, overshoots by friction times q c s / (1 +
+   q c^2), where c = cos, s = sin of the angle between the arm and t, and q = m r^2 / I = 3: at most 0.75. Less than
+   0.264 is no matter (largest_factor() in momentum.c). */
 #define SWEEP_SLIPPERY 0.35f
 
 static inline int sweep_pair_points(const SweepPair *pair) { return pair->points[1].extra < 0.0f ? 2 : 1; }

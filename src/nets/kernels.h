@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loops of networks, compiled once for each instruction set (CMakeLists.txt) from kernels_code.h. All perform the same
-   operations in the same order, so they have the same bits; the widest that the CPU supports is used. */
+/* The loops of networks, compiled once for each instruction set (CMakeLists.txt) from kernels_code.h. All perform the
+   same operations in the same order, so they have the same bits; the widest that the CPU supports is used. */
 #pragma once
 #include "nets/nets.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The kernels' code; included once by each kernels_*.c, which defines VECTOR_BYTES, the size of a register. First those of
-   layers: rows are innermost and independent, so the compiler vectorises
+/* The kernels' code; included once by each kernels_*.c, which defines VECTOR_BYTES, the size of a register. First those
+   of layers: rows are innermost and independent, so the compiler vectorises
    them without changing the order of sums. In the gradient, each forward step is next to its backward step; B stands
    for BLOCK_ROWS. */
 #include "nets/kernels.h"

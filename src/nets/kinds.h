@@ -11,8 +11,8 @@
        M rounds   d_ij = g_m(e_ij, v_i, v_j),  d_i = h_m(v_i, sum_j d_ij),  e += d, v += d
        decoder    a_i = f_a(v_i)
 
-   Each function is a perceptron with two hidden layers (ReLU); all but the decoder end in a layer norm. Each round has its
-   own weights. float32; sums run in one order, so the bits are the same on every machine. */
+   Each function is a perceptron with two hidden layers (ReLU); all but the decoder end in a layer norm. Each round has
+   its own weights. float32; sums run in one order, so the bits are the same on every machine. */
 
 enum {
     GNS_VERSION = 2,
@@ -74,12 +74,13 @@ bool gns_net_write(const GnsNet *net, const char *path, Error *error);
    infinite. Free the net in any case. */
 bool gns_net_read(GnsNet *net, const char *path, Error *error);
 
-/* Subspace neural physics: the poses of all bodies of one scene as a few principal components, and networks that predict
-   the components of the next step from their last two values. Source: Holden, Duong, Datta, Nowrouzezahrai, "Subspace
-   Neural Physics: Fast Data-Driven Interactive Simulation" (SCA 2019), sections 4 and 5.
+/* Subspace neural physics: the poses of all bodies of one scene as a few principal components, and networks that
+   predict the components of the next step from their last two values. Source: Holden, Duong, Datta, Nowrouzezahrai,
+   "Subspace Neural Physics: Fast Data-Driven Interactive Simulation" (SCA 2019), sections 4 and 5.
 
-   A body that moves has four numbers in m: x, y, and sine and cosine of its angle, times its radius of gyration, so that
-   a metre of each is as much motion. u is the vector of all of them less their values at rest, B the components (orthonormal rows, strongest first), so
+   A body that moves has four numbers in m: x, y, and sine and cosine of its angle, times its radius of gyration, so
+   that a metre of each is as much motion. u is the vector of all of them less their values at rest, B the components
+   (orthonormal rows, strongest first), so
 
        z = B u,   u = B^T z
        z' = clamp(a z + b z_before + N(z, z - z_before, launch), low, high)
@@ -134,8 +135,8 @@ typedef struct SubspaceNet {
     float *rest;       /* [lanes of 4 bodies] */
     float *basis;      /* [components, lanes of 4 bodies] B */
     float *low, *high; /* [components] range in training */
-    float *
-        before; /* [frames_before, bodies - 1, 3] x, y, angle: the run before the bomb appears, the same for all launches */
+    /* [frames_before, bodies - 1, 3] x, y, angle: the run before the bomb appears, the same for all launches */
+    float *before;
     SubspacePredictor predictors[SUBSPACE_PREDICTORS_MAX];
     uint64_t physics;                 /* hash of the scene without its launch */
     char scene[SUBSPACE_TEXT_SIZE];   /* the scene of the training */
@@ -155,8 +156,8 @@ const SubspacePredictor *subspace_net_choose(const SubspaceNet *net, int compone
 
 bool subspace_net_write(const SubspaceNet *net, const char *path, Error *error);
 
-/* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, or holds a NaN or
-   infinite number, or a range whose ends are exchanged. */
+/* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, or holds a NaN
+   or infinite number, or a range whose ends are exchanged. */
 SubspaceNet *subspace_net_read(const char *path, Error *error);
 
 /* The angle of a sine and a cosine in a fixed sequence of operations, for the same bits with any maths library. */
@@ -224,8 +225,8 @@ void subspace_reconstruct(Subspace *subspace);
    impulses less the warm start. A slot is a possible contact of the scene: two bodies and a feature that occurred in
    training. In each step some of the slots are present.
 
-       x  = bomb's state; projections (learning/scene_training_internal.h) of the other bodies' state, of which slots are
-            present, and of their warm-start impulses
+       x  = bomb's state; projections (learning/scene_training_internal.h) of the other bodies' state, of which slots
+            are present, and of their warm-start impulses
        h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
        (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]
 

@@ -9,8 +9,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Sigmoid, tanh, ReLU and e^y in a fixed sequence of operations, so that the bits do not depend on maths library, compiler
-   or instruction set, and without calls or branches, so that the compiler vectorises loops over them.
+/* Sigmoid, tanh, ReLU and e^y in a fixed sequence of operations, so that the bits do not depend on maths library,
+   compiler or instruction set, and without calls or branches, so that the compiler vectorises loops over them.
 
    float32 for inference: within 3 units in the last place of a normal result (a sigmoid below 2^-127 is 0). In double a
    correctly rounded activation would cost more than the rest of a network. double for training: within 4e-16 of the
@@ -117,7 +117,8 @@ typedef struct NetFileKind {
     const char *name;
     int32_t version;
     int (*list)(void *net, NetField fields[NET_FIELDS_MAX]); /* returns their number */
-    /* Reads what the shapes follow from, before memory is taken: a file can claim any shape. NULL: shapes are constant. */
+    /* Reads what the shapes follow from, before memory is taken: a file can claim any shape. NULL: shapes are
+       constant. */
     bool (*read_sizes)(void *net, NpzFile *file, Error *error);
     bool (*create)(void *net, Error *error);                  /* its arrays, once the file has all; NULL: they exist */
     bool (*check)(void *net, const char *path, Error *error); /* what is read; NULL: the ranges suffice */
@@ -125,7 +126,8 @@ typedef struct NetFileKind {
 
 bool net_file_write(const NetFileKind *kind, const void *net, const char *path, Error *error);
 
-/* ERROR_INPUT, naming the file, if it is damaged, of another kind or version, or has a field of another shape or range. */
+/* ERROR_INPUT, naming the file, if it is damaged, of another kind or version, or has a field of another shape or
+   range. */
 bool net_file_read(const NetFileKind *kind, void *net, const char *path, Error *error);
 
 /* The field in the file. */
@@ -134,7 +136,8 @@ NpzArray net_field_array(const NetField *field);
 /* Reads fields, after a look at all their shapes; an error names the file, the field and the number. */
 bool net_fields_read(NpzFile *file, const NetField *fields, int count, Error *error);
 
-/* For read_sizes: a vector of least to most int32 numbers, of which it returns the number, or 0 with error set; a scalar. */
+/* For read_sizes: a vector of least to most int32 numbers, of which it returns the number, or 0 with error set; a
+   scalar. */
 int net_file_integers(NpzFile *file, const char *name, int least, int most, int32_t *numbers, Error *error);
 bool net_file_integer(NpzFile *file, const char *name, int *number, Error *error);
 

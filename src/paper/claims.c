@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the papers of the systems claim: the table of all claims, then the rules by which those of each system are judged
-   from its table. */
+/* What the papers of the systems claim: the table of all claims, then the rules by which those of each system are
+   judged from its table. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "learning/subspace_training.h"

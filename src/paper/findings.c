@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the report states beyond the study's tables: the summary, aims, factors, claims, systems; and the writing of all. */
+/* What the report states beyond the study's tables: the summary, aims, factors, claims, systems; and the writing of
+   all. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"

@@ -114,9 +114,9 @@ static bool hybrid_study_measure(Measuring *measuring, Error *error) {
     return ok;
 }
 
-/* Runs some launches with the memory, then solves each step with an impact in turns by hybrid and by interior:near=0.001,
-   with medians over repetitions. Fills the row's error and error_95 of answers and us_answer to us_step_solve; NAN where no
-   step is answered, or none is not. */
+/* Runs some launches with the memory, then solves each step with an impact in turns by hybrid and by
+   interior:near=0.001, with medians over repetitions. Fills the row's error and error_95 of answers and us_answer to
+   us_step_solve; NAN where no step is answered, or none is not. */
 static bool hybrid_measure(const HybridTimes *times, const HybridMemory *memory, HybridRow *row, Error *error) {
     Measuring measuring = {.times = times};
     const bool ok = hybrid_make(&measuring.rivals[0], memory, NULL, error) &&

@@ -29,8 +29,8 @@ typedef enum PaperData {
     PAPER_DATA
 } PaperData;
 
-/* Words are those of learning/pair_training.h. Zero-initialised members are the baseline's: swept, labels by the engine, relative,
-   pair, sigmoid, mse. */
+/* Words are those of learning/pair_training.h. Zero-initialised members are the baseline's: swept, labels by the
+   engine, relative, pair, sigmoid, mse. */
 typedef struct PaperNetwork {
     const char *name, *factor, *value; /* value: of the factor in which it differs from the baseline */
     PaperData data;
@@ -53,8 +53,8 @@ PaperNetwork paper_network(int i);
 
 enum { PAPER_FACTORS_SIZE = 256 };
 
-/* In how many factors two networks with all defaults differ; names: "data layers ". The first width follows from the inputs, the
-   last is the outputs'; the scaling belongs to the output's activation. */
+/* In how many factors two networks with all defaults differ; names: "data layers ". The first width follows from the
+   inputs, the last is the outputs'; the scaling belongs to the output's activation. */
 int paper_network_factors(const PaperNetwork *a, const PaperNetwork *b, char names[PAPER_FACTORS_SIZE]);
 
 /* The datasets of the paper's study, each recorded at its first use. */
@@ -119,8 +119,8 @@ typedef struct SystemScoreRow {
     double us_step;          /* microseconds per step of a held-out launch, everything counted: the whole step; of
                                     methods without contacts their own work (no_contacts in its description) */
     double us_step_engine;   /* of the engine, measured in turns with it */
-    double
-        unconverged; /* launches in which the converged run has an unconverged step before the method parts from it */
+    /* launches in which the converged run has an unconverged step before the method parts from it */
+    double unconverged;
 } SystemScoreRow;
 
 extern const CsvLayout system_score_layout;
@@ -133,10 +133,11 @@ extern const char *const strip_scene_names[STRIP_SCENES + 1]; /* stack, pyramid,
 
 struct PaperSystem;
 
-/* Runs the scenes of the folder `scenes` and draws folder/strip-NAME-SCENE.png, .svg and .txt, a caption of one line, for
-   each system; and folder/strip-SCENE.html, a page that plays the engine's run beside those of all systems
-   (pictures/player.h). systems: at most STRIP_SYSTEMS_MAX, ended by NULL. quick: shorter runs. The folder must exist. False with error set if a scene cannot
-   be read or a run fails; ERROR_INTERRUPTED if progress, which may be NULL, requests a stop. */
+/* Runs the scenes of the folder `scenes` and draws folder/strip-NAME-SCENE.png, .svg and .txt, a caption of one line,
+   for each system; and folder/strip-SCENE.html, a page that plays the engine's run beside those of all systems
+   (pictures/player.h). systems: at most STRIP_SYSTEMS_MAX, ended by NULL. quick: shorter runs. The folder must exist.
+   False with error set if a scene cannot be read or a run fails; ERROR_INTERRUPTED if progress, which may be NULL,
+   requests a stop. */
 bool system_strips_draw(const struct PaperSystem *const *systems, const char *scenes, bool quick, const char *folder,
                         const Progress *progress, Error *error);
 
@@ -165,15 +166,15 @@ typedef struct Claims {
 typedef bool ClaimRule(const Claims *claims, const CsvTable *table, Error *error);
 
 typedef struct Claim {
-    const char
-        *claim; /* of their paper, one short sentence: "With little data it learns faster than the network alone" */
+    /* of their paper, one short sentence: "With little data it learns faster than the network alone" */
+    const char *claim;
     const char *source;   /* "Ajay et al. 2019, section V" */
     const char *measured; /* here: what was measured, in which scenes, and by which rule it holds */
     ClaimHolds holds;
 } Claim;
 
-/* Adds a row. The format gives the figure: numbers with their units, "3.1 times (stack), 1.4 times (pyramid)"; NaN becomes
-   a dash. */
+/* Adds a row. The format gives the figure: numbers with their units, "3.1 times (stack), 1.4 times (pyramid)"; NaN
+   becomes a dash. */
 bool claim_state(const Claims *claims, const Claim *claim, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
 
 /* A rule of two limits: yes from `yes` on, partly from `partly` on. NaN, which was not measured, does not hold. */
@@ -190,8 +191,8 @@ bool system_claims_write(const struct PaperSystem *const *systems, const char *f
 /* Those of one system, from folder/system_NAME.csv. */
 bool system_claims_state(const struct PaperSystem *system, const char *folder, Claims *claims, Error *error);
 
-/* The systems that the paper cites, as parts of its study. Each system is one constant PaperSystem: the methods that are
-   scored, the study that measures its claims, the rules that judge them, and its figure. To add a system NAME:
+/* The systems that the paper cites, as parts of its study. Each system is one constant PaperSystem: the methods that
+   are scored, the study that measures its claims, the rules that judge them, and its figure. To add a system NAME:
 
    1. Write NAME.c, its row and layout in paper_internal.h, its rules in claims.c, its plot in plots_systems.c:
 
@@ -206,15 +207,15 @@ bool system_claims_state(const struct PaperSystem *system, const char *folder, C
                                          .claims = NAME_claims,
                                          .plot = plot_NAME};
 
-      A part writes rows of the table with piece_tables_print(lines, &NAME_layout, -1, &row, error) (studies/piece_tables.h). It is
-      kept when it is done, and done once: a study that was cut off continues with the next part. So a part should take some
-      seconds. The whole study of one system takes at most 90 s on two idle cores, the quick one 2 s; the quick one measures
-      everything that claims need, with less. A part may use all threads (base/machine.h); times are measured on one
-      (studies/piece_tables.h), by parts that say so (timed).
-   2. Add a line to SYSTEMS below; the room of its training to those that paper may include from (src/layers.txt), if the
-      study trains; and to tests: tests/paper/figures/system_NAME.csv with all that the figure can show, its names to
-      `tables` and `figures` in tests/paper/test_plots.c, tests/paper/test_NAME_study.c, the table's layout to the end of
-      `layouts` in tests/fuzz/fuzz_csv.c.
+      A part writes rows of the table with piece_tables_print(lines, &NAME_layout, -1, &row, error)
+      (studies/piece_tables.h). It is kept when it is done, and done once: a study that was cut off continues with the
+      next part. So a part should take some seconds. The whole study of one system takes at most 90 s on two idle cores,
+      the quick one 2 s; the quick one measures everything that claims need, with less. A part may use all threads
+      (base/machine.h); times are measured on one (studies/piece_tables.h), by parts that say so (timed).
+   2. Add a line to SYSTEMS below; the room of its training to those that paper may include from (src/layers.txt), if
+      the study trains; and to tests: tests/paper/figures/system_NAME.csv with all that the figure can show, its names
+      to `tables` and `figures` in tests/paper/test_plots.c, tests/paper/test_NAME_study.c, the table's layout to the
+      end of `layouts` in tests/fuzz/fuzz_csv.c.
 
    The rest follows from the list: scores, the table of claims, strips, the figure system-NAME and the report. */
 
@@ -275,8 +276,9 @@ typedef struct PaperOptions {
 } PaperOptions;
 
 /* Writes folder/table1.csv, networks.csv, rates.csv, closed_loop.csv, laws.csv, transfer.csv, system_scores.csv,
-   system_NAME.csv of each system, systems.csv, study.csv and folder/networks/NAME.npz, then draws; a shard does its parts
-   only, and of the files writes the networks that it trains. Finished parts are kept: the same study, by the same program,
-   continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, and for a merge of times of different
-   processors; ERROR_INTERRUPTED if progress_report() stops it. *pieces tells what was done; it has no plan. */
+   system_NAME.csv of each system, systems.csv, study.csv and folder/networks/NAME.npz, then draws; a shard does its
+   parts only, and of the files writes the networks that it trains. Finished parts are kept: the same study, by the same
+   program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, and for a merge of times of
+   different processors; ERROR_INTERRUPTED if progress_report() stops it. *pieces tells what was done; it has no
+   plan. */
 bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *progress, Error *error);

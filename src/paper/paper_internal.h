@@ -68,8 +68,8 @@ typedef struct GnsRollout {
 bool gns_rollout_run(GnsRollout *rollout, const Scene *launched, const char *network, const char *settings,
                      Error *error);
 
-/* system_subspace.csv: what a step of subspace costs and how far its runs end up, beside the engines that it replaces and
-   beside what its components alone lose. Source: Holden et al. 2019 (nets/kinds.h). */
+/* system_subspace.csv: what a step of subspace costs and how far its runs end up, beside the engines that it replaces
+   and beside what its components alone lose. Source: Holden et al. 2019 (nets/kinds.h). */
 
 enum { SUBSPACE_STUDY_ROWS_MAX = 100 };
 
@@ -134,7 +134,8 @@ enum { HYBRID_ROWS_MAX = 500 };
 typedef struct HybridRow {
     int scene;        /* of paper_scene_names */
     double tolerance; /* m/s */
-    int changes; /* 1: a learning whose family changes half way: from then on bombs have a random rotation and spin; 0: not */
+    /* 1: a learning whose family changes half way: from then on bombs have a random rotation and spin; 0: not */
+    int changes;
     int turned;           /* 1: they have */
     double launches;      /* so far */
     double share;         /* of the steps with an impact: answered */
@@ -174,9 +175,9 @@ typedef struct LawRow {
     double violation[LAWS]; /* means over the test rows (laws_measure), in the laws' units */
 } LawRow;
 
-/* Trains one network and fills the row; the dataset must have context (laws_check). Scores and violations are those of the
-   network with the lowest loss on the training rows. Of the labels, if study->laws is NULL. False with error set as by
-   training_run, or if progress_report() stops it. */
+/* Trains one network and fills the row; the dataset must have context (laws_check). Scores and violations are those of
+   the network with the lowest loss on the training rows. Of the labels, if study->laws is NULL. False with error set as
+   by training_run, or if progress_report() stops it. */
 bool law_study_run(const Dataset *dataset, const LawStudy *study, LawRow *row, const Progress *progress, Error *error);
 
 /* A scene with some of its held-out launches. */
@@ -190,8 +191,8 @@ typedef struct Launched {
     SnapshotList *states; /* [count] empty until sampled */
 } Launched;
 
-/* count: at most LAUNCHED_MAX. ERROR_INPUT for a scene that cannot be read, or without a bomb or a family of launches. On
-   failure nothing is to be freed. */
+/* count: at most LAUNCHED_MAX. ERROR_INPUT for a scene that cannot be read, or without a bomb or a family of launches.
+   On failure nothing is to be freed. */
 bool launched_begin(Launched *launched, const char *path, int count, Error *error);
 void launched_free(Launched *launched);
 
@@ -208,8 +209,8 @@ typedef struct TransferStudy {
     int iterations; /* of each stage; transfer has three stages, of which the pyramid is the last */
 } TransferStudy;
 
-/* transfer.csv: a training. RMS errors of the change of relative velocity, over both components, on held-out launches of the
-   pyramid, m/s. */
+/* transfer.csv: a training. RMS errors of the change of relative velocity, over both components, on held-out launches
+   of the pyramid, m/s. */
 typedef struct TransferRow {
     int transfer; /* 0: from scratch */
     double seed, launches;
@@ -290,9 +291,9 @@ enum {
 /* For each target: the highest test error, over the constant predictor's, that its best network may have; 0: no aim. */
 extern const double target_aims[PAIR_TARGETS];
 
-/* The share of test rows for which all outputs are within 5% of their range over the training rows; NaN without test rows.
-   The paper does not define the accuracy of its gate (section 3: 90%); this is a guess. False with error set when memory is
-   short. */
+/* The share of test rows for which all outputs are within 5% of their range over the training rows; NaN without test
+   rows. The paper does not define the accuracy of its gate (section 3: 90%); this is a guess. False with error set when
+   memory is short. */
 bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error);
 
 /* The paper's study as a list of parts, its pieces (runs/pieces.h): trained networks, their scores, the outlook, the
@@ -337,8 +338,8 @@ struct PaperPlan {
 bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error);
 void paper_plan_free(PaperPlan *plan);
 
-/* What the parts do. Trains a network, writes networks_folder/NAME.npz, its lines of table1 and networks, and a note of the
-   file's hash. A training that is stopped fails: the name is of a whole training. */
+/* What the parts do. Trains a network, writes networks_folder/NAME.npz, its lines of table1 and networks, and a note of
+   the file's hash. A training that is stopped fails: the name is of a whole training. */
 PaperWrite paper_training_write;
 
 /* networks_folder/NAME.npz of network i. */
@@ -348,8 +349,8 @@ bool paper_network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE]
    tell. */
 bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error);
 
-/* In one scene, on launches that none was trained on: the table rates of every network and of the warm start alone; the table
-   closed_loop of every network that can take a step, and of solvers beside them; system_scores. */
+/* In one scene, on launches that none was trained on: the table rates of every network and of the warm start alone; the
+   table closed_loop of every network that can take a step, and of solvers beside them; system_scores. */
 PaperWrite paper_rates_write, paper_closed_loop_write, system_scores_write;
 
 /* A row of laws or of transfer. */

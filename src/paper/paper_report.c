@@ -61,9 +61,9 @@ static void free_blocks(void) {
     memory.blocks = NULL;
 }
 
-/* Calls `work`, which may use cmark-gfm's extensions. cmark-gfm's blocks are freed afterwards, as a whole: neither it nor
-   `work` frees any. When memory is short, longjmp leaves both: `work` must hold nothing else while it calls cmark-gfm. False
-   with error set then; else what `work` returns. Not thread-safe. */
+/* Calls `work`, which may use cmark-gfm's extensions. cmark-gfm's blocks are freed afterwards, as a whole: neither it
+   nor `work` frees any. When memory is short, longjmp leaves both: `work` must hold nothing else while it calls
+   cmark-gfm. False with error set then; else what `work` returns. Not thread-safe. */
 static bool markdown_memory_run(bool (*work)(void *context), void *context, Error *error) {
     cmark_mem *standard = cmark_get_default_mem_allocator();
     const cmark_mem before = *standard;

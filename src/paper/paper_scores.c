@@ -115,8 +115,8 @@ bool law_study_run(const Dataset *dataset, const LawStudy *study, LawRow *row, c
     return true;
 }
 
-/* What solvers reach beside the networks in closed loop: the engine with its own and with ten times as many sweeps, and the
-   most accurate one. */
+/* What solvers reach beside the networks in closed loop: the engine with its own and with ten times as many sweeps, and
+   the most accurate one. */
 static const char *const solvers[] = {"engine:k=10", "engine:k=100", "interior"};
 
 enum { SOLVERS = sizeof solvers / sizeof *solvers };

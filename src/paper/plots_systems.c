@@ -69,8 +69,8 @@ bool plot_sain(const CsvTable *table, PlotPage *page, Error *error) {
     return plot_draw(page, &spec, table->csv.path, error);
 }
 
-/* A panel for each scene: distance from the offline engine's runs over the time of a step. Subspace with its floor and its
-   linear term, and the engines that it replaces. */
+/* A panel for each scene: distance from the offline engine's runs over the time of a step. Subspace with its floor and
+   its linear term, and the engines that it replaces. */
 
 enum { COLUMNS = 2 };
 

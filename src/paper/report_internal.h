@@ -63,8 +63,8 @@ typedef struct Illustration {
 
 extern const Illustration illustration_loop, illustration_narrow_phase, illustration_data, illustration_scenes;
 
-/* The plots of report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error set
-   if memory is short. Those of the systems that the paper cites are in paper.h. */
+/* The plots of report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error
+   set if memory is short. Those of the systems that the paper cites are in paper.h. */
 PlotWrite plot_factors, plot_closed_loop, plot_transfer, plot_sain, plot_hybrid, plot_gns, plot_subspace;
 
 extern const char *const paper_scene_titles[PAPER_SCENES]; /* of paper_scene_names, for readers */

@@ -66,7 +66,8 @@ static bool check_line(const char *text, size_t size, const char *what, const ch
     return true;
 }
 
-/* A text of one line; a dash if it is empty. ERROR_INPUT if it is not UTF-8 without control characters; `where` names it. */
+/* A text of one line; a dash if it is empty. ERROR_INPUT if it is not UTF-8 without control characters; `where` names
+   it. */
 static bool template_write_line(FILE *out, const char *text, const char *where, Error *error) {
     if (!check_line(text, strlen(text), "a text", where, error)) return false;
     escape(out, *text == '\0' ? "–" : text);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cameras: the path of a moving one, and the fixed one (runs/framing.h).
 
-   The target view of a path jumps: first the whole scene, then the bomb. Three passes of a moving average, centred on each
-   frame, make speed and acceleration continuous and let the camera anticipate. */
+   The target view of a path jumps: first the whole scene, then the bomb. Three passes of a moving average, centred on
+   each frame, make speed and acceleration continuous and let the camera anticipate. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "pictures/pictures_internal.h"

@@ -18,7 +18,8 @@ bool caption_check(const char *text, const char *where, Error *error) {
     return type_check(text, where, error);
 }
 
-/* The widest distances. All runs have this width: otherwise a body that flies off late would move the text of frame 0. */
+/* The widest distances. All runs have this width: otherwise a body that flies off late would move the text of frame
+   0. */
 static const char LONGEST_DISTANCE[] = "0.00";
 
 static size_t count_characters(const char *text) {

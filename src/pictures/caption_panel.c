@@ -64,8 +64,8 @@ static void draw_rule(const Card *card, int baseline) {
                      card->picture->theme->grid_strong);
 }
 
-/* A name is on one line in the larger font, or in the smaller one on as many as it needs, around the baseline. Returns the x
-   where its longest line ends. */
+/* A name is on one line in the larger font, or in the smaller one on as many as it needs, around the baseline. Returns
+   the x where its longest line ends. */
 static int add_name(const Card *card, const char *name, int x, int baseline, int right) {
     const Font *small = &card->picture->layout.axis;
     const uint32_t ink = card->picture->theme->ink;
@@ -156,8 +156,8 @@ static bool is_reference(const Picture *picture, int run) {
     return picture->methods[run] != NULL && picture->methods[run]->role == METHOD_REFERENCE;
 }
 
-/* The run that the table compares with: the reference; else the first, unless another has a better verdict. What burst says
-   nothing of the others. */
+/* The run that the table compares with: the reference; else the first, unless another has a better verdict. What burst
+   says nothing of the others. */
 static int choose_base(const Picture *picture) {
     int base = 0;
     bool known = true;

@@ -12,11 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The first eight hues are Okabe and Ito's, "Color Universal Design" (2008); wine, from Tol, "Colour Schemes" (2021), replaces
-   yellow, which is too light for lines. Purple, sky and vermilion are a little lighter or darker than theirs, so that any two of
-   the eight differ in grey, too. They belong to the methods that are compared most. The others were found by search: the largest
-   least distance in CIELAB between any two of all, and from the bomb, on both themes, to readers with normal sight and with each
-   of the three kinds of colour blindness (Machado, Oliveira, Fernandes 2009). tests/pictures/test_colours.c measures them. */
+/* The first eight hues are Okabe and Ito's, "Color Universal Design" (2008); wine, from Tol, "Colour Schemes" (2021),
+   replaces yellow, which is too light for lines. Purple, sky and vermilion are a little lighter or darker than theirs,
+   so that any two of the eight differ in grey, too. They belong to the methods that are compared most. The others were
+   found by search: the largest least distance in CIELAB between any two of all, and from the bomb, on both themes, to
+   readers with normal sight and with each of the three kinds of colour blindness (Machado, Oliveira, Fernandes 2009).
+   tests/pictures/test_colours.c measures them. */
 typedef struct MethodPaint {
     const char *name; /* NULL: spare, for programs, own runs and all that is not in the table */
     MethodSymbol symbol;
@@ -97,8 +98,8 @@ static bool is_like_another(uint32_t fill, bool dark) {
     return false;
 }
 
-/* Of `levels` even steps of luma, the one that is the shade-th farthest from the method's own colour; those that are like another
-   colour of the table come last. The nearest step counts as the own colour. */
+/* Of `levels` even steps of luma, the one that is the shade-th farthest from the method's own colour; those that are
+   like another colour of the table come last. The nearest step counts as the own colour. */
 static uint32_t shade_fill(const MethodPaint *paint, bool dark, int shade, int levels) {
     const uint32_t own = dark ? paint->dark.fill : paint->light.fill;
     const double darkest = dark ? dark_luma(DARKEST) : DARKEST, lightest = dark ? dark_luma(LIGHTEST) : LIGHTEST;
@@ -205,7 +206,8 @@ static void sort_names(Assignment *all) {
     }
 }
 
-/* The spare colour that a name chooses, or the next that no other name of the picture has; without any, the first again. */
+/* The spare colour that a name chooses, or the next that no other name of the picture has; without any, the first
+   again. */
 static int spare_place(const Assignment *all, const char *name) {
     const int first = (int)(hash_fnv1a64(FNV1A64_START, name, strlen(name)) % SPARES);
     for (int i = 0; i < SPARES; i++)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which colour a method has: one table for films, pages, charts and figures.
 
-   The rule: a method has one colour in all pictures; its further settings in a picture, in alphabetical order, have shades of it
-   (without its network always one); any other name has one of seven spare colours, which the name chooses; --colour changes
-   either. So the colours of a picture follow from the names in it, and not from their order. */
+   The rule: a method has one colour in all pictures; its further settings in a picture, in alphabetical order, have
+   shades of it (without its network always one); any other name has one of seven spare colours, which the name chooses;
+   --colour changes either. So the colours of a picture follow from the names in it, and not from their order. */
 #pragma once
 #include "base/base.h"
 #include "base/json_write.h"
@@ -49,14 +49,15 @@ bool colours_check(const ColourChoices *choices, Error *error);
    none. */
 ColourChoices colours_of_these(const ColourChoices *choices, const char *const *methods, int count);
 
-/* Colours of the runs of one picture, all different; methods[i] is the text of a method ("engine:k=20"), known or not. Equal
-   texts count in their order. ERROR_INPUT for choices that are refused, name no run of the picture, or are too close to the
-   colour of another run or of the bomb. `choices` NULL: none. */
+/* Colours of the runs of one picture, all different; methods[i] is the text of a method ("engine:k=20"), known or not.
+   Equal texts count in their order. ERROR_INPUT for choices that are refused, name no run of the picture, or are too
+   close to the colour of another run or of the bomb. `choices` NULL: none. */
 enum { COLOURS_MAX = 32 };
 bool colours_assign(const char *const *methods, int count, const ColourChoices *choices, RunColours *colours,
                     Error *error);
 
-/* The colours of a method of the table and of its further settings in a picture, for a page that assigns them itself. */
+/* The colours of a method of the table and of its further settings in a picture, for a page that assigns them
+   itself. */
 enum { COLOUR_SHADES = 6 };
 void colours_family(const char *method, const ColourChoices *choices, RunColours family[COLOUR_SHADES]);
 

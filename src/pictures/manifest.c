@@ -13,9 +13,10 @@
      ]
    }
 
-   The point (X, Y) in metres is at pixel (x + left + scale * X, y + top - scale * Y) of the picture. `runs` are the files
-   beside the manifest (trajectory_file_name): the first with filled boxes, the others as outlines. Parts are header,
-   caption, axis, legend and timeline. With a moving camera, each picture has its own scale, left and top as "camera". */
+   The point (X, Y) in metres is at pixel (x + left + scale * X, y + top - scale * Y) of the picture. `runs` are the
+   files beside the manifest (trajectory_file_name): the first with filled boxes, the others as outlines. Parts are
+   header, caption, axis, legend and timeline. With a moving camera, each picture has its own scale, left and top as
+   "camera". */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
@@ -239,8 +240,8 @@ static void print_whole(FILE *out, const void *context) {
     json_end(&json);
 }
 
-/* On disk: the journal, what remains valid of an earlier manifest, and the frames of an earlier sequence in the folder, which
-   could be mistaken for frames of this one. */
+/* On disk: the journal, what remains valid of an earlier manifest, and the frames of an earlier sequence in the folder,
+   which could be mistaken for frames of this one. */
 
 /* A line ends in `"pixels": "16 digits", "file_hash": "16 digits"}`. */
 enum { FILE_FROM_END = 16 + 2, PIXELS_FROM_END = FILE_FROM_END + 16 + 17 };
@@ -407,8 +408,8 @@ static bool remove_listed_in(const Manifest *manifest, const char *path, Error *
 }
 
 /* Removes the frames that the folder's manifest or journal lists, that the new sequence does not overwrite, and whose
-   bytes are unchanged; files of any other origin stay. To be called while both are still those of the earlier sequence: what
-   an interrupted call leaves is then listed for the next one. ERROR_SYSTEM if one of them is left. */
+   bytes are unchanged; files of any other origin stay. To be called while both are still those of the earlier sequence:
+   what an interrupted call leaves is then listed for the next one. ERROR_SYSTEM if one of them is left. */
 static bool remove_stale(const Manifest *manifest, Error *error) {
     return remove_listed_in(manifest, manifest->path, error) && remove_listed_in(manifest, manifest->journal, error);
 }

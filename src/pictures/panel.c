@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Panels: the grid in which they are arranged, their metre grid and axes, scales of arrows and colours, their layers. */
+/* Panels: the grid in which they are arranged, their metre grid and axes, scales of arrows and colours, their
+   layers. */
 #include "base/base.h"
 #include "base/numbers.h"
 #include "engine/engine.h"

@@ -293,8 +293,8 @@ void marks_draw_below(const Picture *picture, int panel, Moment moment, Drawing 
             if (!picture->runs[run]->fixed[body]) draw_trail(picture, panel, run, moment, body, drawing);
 }
 
-/* Beyond the longest arrow that has the scale, ten times the value are drawn a third longer, so that values still differ;
-   thousands end at twice its length. The same in player/marks.js. */
+/* Beyond the longest arrow that has the scale, ten times the value are drawn a third longer, so that values still
+   differ; thousands end at twice its length. The same in player/marks.js. */
 static double drawn_length(double length, double max_arrow) {
     return length <= max_arrow ? length : max_arrow * (1 + fmin(log10(length / max_arrow) / 3, 1));
 }
@@ -451,8 +451,8 @@ static int add_panel(Part *parts, int count, const Layout *layout, int panel) {
     return parts_add(parts, count, PART_AXIS, panel, (Rect){0, rect->top - half, rect->left, rect->bottom + half});
 }
 
-/* Half of the distance between rows, and a pixel for rounding, above and below the middle of the text: arrows are higher
-   than characters. */
+/* Half of the distance between rows, and a pixel for rounding, above and below the middle of the text: arrows are
+   higher than characters. */
 static Rect legend_rect(const Layout *layout) {
     const int middle = layout->legend_baseline - parts_below(&layout->axis), half = layout->legend_pitch / 2 + 1;
     return (Rect){0, middle - half, layout->width, middle + (layout->legend_rows - 1) * layout->legend_pitch + half};

@@ -152,8 +152,8 @@ typedef struct RenderOptions {
     const char *title;                       /* in the header; NULL: the scene's name */
     const char *captions[RENDER_PANELS_MAX]; /* instead of a run's method and its description; NULL or "": these */
     const char *notes[RENDER_PANELS_MAX];    /* after a panel's method; NULL: none */
-    /* The description of a run's method ("engine:k=20"), for its title and caption. NULL, or returns NULL: the text of the
-       method is its title. */
+    /* The description of a run's method ("engine:k=20"), for its title and caption. NULL, or returns NULL: the text of
+       the method is its title. */
     const MethodDescription *(*describe)(const char *method);
     ColourChoices colours;
     RenderLook look;           /* zeros: bodies side by side */
@@ -249,8 +249,8 @@ typedef struct ScaleMeasures {
 /* False with error set if out of memory. */
 bool scales_measure(const Trajectory *run, ScaleMeasures *measures, Error *error);
 
-/* From the first run; `scale` in pixels per metre, `largest_distance` in m. Arrows are in proportion to the panel, but to
-   its boxes where these are small, or they would cover them. False with error set if out of memory. */
+/* From the first run; `scale` in pixels per metre, `largest_distance` in m. Arrows are in proportion to the panel, but
+   to its boxes where these are small, or they would cover them. False with error set if out of memory. */
 bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double scale, double largest_distance,
                    Error *error);
 

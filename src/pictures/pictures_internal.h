@@ -100,9 +100,9 @@ typedef struct TextLines {
     char lines[TEXT_LINES_MAX][CAPTION_TEXT_SIZE];
 } TextLines;
 
-/* Breaks a text at spaces, or within a word longer than a line, into lines of at most `first` pixels and then `others`. If it
-   needs more than TEXT_LINES_MAX, the last of these has the rest. The first stays empty if only the others have room for the
-   first word. */
+/* Breaks a text at spaces, or within a word longer than a line, into lines of at most `first` pixels and then `others`.
+   If it needs more than TEXT_LINES_MAX, the last of these has the rest. The first stays empty if only the others have
+   room for the first word. */
 TextLines text_lines(const Font *font, const char *text, int first, int others);
 
 /* Where a picture has its texts, axes and curves. Whatever is drawn outside the panels and their frames is in one of
@@ -140,14 +140,15 @@ ArrowStyle marks_arrow_style(const Picture *picture, uint32_t color);
 
 /* The grid of panels in which the scene is largest, and their camera. */
 
-/* Sets the panels, from the look and the title, and the fixed camera; `legend`: its rows. Panels that a long or high scene
-   would leave almost empty have its shape. Three panels are in a row or a column; only of five, a cell is empty. */
+/* Sets the panels, from the look and the title, and the fixed camera; `legend`: its rows. Panels that a long or high
+   scene would leave almost empty have its shape. Three panels are in a row or a column; only of five, a cell is
+   empty. */
 void panels_arrange(Picture *picture, int width, int height, int legend);
 
 /* The texts of the picture. They depend only on the trajectories and options, not on the machine or the time. */
 
-/* The title, on up to TEXT_LINES_MAX lines, and the slow motion; at the right the frame, the simulated time and, for two
-   panels, their distance. */
+/* The title, on up to TEXT_LINES_MAX lines, and the slow motion; at the right the frame, the simulated time and, for
+   two panels, their distance. */
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing);
 
 /* Above a panel, its method and, if there are more than two runs, its distance from the first run. Nothing is cut: a
@@ -171,8 +172,8 @@ int caption_least_width(const Picture *picture, bool whole);
 /* Two panels side by side: the header shows their distance, the only one. */
 bool caption_is_pair(const Picture *picture);
 
-/* Draws a name in at most `room` pixels: in the font if it fits, otherwise in the small one, there cut if need be. Returns
-   the x where it ends. */
+/* Draws a name in at most `room` pixels: in the font if it fits, otherwise in the small one, there cut if need be.
+   Returns the x where it ends. */
 int caption_name_draw(const Picture *picture, const Font *font, const char *name, int x, int baseline, int room,
                       Drawing *drawing);
 
@@ -182,9 +183,9 @@ int caption_fair_width(const int *widths, int count, int room);
 /* "pyramid_settled" -> "Pyramid settled": the options' title, or the scene's name. */
 void caption_title(const Picture *picture, char title[CAPTION_TEXT_SIZE]);
 
-/* The name of a run's method (methods/methods.h) and what it is: "engine" and "physics engine, sequential impulses"; of an
-   external one with what its program calls itself. The second may be empty. Or the caption that the options set for the
-   run, without a second. */
+/* The name of a run's method (methods/methods.h) and what it is: "engine" and "physics engine, sequential impulses"; of
+   an external one with what its program calls itself. The second may be empty. Or the caption that the options set for
+   the run, without a second. */
 void caption_method(const Picture *picture, int run, char name[CAPTION_TEXT_SIZE], char note[CAPTION_TEXT_SIZE]);
 
 /* Text after the name: the options' note, the cost and what the method is. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A page that plays runs: where they part, the data that its script reads, the page itself. player_pack.c packs states and
-   contacts. */
+/* A page that plays runs: where they part, the data that its script reads, the page itself. player_pack.c packs states
+   and contacts. */
 #include "pictures/player.h"
 
 #include "base/base.h"

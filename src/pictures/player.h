@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A page that plays runs side by side: one HTML file that needs no network and no other file. It has every state of its
-   frames bit by bit, and contacts rounded (pictures/player_internal.h). The script that draws it is in pictures/player. */
+   frames bit by bit, and contacts rounded (pictures/player_internal.h). The script that draws it is in
+   pictures/player. */
 #pragma once
 #include "base/base.h"
 #include "live/live.h"
@@ -42,8 +43,8 @@ typedef struct PlayerResult {
     bool left_contacts; /* contacts were left out: with them the page would be too large */
 } PlayerResult;
 
-/* Writes the page of 1 to RENDER_PANELS_MAX runs with equal time steps; of different scenes, too: then the page says what it
-   cannot compare. The same runs and options give the same bytes. ERROR_INPUT if the page would be too large,
+/* Writes the page of 1 to RENDER_PANELS_MAX runs with equal time steps; of different scenes, too: then the page says
+   what it cannot compare. The same runs and options give the same bytes. ERROR_INPUT if the page would be too large,
    with a value of `every` that suffices, or if a frame is beyond the last one. */
 bool player_write(const Trajectory *const *runs, int count, const PlayerOptions *options, const char *path,
                   PlayerResult *result, Error *error);

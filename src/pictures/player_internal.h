@@ -18,7 +18,8 @@ typedef struct Bytes {
     size_t size;
 } Bytes;
 
-/* Deflates (RFC 1951, as browsers' DecompressionStream("deflate-raw") reads it). False with error set when memory is short. */
+/* Deflates (RFC 1951, as browsers' DecompressionStream("deflate-raw") reads it). False with error set when memory is
+   short. */
 bool bytes_deflate(Bytes *bytes, const void *data, size_t size, Error *error);
 
 /* Differences, small ones of either sign, as small numbers: 0, -1, 1, -2, ... become 0, 1, 2, 3, ... */
@@ -48,7 +49,8 @@ static inline int player_frame_count(const PlayerFrames *frames, int run_frames)
     return last < frames->first ? 0 : (last - frames->first) / frames->every + 1;
 }
 
-/* The first stored frame that is not before a frame of the run; -1 for a frame (-1) that is not there, or not stored. */
+/* The first stored frame that is not before a frame of the run; -1 for a frame (-1) that is not there, or not
+   stored. */
 static inline int player_stored(const PlayerFrames *frames, int frame) {
     if (frame < 0 || frame > frames->last) return -1;
     const int stored = frame <= frames->first ? 0 : (frame - frames->first + frames->every - 1) / frames->every;
@@ -60,13 +62,13 @@ static inline float player_dt(const PlayerFrames *frames, const Trajectory *run)
     return run->dt * (float)frames->every;
 }
 
-/* The contacts of some stored frames of a run, rounded; player/codec.js is the decoder. Those of a frame are of the step that
-   follows from its poses; of the last frame, of its own step.
+/* The contacts of some stored frames of a run, rounded; player/codec.js is the decoder. Those of a frame are of the
+   step that follows from its poses; of the last frame, of its own step.
 
    A number per frame: of contacts. Then columns with a number per contact: bodies a and b, feature; and, as differences
-   from the same contact in the frame before, the point's x and y from the centre of b in units of `length`, the normal's x
-   and y in 1/256, the logarithm of the normal impulse, and the tangent impulse in 1/64 of the normal one and a unit. In a
-   pile that rests, friction keeps its share of the normal impulse: so most differences are small. */
+   from the same contact in the frame before, the point's x and y from the centre of b in units of `length`, the
+   normal's x and y in 1/256, the logarithm of the normal impulse, and the tangent impulse in 1/64 of the normal one and
+   a unit. In a pile that rests, friction keeps its share of the normal impulse: so most differences are small. */
 
 /* What is rounded away. */
 typedef struct ContactUnits {
@@ -110,7 +112,8 @@ static inline bool player_run_is_live(const Player *player, int index) {
     return player->options->live != NULL && player->options->live->methods[index] != NULL;
 }
 
-/* What a page with live runs needs beside them (player_live.c): deflates module and bundle; the key "live" of the data. */
+/* What a page with live runs needs beside them (player_live.c): deflates module and bundle; the key "live" of the
+   data. */
 bool player_live_pack(Player *player, Error *error);
 void player_live_put(JsonWriter *json, const Player *player);
 
@@ -120,7 +123,8 @@ void player_put_colours(JsonWriter *json, const char *key, const RunColours *col
 /* Width of text in ems of the built-in font. Grids of panels depend on it: not on the reader's fonts. */
 double player_ems(FontFace face, const char *text);
 
-/* Packs all states, then all contacts, or leaves these out if the page would be too large. ERROR_INPUT if it is even so. */
+/* Packs all states, then all contacts, or leaves these out if the page would be too large. ERROR_INPUT if it is even
+   so. */
 bool player_pack(Player *player, Error *error);
 
 /* Frees all that a player holds. */

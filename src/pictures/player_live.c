@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a page needs to step runs itself: module, bundle, and the methods that it offers with their names and colours. */
+/* What a page needs to step runs itself: module, bundle, and the methods that it offers with their names and
+   colours. */
 #include "base/base.h"
 #include "base/json.h"
 #include "live/live.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The states of some stored frames of a run, without loss; player/codec.js is the decoder.
 
-   For vx, vy, omega, x, y, angle in turn: each body's values in the order of frames, as the difference of the float's bits
-   from those of a prediction. That of a velocity is its value in the frame before. That of a pose is the one that a step
-   with the new velocity leads to, x + dt * vx in float: this is how the engine moves bodies, so most differences are 0. In
-   the first frame of a chunk the prediction is 0, so that each chunk can be decoded by itself. */
+   For vx, vy, omega, x, y, angle in turn: each body's values in the order of frames, as the difference of the float's
+   bits from those of a prediction. That of a velocity is its value in the frame before. That of a pose is the one that
+   a step with the new velocity leads to, x + dt * vx in float: this is how the engine moves bodies, so most differences
+   are 0. In the first frame of a chunk the prediction is 0, so that each chunk can be decoded by itself. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "pictures/picture.h"
@@ -237,8 +237,8 @@ static double unpacked_size(const Player *player) {
     return size;
 }
 
-/* `done` of all chunks take `size` bytes. If frames are left out, the prediction of poses is worse: they take up to twice the
-   room. */
+/* `done` of all chunks take `size` bytes. If frames are left out, the prediction of poses is worse: they take up to
+   twice the room. */
 static bool player_pack_refuse(const Player *player, double size, int done, int chunks, Error *error) {
     const double all = size * chunks / done, worst = fmin(2 * all, unpacked_size(player));
     const int every = player->frames.every * ((int)(worst / player->most_bytes) + 1);

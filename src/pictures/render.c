@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sequence: which moments its pictures show, and how they are drawn, as a whole or in pieces (runs/pieces.h): ranges of consecutive pictures, whose frames are files in the folder. The results
-   of a piece are lines "INDEX PIXELS FILE": the hashes of its pictures. */
+/* A sequence: which moments its pictures show, and how they are drawn, as a whole or in pieces (runs/pieces.h): ranges
+   of consecutive pictures, whose frames are files in the folder. The results of a piece are lines "INDEX PIXELS FILE":
+   the hashes of its pictures. */
 #include "pictures/render.h"
 
 #include "base/base.h"
@@ -23,8 +24,8 @@
 /* s, time to read a card */
 static const double card_seconds = 2;
 
-/* Thousandths of a Hz: frame rates are compared as whole numbers, so that a run of 60 Hz at 60 pictures per second shows
-   its frames, although 1/60 s is no binary fraction. */
+/* Thousandths of a Hz: frame rates are compared as whole numbers, so that a run of 60 Hz at 60 pictures per second
+   shows its frames, although 1/60 s is no binary fraction. */
 static const double rate_unit = 1000;
 
 int moments_impact(const Trajectory *const *panels, int count) {
@@ -256,8 +257,8 @@ static bool take_all(const Ranges *ranges, const Pieces *pieces, Error *error) {
     return true;
 }
 
-/* Draws the pieces of a shard; checks those of a merge, and takes their hashes into the job's manifest. Of a whole sequence,
-   checks only that no shards are in the folder. */
+/* Draws the pieces of a shard; checks those of a merge, and takes their hashes into the job's manifest. Of a whole
+   sequence, checks only that no shards are in the folder. */
 static bool sequence_pieces_do(const WorkerJob *job, RenderStudy *study, const Progress *progress, Error *error) {
     Pieces *pieces = &study->pieces;
     Ranges ranges;

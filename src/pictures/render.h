@@ -46,9 +46,9 @@ typedef struct RenderStudy {
    options->resume keeps the pictures of an earlier call, even one that was killed, whose files are unchanged, and
    draws all others. If that call had other runs or options or was another version, it draws all.
 
-   study NULL: the sequence as a whole; otherwise also as a shard or as a merge. A piece is a range of consecutive pictures. A shard
-   writes the frames of its pieces and nothing else beside them, and *result has no hashes. A merge takes the frames as the shards
-   left them; a range of which a frame is missing or altered is missing. */
+   study NULL: the sequence as a whole; otherwise also as a shard or as a merge. A piece is a range of consecutive
+   pictures. A shard writes the frames of its pieces and nothing else beside them, and *result has no hashes. A merge
+   takes the frames as the shards left them; a range of which a frame is missing or altered is missing. */
 bool render_study(const Trajectory *const *panels, int panel_count, const RenderOptions *options, RenderStudy *study,
                   RenderResult *result, const Progress *progress, Error *error);
 
@@ -94,8 +94,9 @@ bool video_write_y4m(const VideoOptions *options, int file, const Progress *prog
 /* The order of moments in a video: title card, the run with slow motion around the impact, its last frame held, end
    card. In closed form, without a list.
 
-   In real time, picture p of the run is shown p / rate seconds after its first. The frame there is p * step / per, exactly;
-   poses between two frames are interpolated. Without options, step = per = 1 and the pictures are the frames. */
+   In real time, picture p of the run is shown p / rate seconds after its first. The frame there is p * step / per,
+   exactly; poses between two frames are interpolated. Without options, step = per = 1 and the pictures are the
+   frames. */
 
 typedef struct MomentPlan {
     int first, last;           /* frames of the run, inclusive */

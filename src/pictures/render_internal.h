@@ -107,8 +107,9 @@ typedef struct WorkerReport {
 /* Distributes pictures over worker processes and reads their reports. Workers are forked before any OpenGL context is
    created: a context does not survive a fork. */
 
-/* Draws or keeps the pictures of the job, by as many processes as its options say, and adds them to its manifest. Then the
-   files are safely on the disk. *kept: how many were kept; may be NULL. ERROR_INTERRUPTED if progress requests a stop. */
+/* Draws or keeps the pictures of the job, by as many processes as its options say, and adds them to its manifest. Then
+   the files are safely on the disk. *kept: how many were kept; may be NULL. ERROR_INTERRUPTED if progress requests a
+   stop. */
 bool workers_draw(const WorkerJob *job, int *kept, const Progress *progress, Error *error);
 
 /* The part of renderer.c that the workers of a sequence use. */

@@ -159,7 +159,8 @@ void renderer_destroy(Renderer *renderer) {
     free(renderer);
 }
 
-/* Bodies on a transparent background. Frames are opaque: drawing on black and on white gives alpha from the difference. */
+/* Bodies on a transparent background. Frames are opaque: drawing on black and on white gives alpha from the
+   difference. */
 
 struct Still {
     Painter painter;

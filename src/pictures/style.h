@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers of the look: rows and letters, thickness of lines, limits, and where the colour of a band changes; chosen by eye.
-   C and the script of a page that plays runs have this one table: base/tools/embed.cmake makes constants of JavaScript of its
-   lines. So each is a `static const` number that both languages write alike. Colours are in theme.c; a page has them as data. */
+/* The numbers of the look: rows and letters, thickness of lines, limits, and where the colour of a band changes; chosen
+   by eye. C and the script of a page that plays runs have this one table: base/tools/embed.cmake makes constants of
+   JavaScript of its lines. So each is a `static const` number that both languages write alike. Colours are in theme.c;
+   a page has them as data. */
 #pragma once
 
 /* Boxes. */
@@ -29,7 +30,8 @@ static const double BAND_DARKER = 0.6,
 static const int SCALE_FIRST_DECADE = -3; /* the colour scale begins at 1 mm */
 static const int SCALE_LAST_DECADE = 1;   /* and ends at 10 m at the latest */
 
-/* Labels: upright text in the middle of a box, in a circle, so that its size does not depend on how the box is turned. */
+/* Labels: upright text in the middle of a box, in a circle, so that its size does not depend on how the box is
+   turned. */
 
 static const double LABEL_CIRCLE = 0.85; /* diameter of the circle / the box's shorter side */
 static const double LABEL_EMS = 0.64,
@@ -95,7 +97,8 @@ static const double SLOW_BEFORE = 0.15, SLOW_AFTER = 0.6;
 /* Panels and their metre grid. */
 
 static const double GAIN = 1.05, GAIN_WITH_CUT_NAMES = 1.5; /* of scale: an unusual arrangement has at least this */
-/* Of a panel's width and height: what the scene covers at least, or the panel shrinks until it covers the third share. */
+/* Of a panel's width and height: what the scene covers at least, or the panel shrinks until it covers the third
+   share. */
 static const double LEAST_SHARE_X = 0.2, LEAST_SHARE_Y = 0.4, FULL_SHARE = 0.65;
 static const double LEAST_PANEL_WIDTH = 22, LEAST_PANEL_HEIGHT = 5; /* ems of the captions, of a panel that shrinks */
 static const double WHOLE_SCALE = 12;  /* from here on a whole number of pixels a metre costs little room */

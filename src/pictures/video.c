@@ -291,8 +291,8 @@ static bool encode_video(const Encoding *encoding, Error *error) {
     return file_draft_publish(encoding->draft, options->path, error);
 }
 
-/* Opened by ffmpeg through this process, so that no name is left when that is killed. The prefix "file:" prevents ffmpeg
-   from reading the name as that of a protocol. */
+/* Opened by ffmpeg through this process, so that no name is left when that is killed. The prefix "file:" prevents
+   ffmpeg from reading the name as that of a protocol. */
 static bool open_draft(int *draft, char name[DRAFT_NAME_SIZE], const char *path, Error *error) {
     *draft = file_draft(path, error);
     snprintf(name, DRAFT_NAME_SIZE, "file:/proc/%ld/fd/%d", (long)getpid(), *draft);
@@ -322,7 +322,8 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
 /* YUV4MPEG2, a format that video programs read from a pipe. 4:4:4, 8 bits, ITU-R BT.709, limited range, exact
    values rounded to nearest, halves up:
 
-     Y = 16 + 219 L, Cb = 128 + 224 (B - L) / 1.8556, Cr = 128 + 224 (R - L) / 1.5748, L = 0.2126 R + 0.7152 G + 0.0722 B
+     Y = 16 + 219 L, Cb = 128 + 224 (B - L) / 1.8556, Cr = 128 + 224 (R - L) / 1.5748, L = 0.2126 R + 0.7152 G + 0.0722
+     B
 
    with R, G, B = channel / 255. The format has no field that marks BT.709. */
 

@@ -69,8 +69,8 @@ static bool draw_all(WorkerProcess *worker, int pipe, Error *error) {
     return true;
 }
 
-/* A signal is for the parent, also one that timeout(1), a terminal or a scheduler sends to the whole group: the parent then
-   closes the pipes, and the worker ends between two frames and leaves no partial file. */
+/* A signal is for the parent, also one that timeout(1), a terminal or a scheduler sends to the whole group: the parent
+   then closes the pipes, and the worker ends between two frames and leaves no partial file. */
 static void prepare_process(void) {
     signal(SIGINT, SIG_IGN);
     signal(SIGTERM, SIG_IGN);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines of text, and bitmaps of glyphs that are not in the atlas, from their outlines.
 
-   Exact coverage, by signed areas: each piece of an outline within a pixel adds the area between it and the pixel's right
-   side, and its height to all pixels farther right. */
+   Exact coverage, by signed areas: each piece of an outline within a pixel adds the area between it and the pixel's
+   right side, and its height to all pixels farther right. */
 #include "pixels/gl.h"
 #include "pixels/pixels_internal.h"
 #include "pixels/png.h"

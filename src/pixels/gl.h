@@ -88,8 +88,8 @@ uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap);
 /* Adds the shapes and glyphs of `from`, except its static shapes, clipped to the rows top <= y < bottom. */
 void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom);
 
-/* The glyphs of the most common characters as bitmaps, which tools/make_atlas.c embeds in the binary: the fonts of font/ in
-   FONT_SIZES sizes. Others are drawn when they are needed (font.c). */
+/* The glyphs of the most common characters as bitmaps, which tools/make_atlas.c embeds in the binary: the fonts of
+   font/ in FONT_SIZES sizes. Others are drawn when they are needed (font.c). */
 
 enum { FONT_FACES = 2, FONT_SIZES = 24, FONT_GLYPHS = 106 };
 
@@ -183,9 +183,9 @@ typedef struct DashedLine {
 } DashedLine;
 void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, const Rect *clip);
 
-/* An OpenGL context without a display: OSMesa or EGL's surfaceless platform. A build has one of them or both (Mesa dropped
-   OSMesa in 25.1). Both are loaded at run time, so the program runs if one is missing. Nothing is drawn to the context's
-   own surface: the canvas has a framebuffer, so both run the same code. */
+/* An OpenGL context without a display: OSMesa or EGL's surfaceless platform. A build has one of them or both (Mesa
+   dropped OSMesa in 25.1). Both are loaded at run time, so the program runs if one is missing. Nothing is drawn to the
+   context's own surface: the canvas has a framebuffer, so both run the same code. */
 
 typedef enum ContextChoice { CONTEXT_AUTO, CONTEXT_OSMESA, CONTEXT_EGL } ContextChoice;
 

@@ -46,9 +46,9 @@ bool context_load(const char *library, const char *package, const ContextFunctio
     return true;
 }
 
-/* Frames must be identical on every machine: force Mesa's software rasteriser. No shader cache in the user's home, unless
-   the environment asks for one: it saves a quarter of the start, and is for this processor only. No rasteriser threads: they would not survive a fork, and would compete with the other processes of a
-   sequence. */
+/* Frames must be identical on every machine: force Mesa's software rasteriser. No shader cache in the user's home,
+   unless the environment asks for one: it saves a quarter of the start, and is for this processor only. No rasteriser
+   threads: they would not survive a fork, and would compete with the other processes of a sequence. */
 static void prepare_mesa(void) {
     setenv("LP_NUM_THREADS", "0", 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "true", 1);

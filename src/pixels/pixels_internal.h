@@ -50,8 +50,8 @@ static inline bool png_chunk_is_sound(const PngChunk *chunk) {
            libdeflate_crc32(0, chunk->type, chunk->length + 4) == png_number(chunk->data + chunk->length);
 }
 
-/* The bytes of a file, from its start to its end, as often as they are needed: from memory, or in pieces. Of a file that is
-   read in pieces, each pass must have the same hash: then what was compared is what has this hash. */
+/* The bytes of a file, from its start to its end, as often as they are needed: from memory, or in pieces. Of a file
+   that is read in pieces, each pass must have the same hash: then what was compared is what has this hash. */
 
 static const size_t PNG_MAX_FILE_SIZE = (size_t)1 << 30; /* IMAGE_MAX_PIXELS of 16 bits, uncompressed, need less */
 
@@ -75,8 +75,8 @@ void png_source_close(PngSource *source);
 /* Begins a pass. png_source_open() has begun the first. */
 bool png_source_rewind(PngSource *source);
 
-/* The next bytes, at least one and at most `most`, which last until the next call; 0: there are none, or reading failed. Those
-   that are used are added to source->at. */
+/* The next bytes, at least one and at most `most`, which last until the next call; 0: there are none, or reading
+   failed. Those that are used are added to source->at. */
 size_t png_source_peek(PngSource *source, size_t most, const uint8_t **bytes);
 
 /* Copies the next bytes; to NULL: passes over them. False if there are less. */
@@ -85,9 +85,9 @@ bool png_source_take(PngSource *source, uint8_t *to, size_t size);
 /* Reads what is left of the pass. False if the file has changed. */
 bool png_source_end(PngSource *source);
 
-/* Reads common PNG files row by row, several times as fast as libpng: at most 8 bits per sample, not interlaced, nothing
-   unusual. A function that returns false leaves the file to libpng, which decides whether it is damaged; so only what
-   libpng would read, and as it would, may be accepted. */
+/* Reads common PNG files row by row, several times as fast as libpng: at most 8 bits per sample, not interlaced,
+   nothing unusual. A function that returns false leaves the file to libpng, which decides whether it is damaged; so
+   only what libpng would read, and as it would, may be accepted. */
 
 /* What the bytes of a row mean. */
 typedef struct PngLayout {
@@ -116,8 +116,8 @@ typedef struct PngRows {
     bool damaged; /* its rows cannot be read */
 } PngRows;
 
-/* Of a file whose source is set: checks all chunks and their checksums, and refuses animations. png_rows_close(), which closes
-   the source, must follow. */
+/* Of a file whose source is set: checks all chunks and their checksums, and refuses animations. png_rows_close(), which
+   closes the source, must follow. */
 bool png_rows_open(PngRows *rows, int64_t max_pixels);
 void png_rows_close(PngRows *rows);
 
@@ -127,8 +127,8 @@ size_t png_rows_size(const PngRows *rows);
 /* Begins to decompress. */
 bool png_rows_start(PngRows *rows);
 
-/* The next `size` bytes of the rows as they are stored: of each a filter and its bytes. Those of a twin are the same, up to where
-   the compressed bytes of both files part: then rows->twin becomes NULL. */
+/* The next `size` bytes of the rows as they are stored: of each a filter and its bytes. Those of a twin are the same,
+   up to where the compressed bytes of both files part: then rows->twin becomes NULL. */
 bool png_rows_read(PngRows *rows, uint8_t *to, size_t size);
 
 /* The same bytes for one that was the twin of what has read `from`. */
@@ -155,7 +155,8 @@ bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files,
 bool png_fast_check_rows(PngRows *rows);
 
 /* Any file, by libpng; NULL with error set. What png_fast_decode() accepts, this accepts, with the same pixels;
-   but for codes of deflate that are incomplete, which ISA-L reads and zlib refuses: the pixels have the right checksum. */
+   but for codes of deflate that are incomplete, which ISA-L reads and zlib refuses: the pixels have the right
+   checksum. */
 Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
 
 /* Compressed pixels of PNG files (IDAT), optimised for frames of a sequence: flat colours, most rows equal to the

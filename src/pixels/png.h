@@ -64,7 +64,8 @@ typedef struct RowSink {
 } RowSink;
 enum { ROWS_ALL = INT_MAX };
 
-/* A file to compare. A common one, of at most 8 bits per sample and not interlaced, is read in pieces, in little memory. */
+/* A file to compare. A common one, of at most 8 bits per sample and not interlaced, is read in pieces, in little
+   memory. */
 typedef struct PngFile {
     const char *path;
     int64_t max_pixels;
@@ -76,8 +77,8 @@ typedef struct PngFile {
     struct PngRows *rows; /* NULL: not in pieces */
 } PngFile;
 
-/* NULL with error set as image_load_png(). What is read in pieces is sound but for its compressed pixels, and has at most
-   max_pixels. png_file_close() must follow. The path must last until then. */
+/* NULL with error set as image_load_png(). What is read in pieces is sound but for its compressed pixels, and has at
+   most max_pixels. png_file_close() must follow. The path must last until then. */
 bool png_file_open(PngFile *file, const char *path, int64_t max_pixels, Error *error);
 void png_file_close(PngFile *file);
 
@@ -90,12 +91,13 @@ bool png_file_check(PngFile *file, Error *error);
 /* Whether all bytes are equal. */
 bool png_files_are_same(PngFile files[2]);
 
-/* Reads two files in pieces row by row, once. False: a file is damaged or has changed, they are not read in pieces, have different
-   sizes, or memory is short. Then some rows may have been given. threads: with a second thread. */
+/* Reads two files in pieces row by row, once. False: a file is damaged or has changed, they are not read in pieces,
+   have different sizes, or memory is short. Then some rows may have been given. threads: with a second thread. */
 bool png_files_scan(PngFile files[2], bool threads, const RowSink *sink);
 
-/* Copies the value of the first text with this key before the pixels of a file in memory. `value` is empty without such a text, if it
-   cannot be read or needs more than `value_size` bytes. False with error set only when memory is short. */
+/* Copies the value of the first text with this key before the pixels of a file in memory. `value` is empty without such
+   a text, if it cannot be read or needs more than `value_size` bytes. False with error set only when memory is
+   short. */
 bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error);
 
 /* FNV-1a over width, height (4 bytes each) and the XXH3 of each row: equal for equal pictures, regardless of
@@ -128,8 +130,8 @@ typedef struct Point {
     double x, y;
 } Point;
 
-/* Checks that a file is a PNG picture without decompressing it, at the cost of a CRC over its bytes. For files that need
-   no decoding, because they equal another file byte by byte: two truncated downloads are equal, too. */
+/* Checks that a file is a PNG picture without decompressing it, at the cost of a CRC over its bytes. For files that
+   need no decoding, because they equal another file byte by byte: two truncated downloads are equal, too. */
 
 /* The first bytes only. ERROR_INPUT if the file is empty, a Git LFS pointer or no PNG file. */
 bool png_check_start(const uint8_t *data, size_t size, const char *path, Error *error);
@@ -140,10 +142,10 @@ bool png_size(const uint8_t *data, size_t size, int *width, int *height);
 /* ERROR_INPUT for more pixels than can be read. */
 bool png_check_pixels(int width, int height, int64_t max_pixels, const char *path, Error *error);
 
-/* The whole file: its chunks, their order and checksums, the header, and whether the compressed pixels can be complete: a
-   valid zlib header, and at least the bytes that deflate needs for a picture of this size. ERROR_INPUT if
-   image_decode_png() would refuse the file for one of these reasons, or as it is animated. What only decompression would
-   find is left: damage that has correct checksums. */
+/* The whole file: its chunks, their order and checksums, the header, and whether the compressed pixels can be complete:
+   a valid zlib header, and at least the bytes that deflate needs for a picture of this size. ERROR_INPUT if
+   image_decode_png() would refuse the file for one of these reasons, or as it is animated. What only decompression
+   would find is left: damage that has correct checksums. */
 bool png_check(const uint8_t *data, size_t size, const char *path, int *width, int *height, Error *error);
 
 /* The chunks of a PNG file in memory, which may be damaged (PNG specification, section 5.3). */
@@ -160,7 +162,8 @@ static inline uint32_t png_number(const uint8_t bytes[4]) {
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Reads the chunk at *at and moves *at behind it. False at the end of the file, and if the file ends within the chunk. */
+/* Reads the chunk at *at and moves *at behind it. False at the end of the file, and if the file ends within the
+   chunk. */
 static inline bool png_chunk_next(const uint8_t *file, size_t size, size_t *at, PngChunk *chunk) {
     if (*at > size || size - *at < PNG_CHUNK_FRAME) return false;
     *chunk = (PngChunk){file + *at + 4, file + *at + 8, png_number(file + *at)};
@@ -171,8 +174,8 @@ static inline bool png_chunk_next(const uint8_t *file, size_t size, size_t *at, 
 
 static inline bool png_chunk_is(const PngChunk *chunk, const char *type) { return memcmp(chunk->type, type, 4) == 0; }
 
-/* Writes a PNG file of at most 256 colours in memory, row by row. It has a third of the bytes of RGB and takes a fraction
-   of the time to compress. */
+/* Writes a PNG file of at most 256 colours in memory, row by row. It has a third of the bytes of RGB and takes a
+   fraction of the time to compress. */
 
 typedef struct Palette {
     int count;

@@ -241,8 +241,8 @@ static bool expand_row(const PngLayout *layout, const uint8_t *row, uint8_t *rgb
 }
 
 /* Two files, or one, band by band. A second thread does what the second file needs: it decompresses the next band while
-   the first file's is unfiltered, and where bands differ, both are unfiltered at once. As long as the compressed bytes of both
-   files are the same, it decompresses for both. */
+   the first file's is unfiltered, and where bands differ, both are unfiltered at once. As long as the compressed bytes
+   of both files are the same, it decompresses for both. */
 
 enum { SLACK = 16 /* vectors read and write beyond a row */ };
 
@@ -350,8 +350,8 @@ static bool deliver_row(Scan *scan, int y, bool same) {
     return true;
 }
 
-/* Hands the rows of the band to the sink, and before rows that may differ, those above that it wants. same: those of both files are
-   equal. */
+/* Hands the rows of the band to the sink, and before rows that may differ, those above that it wants. same: those of
+   both files are equal. */
 static bool deliver(Scan *scan, bool same) {
     const int around = scan->sink->around, left_out = scan->top - scan->next;
     for (int y = same ? 0 : left_out < scan->kept ? -left_out : -scan->kept; y < 0; y++)
@@ -382,8 +382,8 @@ static void give_next(Scan *scan, int slot) {
     if (scan->files > 1 && count > 0) give(scan, slot, count);
 }
 
-/* Decompresses the rows of the first file, and waits for those of the second, in `slot`. *same: these rows of both are equal,
-   and so are all above. The first file's are then not stored, unless the two were read apart before. */
+/* Decompresses the rows of the first file, and waits for those of the second, in `slot`. *same: these rows of both are
+   equal, and so are all above. The first file's are then not stored, unless the two were read apart before. */
 static bool decompress_band(Scan *scan, int slot, bool *same) {
     Side *first = &scan->sides[0], *second = &scan->sides[1];
     const size_t size = (size_t)scan->count * (first->rows->bytes + 1);

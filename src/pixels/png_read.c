@@ -340,7 +340,8 @@ static void expand_palette(Decoder *decoder) {
     }
 }
 
-/* The bytes that the next chunk of pixels gives. False with error set unless they go on, or end, one sound zlib stream. */
+/* The bytes that the next chunk of pixels gives. False with error set unless they go on, or end, one sound zlib
+   stream. */
 static bool inflate_chunk(const Decoder *decoder, z_stream *z, double most, bool *ended) {
     uint8_t scratch[1 << 14];
     while (!*ended && z->avail_in > 0) {
@@ -355,8 +356,8 @@ static bool inflate_chunk(const Decoder *decoder, z_stream *z, double most, bool
     return true;
 }
 
-/* The compressed pixels again, as libpng does not look at a checksum that is split over two chunks. What follows them is
-   padding. */
+/* The compressed pixels again, as libpng does not look at a checksum that is split over two chunks. What follows them
+   is padding. */
 static bool check_stream(const Decoder *decoder) {
     z_stream z = {0};
     Header header;
@@ -496,8 +497,8 @@ static bool has_key(const PngChunk *chunk, const char *key) {
            chunk->length >= length && memcmp(chunk->data, key, length) == 0;
 }
 
-/* A file that has only the first text with this key before the pixels, which are an empty chunk: to libpng, any chunk above its limit of
-   texts is damage, and so is a damaged text with another key. NULL if out of memory. */
+/* A file that has only the first text with this key before the pixels, which are an empty chunk: to libpng, any chunk
+   above its limit of texts is damage, and so is a damaged text with another key. NULL if out of memory. */
 static uint8_t *with_text_alone(const uint8_t *data, size_t size, const char *key, size_t *kept) {
     uint8_t *copy = malloc(size + sizeof png_no_pixels);
     PngChunk chunk;

@@ -161,8 +161,8 @@ static bool scan_start(PngRows *rows, int64_t max_pixels) {
     return true;
 }
 
-/* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the stream
-   is cut into calls. */
+/* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the
+   stream is cut into calls. */
 static bool check_compression(const PngRows *rows) {
     const uint8_t *header = rows->zlib;
     int window_bits = (header[0] >> 4) + 8;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The bytes of a file, from its start to its end, as often as they are needed: from memory, or in pieces. Files to compare. */
+/* The bytes of a file, from its start to its end, as often as they are needed: from memory, or in pieces. Files to
+   compare. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes PNG files: pictures with libpng, whose pixels are compressed by libpng or by png_idat.c; and files of few colours. */
+/* Writes PNG files: pictures with libpng, whose pixels are compressed by libpng or by png_idat.c; and files of few
+   colours. */
 #include "base/base.h"
 #include "base/file.h"
 #include "pixels/pixels_internal.h"

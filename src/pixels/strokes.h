@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers of arrows. C and the script of a page that plays runs have this one table: base/tools/embed.cmake makes constants
-   of JavaScript of its lines. So each is a `static const` number that both languages write alike. */
+/* The numbers of arrows. C and the script of a page that plays runs have this one table: base/tools/embed.cmake makes
+   constants of JavaScript of its lines. So each is a `static const` number that both languages write alike. */
 #pragma once
 
 static const double HEAD = 4.2;       /* length of an arrow's head / thickness */

@@ -102,8 +102,8 @@ static bool root_open_below(Root *root, const char *path, const char *report, Er
 
 static void root_close(const Root *root) { close(root->folder); }
 
-/* Opens the directory of `name` in the root; `name` is relative, without "." and "..". create: makes the folders that are
-   missing. ERROR_INPUT if one is a link or no folder. After success, place_close(). */
+/* Opens the directory of `name` in the root; `name` is relative, without "." and "..". create: makes the folders that
+   are missing. ERROR_INPUT if one is a link or no folder. After success, place_close(). */
 static bool place_open(ApprovePlace *place, const Root *root, const char *name, bool create, Error *error) {
     if (!file_path(place->path, sizeof place->path, error, "%s/%s", root->path, name)) return false;
     place->name = name;

@@ -139,9 +139,9 @@ bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_
 /* Copies the ignored pixels of `expected` to `actual`; masked NULL: none. Both pictures must have the same size. */
 void image_copy_masked(const Image *expected, Image *actual, const uint8_t *masked);
 
-/* Chunks of PNG files that change how equal pixels are displayed: the colour space (cICP, iCCP, sRGB, gAMA, cHRM), its range
-   (mDCV, cLLI, sBIT), the background (bKGD), the shape and size of a pixel (pHYs) and the orientation in eXIf (PNG
-   specification, third edition, sections 11.3.2 to 11.3.4). */
+/* Chunks of PNG files that change how equal pixels are displayed: the colour space (cICP, iCCP, sRGB, gAMA, cHRM), its
+   range (mDCV, cLLI, sBIT), the background (bKGD), the shape and size of a pixel (pHYs) and the orientation in eXIf
+   (PNG specification, third edition, sections 11.3.2 to 11.3.4). */
 
 /* "gAMA 0.45455 and none, orientation 1 and 6" */
 typedef struct PngDisplay {
@@ -149,8 +149,8 @@ typedef struct PngDisplay {
 } PngDisplay;
 
 /* Finds what differs between two files; an empty text if nothing does. Each chunk is compared by itself, although some
-   viewers ignore gAMA beside iCCP. Colour profiles are compared uncompressed. Both files must be valid up to their ends, as
-   png_check() or image_decode_png() finds. False with error set when memory is short. */
+   viewers ignore gAMA beside iCCP. Colour profiles are compared uncompressed. Both files must be valid up to their
+   ends, as png_check() or image_decode_png() finds. False with error set when memory is short. */
 bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size, PngDisplay *display,
                          Error *error);
 
@@ -174,14 +174,15 @@ typedef struct ImageRegions {
 /* The gap in pixels for pictures of this size: the space between two words of a caption, or more. */
 int image_regions_gap(int width, int height);
 
-/* Row by row, from the top; rows without a difference may be left out. levels[width] as above. NULL with error set if out of
-   memory. The regions are complete, and must last, until the end. */
+/* Row by row, from the top; rows without a difference may be left out. levels[width] as above. NULL with error set if
+   out of memory. The regions are complete, and must last, until the end. */
 typedef struct RegionScan RegionScan;
 RegionScan *region_scan_create(int width, int height, ImageRegions *regions, Error *error);
 void region_scan_row(RegionScan *scan, int y, const uint8_t *levels);
 void region_scan_end(RegionScan *scan, int height);
 void region_scan_destroy(RegionScan *scan); /* NULL: does nothing */
 
-/* `difference` is what image_compare_masked() found in the same pictures and mask. False with error set if out of memory. */
+/* `difference` is what image_compare_masked() found in the same pictures and mask. False with error set if out of
+   memory. */
 bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, const ImageDifference *difference,
                         ImageRegions *regions, Error *error);

@@ -20,12 +20,12 @@ typedef struct Verdict {
     Patch *patch;
 } Verdict;
 
-/* Of the squared difference: what a movement explains, and where it looks like noise; what either picture must show, and if a
-   movement explains all: one side of a gradient has nearly the colour of its ground. */
+/* Of the squared difference: what a movement explains, and where it looks like noise; what either picture must show,
+   and if a movement explains all: one side of a gradient has nearly the colour of its ground. */
 static const double MOVED = 0.7, CERTAIN = 0.9, BOTH = 0.15, TRACE = 0.02;
 
-/* Whether something of these patches appears and something vanishes. Where content leaves, the difference has the other sign than
-   where it arrives; a box that grew on one side has one sign. */
+/* Whether something of these patches appears and something vanishes. Where content leaves, the difference has the other
+   sign than where it arrives; a box that grew on one side has one sign. */
 static bool shows_both(const Patch *const *patches, int count, double least) {
     enum { EVIDENCE = 12 }; /* pixels; fewer fit to many offsets by chance */
     double energy[DOT_KINDS] = {0}, total = 0, rise = 0, fall = 0;
@@ -70,8 +70,8 @@ static bool have_one_size(const Patch *a, const Patch *b) {
            abs(a->region.bottom - a->region.top - b->region.bottom + b->region.top) <= NEARLY;
 }
 
-/* Whether two regions may be the places of one thing: it left the first and came to the second, or one is a part of what moved in
-   the other. */
+/* Whether two regions may be the places of one thing: it left the first and came to the second, or one is a part of
+   what moved in the other. */
 static bool may_join(const Verdict *a, const Verdict *b) {
     static const double LITTLE = 0.35; /* where it left, little appears */
     const bool a_moved = a->kind == CHANGE_MOVED, b_moved = b->kind == CHANGE_MOVED;
@@ -267,7 +267,8 @@ static bool name_above(const Image *const pictures[2], const uint8_t *masked, in
 /* Pixels: strips up to this wide, which a shift uncovers at the sides, belong to it. */
 enum { SIDES_SMALL = 16 };
 
-/* The actual picture is the expected one, shifted. A strip that it uncovers is a region of its own, unless it is small. */
+/* The actual picture is the expected one, shifted. A strip that it uncovers is a region of its own, unless it is
+   small. */
 static bool name_shifted(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
                          const ImageDifference *difference, FrameChanges *changes, Error *error) {
     const int width = pictures[0]->width, height = pictures[0]->height;
@@ -285,7 +286,8 @@ static bool name_shifted(const Image *const pictures[2], const uint8_t *masked, 
     return ok;
 }
 
-/* *named: it is the same picture, shifted, and that is less to tell than its regions. *shift is that of most of it in any case. */
+/* *named: it is the same picture, shifted, and that is less to tell than its regions. *shift is that of most of it in
+   any case. */
 static bool find_shifted(const Image *const pictures[2], const uint8_t *masked, const ImageDifference *difference,
                          Motion *shift, FrameChanges *changes, bool *named, Error *error) {
     enum { FEW = 4 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What happened to a region, in pictures of which nothing else is known: it moved, appeared, vanished, has other colours. */
+/* What happened to a region, in pictures of which nothing else is known: it moved, appeared, vanished, has other
+   colours. */
 #pragma once
 #include "base/base.h"
 #include "pixels/png.h"
@@ -8,28 +9,32 @@
 
 #include <stdlib.h>
 
-/* Names the regions that have no name yet, each by the pixels in it and around it. masked as in image_compare_masked(). Both
-   pictures have one size. False with error set if out of memory.
+/* Names the regions that have no name yet, each by the pixels in it and around it. masked as in image_compare_masked().
+   Both pictures have one size. False with error set if out of memory.
 
-   A differing pixel is compared with its ground: the nearest pixels to the left, to the right, above and below that are equal in
-   both pictures. If the expected pixel looks like its ground and the actual one does not, something appears there; or it
-   vanishes; or changes, if neither does. Where both do, an edge has moved. The first of these that holds is the name:
+   A differing pixel is compared with its ground: the nearest pixels to the left, to the right, above and below that are
+   equal in both pictures. If the expected pixel looks like its ground and the actual one does not, something appears
+   there; or it vanishes; or changes, if neither does. Where both do, an edge has moved. The first of these that holds
+   is the name:
 
-   moved       an offset explains seven tenths of the squared difference: what appears came from it, what vanishes went to it, and
-               one of them is where the picture changed. Regions of one size are tried together, and each with one that moved
+   moved       an offset explains seven tenths of the squared difference: what appears came from it, what vanishes went
+               to it, and one of them is where the picture changed. Regions of one size are tried together, and each
+               with one that moved
    noise       small differences that neighbours do not share, or scattered pixels
    added       at least three quarters of the squared difference appear, and no more than a tenth vanishes
    removed     the same with vanish
-   recoloured  the steps between neighbours are at the same places, and one linear map of colours explains the difference
+   recoloured  the steps between neighbours are at the same places, and one linear map of colours explains the
+               difference
    noise       small differences of any pattern, or nine tenths of the pixels differ only along edges (antialias_mark())
    replaced    something appears and something vanishes, a tenth each at least, or colours change without their pattern
 
-   If all that differs is the same picture, shifted, that is one region. Anything else is unsure. At last, faint regions and those that moved by at most two pixels become noise, if they are four or
-   more and did not move alike. If noise lies all over a picture, the stronger regions are named without it, and the noise is
-   one more region.
+   If all that differs is the same picture, shifted, that is one region. Anything else is unsure. At last, faint regions
+   and those that moved by at most two pixels become noise, if they are four or more and did not move alike. If noise
+   lies all over a picture, the stronger regions are named without it, and the noise is one more region.
 
-   Fails: a faint watermark beside noise is noise; glyphs that another rasterizer moves all by the same have moved; a new band of
-   colour under lines and one that changed from white are the same picture. tests/bench/compare/changes measures it. */
+   Fails: a faint watermark beside noise is noise; glyphs that another rasterizer moves all by the same have moved; a
+   new band of colour under lines and one that changed from white are the same picture. tests/bench/compare/changes
+   measures it. */
 bool content_name(const Image *expected, const Image *actual, const uint8_t *masked, const ImageDifference *difference,
                   FrameChanges *changes, Error *error);
 
@@ -77,13 +82,14 @@ void content_name_most(const ContentTraits *traits, FrameChanges *changes);
 enum { CONTENT_WHOLE_MAX = 10000000 }; /* pixels of a picture that is read again as a whole, if rows do not tell */
 enum { CONTENT_MARGIN = 3 };           /* pixels around a region that are its ground */
 
-/* Names regions as content_name() does where enough of a picture is equal. The pictures begin with row `first` of the whole ones, and
-   have those that differ and CONTENT_MARGIN around; only these are looked at, so that a name does not depend on how much was read.
-   floor: of traits_floor(). */
+/* Names regions as content_name() does where enough of a picture is equal. The pictures begin with row `first` of the
+   whole ones, and have those that differ and CONTENT_MARGIN around; only these are looked at, so that a name does not
+   depend on how much was read. floor: of traits_floor(). */
 bool content_name_by_ground(const Image *expected, const Image *actual, int first, const uint8_t *masked, int floor,
                             const ImageDifference *difference, FrameChanges *changes, Error *error);
 
-/* The rows of pictures that are read row by row, from the first difference to the last: a quarter of them at most, and of 16 MB. */
+/* The rows of pictures that are read row by row, from the first difference to the last: a quarter of them at most, and
+   of 16 MB. */
 typedef struct ContentBand {
     int width, first, count, capacity;
     uint8_t *rows[2];
@@ -133,20 +139,20 @@ typedef struct Motion {
     double explained; /* share of the squared difference */
 } Motion;
 
-/* The offset that explains most of one region, or of two: the one that something left, and the one where it arrived. Of several
-   that explain all, the smallest: an even thing that moved by less than its size looks the same moved farther. `hint` is tried
-   as well. */
+/* The offset that explains most of one region, or of two: the one that something left, and the one where it arrived. Of
+   several that explain all, the smallest: an even thing that moved by less than its size looks the same moved farther.
+   `hint` is tried as well. */
 static const double MOTION_EXACT = 0.999; /* explains all */
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint);
 
-/* How far most of what differs has moved, such as what follows a banner; 0, 0 if it does not agree. The pictures have one size, and
-   `pixels` of them differ. ERROR_MEMORY. */
+/* How far most of what differs has moved, such as what follows a banner; 0, 0 if it does not agree. The pictures have
+   one size, and `pixels` of them differ. ERROR_MEMORY. */
 bool content_shift(const Image *expected, const Image *actual, int64_t pixels, Motion *shift, Error *error);
 
 /* Whether the actual picture is the expected one, shifted: all that both have is equal. */
 bool content_is_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift);
 
-/* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its first rows that differ tell; then
-   it is worth being read as a whole. */
+/* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its first rows that
+   differ tell; then it is worth being read as a whole. */
 bool content_may_be_shifted(const Image rows[2], const ContentTraits *traits, int width, int height, bool *may,
                             Error *error);

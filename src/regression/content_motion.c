@@ -105,8 +105,8 @@ static int edge_shift(const Patch *patch, bool by_row) {
     return best_shift(profiles[0], profiles[1], count);
 }
 
-/* Shifts of the sides of what was there to those of what is there now, and of its edges. Each shift to the right is tried with each
-   one down. */
+/* Shifts of the sides of what was there to those of what is there now, and of its edges. Each shift to the right is
+   tried with each one down. */
 static void add_sides(Search *search) {
     const Patch *patch = search->patches[0];
     const ViewRect a = patch->box[0], b = search->patches[search->patch_count - 1]->box[1];
@@ -207,8 +207,8 @@ static Motion refined(const Search *search, Motion base) {
     return found;
 }
 
-/* Whether a pixel of this patch came from where the picture changed, or went there. Else another place looks the same by chance:
-   the period of a pattern. */
+/* Whether a pixel of this patch came from where the picture changed, or went there. Else another place looks the same
+   by chance: the period of a pattern. */
 static bool has_partner(const Patch *patch, const Dot *dot, int right, int down) {
     const int sign = dot->kind == DOT_APPEARS ? -1 : 1, x = dot->x + sign * right, y = dot->y + sign * down;
     const Image *a = patch->pictures[0], *b = patch->pictures[1];
@@ -228,7 +228,8 @@ static bool has_partners(const Search *search, const Motion *motion) {
     return found * SHARE >= all;
 }
 
-/* The smallest offset towards this one that explains as much, by steps that halve: of an even area, all larger ones do. */
+/* The smallest offset towards this one that explains as much, by steps that halve: of an even area, all larger ones
+   do. */
 static Motion shrunk(const Search *search, Motion found) {
     enum { LONGEST = 1 << 11 };
     for (int step = LONGEST; step > 0; step /= 2)

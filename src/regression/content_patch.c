@@ -132,8 +132,8 @@ static void add_energy(const Ground *ground, Patch *patch, size_t pixel, DotKind
     }
 }
 
-/* All differing pixels count in the sums, and some become dots: by multiples of the golden ratio, since every n-th pixel would lie in
-   few columns of a box. */
+/* All differing pixels count in the sums, and some become dots: by multiples of the golden ratio, since every n-th
+   pixel would lie in few columns of a box. */
 static void add_dots(const Ground *ground, Patch *patch) {
     const ImageRegion *region = &patch->region;
     const uint32_t golden = 0x9E3779B9u;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shift of most of a picture: of a page into which something was inserted, or of the whole. What windows show decides which are
-   chosen, so both pictures choose the same ones, wherever they are. Windows that show what no other does vote for a shift. */
+/* The shift of most of a picture: of a page into which something was inserted, or of the whole. What windows show
+   decides which are chosen, so both pictures choose the same ones, wherever they are. Windows that show what no other
+   does vote for a shift. */
 #include "base/base.h"
 #include "base/numbers.h"
 #include "pixels/png.h"
@@ -32,7 +33,8 @@ static uint64_t power(uint64_t base, int exponent) {
     return product;
 }
 
-/* The windows whose first row is y and in which the pictures differ, by a hash that rolls along them. False if out of memory. */
+/* The windows whose first row is y and in which the pictures differ, by a hash that rolls along them. False if out of
+   memory. */
 static bool add_row(Anchors *anchors, const Image *image, const Image *other, int y) {
     const size_t width = (size_t)image->width, first = (size_t)y * width;
     const uint32_t *pixels = (const uint32_t *)image->pixels + first, *others = (const uint32_t *)other->pixels + first;

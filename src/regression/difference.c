@@ -206,7 +206,8 @@ static void add_gradient(Palette *palette, const Stop *stops, int count) {
     }
 }
 
-/* Greys in the upper fifth of the scale, the hatch, ignored edges, the stripes beyond both pictures, and the gradient. */
+/* Greys in the upper fifth of the scale, the hatch, ignored edges, the stripes beyond both pictures, and the
+   gradient. */
 enum { PALEST = 200, PALE = 56, HATCHED = PALE, EDGE, BEYOND, GRADIENT, STEPS = 256 - GRADIENT };
 enum { HATCH_GREY = 120, HATCH = 8 };
 static const uint8_t edge_color[3] = {70, 150, 235}, beyond_color[3] = {150, 120, 175};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two pictures pixel by pixel, and the edges that antialias_mark() finds: the numbers 1 to 4 are those of its definition in
-   regression_internal.h. */
+/* Two pictures pixel by pixel, and the edges that antialias_mark() finds: the numbers 1 to 4 are those of its
+   definition in regression_internal.h. */
 #include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
@@ -107,8 +107,8 @@ static bool is_within(int value, const Window *window, int channel, int more) {
     return value >= window->least[channel] - more && value <= window->most[channel] + more;
 }
 
-/* By channel, how much the sums of 5 x 5 pixels differ at least, in windows around the pixel and its eight neighbours; 0 where
-   one window has more and another less. */
+/* By channel, how much the sums of 5 x 5 pixels differ at least, in windows around the pixel and its eight neighbours;
+   0 where one window has more and another less. */
 static void least_changes(const Around *a, const Around *b, int x, int least[CHANNELS]) {
     int rows[SIDE][3][CHANNELS] = {0};
     for (int i = 0; i < SIDE; i++) {
@@ -257,8 +257,8 @@ static inline bool share_side(const Around *a, const Around *b, int x, const uin
     return false;
 }
 
-/* Twice the colours of the sides, on average of both pictures: flat ones that they share, within two pixels. False if there are not
-   two. */
+/* Twice the colours of the sides, on average of both pictures: flat ones that they share, within two pixels. False if
+   there are not two. */
 static bool find_sides(const Around *a, const Around *b, int x, const uint8_t slacks[CHANNELS],
                        int sides[2][CHANNELS]) {
     uint32_t of_pixel;
@@ -284,8 +284,8 @@ static bool find_sides(const Around *a, const Around *b, int x, const uint8_t sl
     return farthest >= 2 * LEAST_CONTRAST;
 }
 
-/* Whether the sums of 5 x 5 pixels, b less a, are what it takes to move an edge or a line between two sides by half a pixel at most:
-   one side's colour gives way to the other's. */
+/* Whether the sums of 5 x 5 pixels, b less a, are what it takes to move an edge or a line between two sides by half a
+   pixel at most: one side's colour gives way to the other's. */
 static bool moves_between(const int sums[CHANNELS], int sides[2][CHANNELS], const Window *p, const Window *q) {
     static const double MOST = 0.5 * 7; /* of the longest edge in a window */
     double steps[CHANNELS], product = 0, square = 0;
@@ -300,7 +300,8 @@ static bool moves_between(const int sums[CHANNELS], int sides[2][CHANNELS], cons
     return fits;
 }
 
-/* The same as the second part of 2, for a line whose sides differ: in one of the windows around the pixel and its neighbours. */
+/* The same as the second part of 2, for a line whose sides differ: in one of the windows around the pixel and its
+   neighbours. */
 static bool lies_between(const Around *a, const Around *b, int x, const Window *p, const Window *q,
                          const uint8_t slacks[CHANNELS]) {
     int sides[2][CHANNELS] = {{0}};

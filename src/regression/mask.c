@@ -31,8 +31,8 @@ double mask_most_hidden(const Mask *mask, int width, int height) {
     return area;
 }
 
-/* A picture that masks where it is neither black nor transparent. It is decompressed when it is first drawn on a picture of
-   its size: a small file of any size costs nothing where it does not fit. */
+/* A picture that masks where it is neither black nor transparent. It is decompressed when it is first drawn on a
+   picture of its size: a small file of any size costs nothing where it does not fit. */
 typedef struct MaskPicture {
     char *path;
     uint8_t *file; /* [size], until it is decoded */

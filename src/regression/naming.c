@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every differing pixel gets an owner: a text, a body, or the rest of its panel. A region has the name of the change that
-   owns most of its pixels, and is not of several bodies. */
+/* Every differing pixel gets an owner: a text, a body, or the rest of its panel. A region has the name of the change
+   that owns most of its pixels, and is not of several bodies. */
 #include "regression/naming.h"
 
 #include "base/base.h"
@@ -33,8 +33,8 @@ static ViewRect clipped(const Naming *naming, ViewRect rect) {
     return rect;
 }
 
-/* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change; -1: to none.
-   Returns their number. */
+/* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change;
+   -1: to none. Returns their number. */
 static int64_t naming_take(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
     int64_t taken = 0;
     rect = clipped(naming, rect);
@@ -94,7 +94,8 @@ static void name_rest(Naming *naming) {
     name_rectangle(naming, (ViewRect){0, 0, view->width, view->height}, SUBJECT_PAGE, 0);
 }
 
-/* Whether change i names a region better than change j: it is of one thing, not of several bodies; or it has more pixels. */
+/* Whether change i names a region better than change j: it is of one thing, not of several bodies; or it has more
+   pixels. */
 static bool names_better(const FrameChanges *changes, const int64_t *pixels, int i, int j) {
     bool several_i = changes->list[i].subject == SUBJECT_BODIES, several_j = changes->list[j].subject == SUBJECT_BODIES;
     return several_i != several_j ? several_j : pixels[i] > pixels[j];
@@ -182,8 +183,8 @@ static void count_unknown(Panel *panel) {
         }
 }
 
-/* The body with the most unknown pixels, by itself: those around it are its edge, also where it lies on others. False if there is
-   none, or no room. */
+/* The body with the most unknown pixels, by itself: those around it are its edge, also where it lies on others. False
+   if there is none, or no room. */
 static bool name_most(Panel *panel) {
     int most = 0, change;
     count_unknown(panel);

@@ -74,8 +74,8 @@ ChangeText region_words(const FrameChanges *changes, int region);
 /* What region_words() has after the colon; empty: unknown. */
 ChangeText region_name(const FrameChanges *changes, int region);
 
-/* What twinbox's own picture shows where: its panels with their cameras, and the rectangles of texts and curves. Read from
-   the manifest.json that render leaves beside the pictures. Pixels, y down. */
+/* What twinbox's own picture shows where: its panels with their cameras, and the rectangles of texts and curves. Read
+   from the manifest.json that render leaves beside the pictures. Pixels, y down. */
 
 enum { VIEW_PANELS_MAX = 6, VIEW_PARTS_MAX = 64, VIEW_NAME_SIZE = 256 };
 
@@ -135,8 +135,8 @@ typedef struct Shown {
     ShownFolder *first;
 } Shown;
 
-/* The folder of a picture. Thread-safe. NULL with error set if the system fails; a folder that has no readable manifest or
-   run has no view or run. */
+/* The folder of a picture. Thread-safe. NULL with error set if the system fails; a folder that has no readable manifest
+   or run has no view or run. */
 const ShownFolder *shown_find(Shown *shown, const char *picture, Error *error);
 
 /* The run of this file name that the view names, or NULL. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts are those of odiff 4 for the same threshold, so its arithmetic is kept: fixed point, and coefficients cut to 12 bits. */
+/* Counts are those of odiff 4 for the same threshold, so its arithmetic is kept: fixed point, and coefficients cut to
+   12 bits. */
 #include "regression/odiff.h"
 
 #include "base/base.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Comparison in the measure of odiff and pixelmatch, for clients that were written for odiff: a pixel differs if its colour
-   does by more than a threshold in YIQ, on white where it is transparent. Kotsarenko, Ramos, "Measuring perceived color
-   difference using YIQ NTSC transmission color space in mobile applications" (2010). */
+/* Comparison in the measure of odiff and pixelmatch, for clients that were written for odiff: a pixel differs if its
+   colour does by more than a threshold in YIQ, on white where it is transparent. Kotsarenko, Ramos, "Measuring
+   perceived color difference using YIQ NTSC transmission color space in mobile applications" (2010). */
 #pragma once
 #include "base/base.h"
 #include "pixels/png.h"

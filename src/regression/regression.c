@@ -192,8 +192,8 @@ static bool judge_same_bytes(Regression *regression, RegressionFrame *frame, Png
     return true;
 }
 
-/* Whether the overlap is so small a part of the larger picture that it says nothing; and decoding both would let a small
-   file cost what the largest picture costs. */
+/* Whether the overlap is so small a part of the larger picture that it says nothing; and decoding both would let a
+   small file cost what the largest picture costs. */
 static bool is_far(const RegressionFile *a, const RegressionFile *b) {
     const int64_t LEAST_PART = 16;
     const int64_t width = a->width < b->width ? a->width : b->width,
@@ -269,8 +269,8 @@ static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
     return x->pixels != y->pixels ? x->pixels < y->pixels : x->largest < y->largest;
 }
 
-/* Sets what the frame's files alone tell: pixels, states, metadata, changes. Where several pictures are accepted, the first
-   that passes counts, or else the closest. Thread-safe. ERROR_INPUT if a file cannot be read. */
+/* Sets what the frame's files alone tell: pixels, states, metadata, changes. Where several pictures are accepted, the
+   first that passes counts, or else the closest. Thread-safe. ERROR_INPUT if a file cannot be read. */
 static bool compare_accepted(Regression *regression, RegressionFrame *frame, Error *error) {
     const RegressionFrame fresh = *frame;
     if (!compare_files(regression, frame, error)) return false;

@@ -26,8 +26,8 @@ typedef enum ToleranceLimit {
     LIMITS_FLIP = LIMIT_FLIP_MEAN | LIMIT_FLIP_P99
 } ToleranceLimit;
 
-/* How many pixels may differ: a share of those that count, 0..1, or a number. A share passes in a long page what it does not pass in
-   a small picture; a number is for marks of one size. */
+/* How many pixels may differ: a share of those that count, 0..1, or a number. A share passes in a long page what it
+   does not pass in a small picture; a number is for marks of one size. */
 typedef struct PixelLimit {
     double most;
     bool number;
@@ -85,8 +85,8 @@ bool tolerance_parse_flip(Tolerance *tolerance, const char *text);
          region: [0, 0, 320, 20] # then: tolerance, antialias and shift, for these pixels alone
          shift: 1
 
-   Rules apply from top to bottom: a later one replaces the limits of an earlier one, and all masks count. Those of a region only
-   add to what else may differ. */
+   Rules apply from top to bottom: a later one replaces the limits of an earlier one, and all masks count. Those of a
+   region only add to what else may differ. */
 
 #define RULES_NAME "compare.yaml" /* in the expected folder */
 
@@ -113,8 +113,8 @@ double rules_most_hidden(const Rules *rules, const char *name, int width, int he
 bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
                       Error *error);
 
-/* Whether rules for this name have a region; and sets masked[height, width] (regression/compare.h) to what those allow. Both
-   pictures must have the same size. False with error set if out of memory. */
+/* Whether rules for this name have a region; and sets masked[height, width] (regression/compare.h) to what those allow.
+   Both pictures must have the same size. False with error set if out of memory. */
 bool rules_have_regions(const Rules *rules, const char *name);
 bool rules_mark_regions(const Rules *rules, const char *name, const Image *expected, const Image *actual,
                         uint8_t *masked, Error *error);
@@ -239,8 +239,8 @@ typedef struct Regression {
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are checked (pixels/png.h), but not decoded.
-   Frames with a picture that cannot be read get this verdict, and the others theirs. False with error set if a folder or a run cannot
-   be read, or if progress stops the comparison; then nothing needs to be freed. */
+   Frames with a picture that cannot be read get this verdict, and the others theirs. False with error set if a folder
+   or a run cannot be read, or if progress stops the comparison; then nothing needs to be freed. */
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error);
 void regression_free(Regression *regression);
@@ -272,8 +272,8 @@ RegressionText case_words(const RegressionFrame *frame); /* the same, and where 
 RegressionText run_words(const RegressionRun *run);
 RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
 
-/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, as far as no cause tells it, one
-   line each. */
+/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, as far as no cause
+   tells it, one line each. */
 RegressionText regression_verdict(const Regression *regression);
 RegressionText regression_begin(const Regression *regression);
 

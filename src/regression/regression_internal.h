@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of this room: the steps of a comparison, pixels that do not count, the naming of changes, the report, approval. */
+/* The parts of this room: the steps of a comparison, pixels that do not count, the naming of changes, the report,
+   approval. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -23,22 +24,22 @@
 bool regression_find_runs(Regression *regression, Error *error);
 void regression_free_run(RegressionRun *run);
 
-/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory is
-   short. */
+/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory
+   is short. */
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              Error *error);
 
 /* What the options and rules of a comparison mean for a frame: its limits, and the pixels that it ignores. */
 
-/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. For folders, each rule must
-   match a frame: ERROR_INPUT otherwise. */
+/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. For folders, each rule
+   must match a frame: ERROR_INPUT otherwise. */
 bool regression_read_rules(Regression *regression, Error *error);
 
 /* The difference of a channel that its limits ignore. */
 int regression_level(const Regression *regression, const RegressionFrame *frame);
 
-/* *alone: the pictures can be compared row by row: no pixel is ignored, no limit needs FLIP, no change has a name. False with
-   error set if out of memory. */
+/* *alone: the pictures can be compared row by row: no pixel is ignored, no limit needs FLIP, no change has a name.
+   False with error set if out of memory. */
 bool regression_needs_rows_alone(Regression *regression, const RegressionFrame *frame, bool *alone, Error *error);
 
 /* *named: whether the changes of a frame can have names: both folders say what their pictures show. Thread-safe. */
@@ -50,8 +51,9 @@ bool regression_keep_regions(RegressionFrame *frame, const ImageRegions *regions
 /* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
 bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height);
 
-/* Cuts both pictures of a frame to their overlap, and marks in *masked[height, width] what is ignored (regression/compare.h):
-   masks, and edges if the tolerance says so. *masked is malloc'ed, or NULL if nothing can be ignored. */
+/* Cuts both pictures of a frame to their overlap, and marks in *masked[height, width] what is ignored
+   (regression/compare.h): masks, and edges if the tolerance says so. *masked is malloc'ed, or NULL if nothing can be
+   ignored. */
 bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
                        uint8_t **masked, Error *error);
 
@@ -62,13 +64,13 @@ bool regression_accepts_size(const Regression *regression, const RegressionFrame
 void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
                         const Image *actual, const uint8_t *masked);
 
-/* Sets the frame's verdict on pixels from its difference. Where there is a limit of FLIP, measures FLIP of the overlap, and for this
-   copies what is ignored into the actual picture. */
+/* Sets the frame's verdict on pixels from its difference. Where there is a limit of FLIP, measures FLIP of the overlap,
+   and for this copies what is ignored into the actual picture. */
 bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
                        const uint8_t *masked, Error *error);
 
-/* Regions, and if the frame fails, names of what changed in it: sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
-   Thread-safe. False with error set if out of memory. */
+/* Regions, and if the frame fails, names of what changed in it: sets `changes` and `other_view` of a frame whose pixels
+   differ. data: the two PNG files, whose texts are read. Thread-safe. False with error set if out of memory. */
 bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              const Image *const images[SIDES], const uint8_t *masked, Error *error);
 
@@ -91,37 +93,39 @@ double mask_most_hidden(const Mask *mask, int width, int height);
    Here the change itself is bounded. In windows of 3 x 3 pixels, for each channel (premultiplied by alpha), with the
    contrast c of both windows together:
 
-   1. The pixel changes by at most 0.6 c: its coverage by the shape changes by at most 0.6. Half a pixel is what separates
-      a sampled from an exact edge; an edge that moves by a whole pixel is a difference. In one channel c is at least 16
-      of 255: gradients of areas are no edges.
+   1. The pixel changes by at most 0.6 c: its coverage by the shape changes by at most 0.6. Half a pixel is what
+      separates a sampled from an exact edge; an edge that moves by a whole pixel is a difference. In one channel c is
+      at least 16 of 255: gradients of areas are no edges.
    2. Either each value lies within the range of the other window: an edge between two colours that both pictures show.
-      Or the sums of both windows differ by at most 3 * 0.15 c: a thin line has moved, and has kept its strength. Where it
-      crosses another, the same holds of a window of 5 x 5 pixels around the pixel or one of its neighbours; and where it lies
-      between two flat colours, the outline of a shape, after what it takes to move them by half a pixel at most.
+      Or the sums of both windows differ by at most 3 * 0.15 c: a thin line has moved, and has kept its strength. Where
+      it crosses another, the same holds of a window of 5 x 5 pixels around the pixel or one of its neighbours; and
+      where it lies between two flat colours, the outline of a shape, after what it takes to move them by half a pixel
+      at most.
    3. Within two pixels there is a flat colour (three neighbours are equal to it) that both pictures share: one side of
       the edge. In textures, such as photos, nothing is an edge.
 
-   4. If the colours of each window are mixtures of two, so are those of both together: a line of another colour has not moved.
+   4. If the colours of each window are mixtures of two, so are those of both together: a line of another colour has not
+      moved.
 
    Values within 2 + c / 16 of each other count as equal, in 4 within 2. Exchanging the pictures changes nothing.
 
-   Fails: a line of less than two pixels that fades by less than 15% towards the colour around it looks like a line that became
-   narrower, and passes; so does a faint mark along an edge of higher contrast. Where lines cross at less than 20 degrees, some
-   pixels may count. Rings less than two pixels apart have no flat side and count. */
+   Fails: a line of less than two pixels that fades by less than 15% towards the colour around it looks like a line that
+   became narrower, and passes; so does a faint mark along an edge of higher contrast. Where lines cross at less than 20
+   degrees, some pixels may count. Rings less than two pixels apart have no flat side and count. */
 
-/* Sets masked[height, width] (regression/compare.h) to IGNORED_EDGE where pixels differ in this way and are not ignored yet.
-   Both pictures must have the same size. Compares 8 bits per channel. False with error set if out of memory. */
+/* Sets masked[height, width] (regression/compare.h) to IGNORED_EDGE where pixels differ in this way and are not ignored
+   yet. Both pictures must have the same size. Compares 8 bits per channel. False with error set if out of memory. */
 bool antialias_mark(const Image *expected, const Image *actual, uint8_t *masked, Error *error);
 
-/* Finds content that moved by at most `reach` pixels, each way. The box around a differing pixel grows until it lies in a band,
-   `reach` pixels wide, that has one colour in both pictures: an island on plain ground. It has moved if one offset makes all
-   of the expected box the actual one, with the ground around both. So nothing of it may appear, vanish, change its colour
-   or cross the edge of the picture, and content that lies on other content, or touches what stayed, counts as different.
-   Pixels that differ by at most `tolerance` are equal; 16 bits count where pictures have them.
-   The work is bounded: in pictures made of very many large islands, the last ones count as different.
+/* Finds content that moved by at most `reach` pixels, each way. The box around a differing pixel grows until it lies in
+   a band, `reach` pixels wide, that has one colour in both pictures: an island on plain ground. It has moved if one
+   offset makes all of the expected box the actual one, with the ground around both. So nothing of it may appear,
+   vanish, change its colour or cross the edge of the picture, and content that lies on other content, or touches what
+   stayed, counts as different. Pixels that differ by at most `tolerance` are equal; 16 bits count where pictures have
+   them. The work is bounded: in pictures made of very many large islands, the last ones count as different.
 
-   Sets masked[height, width] to IGNORED_RULE where pixels differ in this way and are not ignored yet. Both pictures must have
-   the same size. */
+   Sets masked[height, width] to IGNORED_RULE where pixels differ in this way and are not ignored yet. Both pictures
+   must have the same size. */
 void shift_mark(const Image *expected, const Image *actual, int reach, int tolerance, uint8_t *masked);
 
 /* The same where pixels differ by at most `tolerance`. */
@@ -170,8 +174,8 @@ typedef struct NamingScene {
     int frame;                                       /* of the runs */
 } NamingScene;
 
-/* Fills the changes, and the names of the regions, which must be set. masked as in image_compare_masked(). Both pictures
-   have the view's size. False with error set if out of memory. */
+/* Fills the changes, and the names of the regions, which must be set. masked as in image_compare_masked(). Both
+   pictures have the view's size. False with error set if out of memory. */
 bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
                  FrameChanges *changes, Error *error);
 
@@ -260,8 +264,8 @@ ReportCase report_case(const void *report, int i);
 void report_write_page(FILE *file, const void *report);
 void report_write_json(FILE *file, const void *report);
 
-/* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder, even
-   if one is made meanwhile. */
+/* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder,
+   even if one is made meanwhile. */
 
 typedef struct Root {
     int folder;       /* an open directory */
@@ -274,8 +278,8 @@ typedef struct ApprovePlace {
     char path[PATH_MAX]; /* for messages */
 } ApprovePlace;
 
-/* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere. Links
-   are not looked at. */
+/* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere.
+   Links are not looked at. */
 const char *path_below_current(const char *path);
 
 /* Reads the failures from results.json. */
@@ -297,7 +301,7 @@ typedef struct ApprovalList {
 } ApprovalList;
 
 /* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
-   hidden names, names that do not end with .png or .npz, and, with the path alone, a file that is named twice. On failure nothing needs to be
-   freed. Memory: at most four times the size of the file and 2 MiB. */
+   hidden names, names that do not end with .png or .npz, and, with the path alone, a file that is named twice. On
+   failure nothing needs to be freed. Memory: at most four times the size of the file and 2 MiB. */
 bool approval_read(ApprovalList *list, const char *path, Error *error);
 void approval_free(ApprovalList *list);

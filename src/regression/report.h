@@ -30,8 +30,9 @@ typedef struct ApprovalRequest {
     void (*on_change)(const char *what, const char *path); /* after each file: "replaced", "added" or "removed" */
 } ApprovalRequest;
 
-/* Replaces the expected files of failures by the actual ones, in the folder that results.json names, and removes expected files
-   whose actual file is missing, if the request says so: ERROR_INPUT, and nothing is changed, if it says nothing.
+/* Replaces the expected files of failures by the actual ones, in the folder that results.json names, and removes
+   expected files whose actual file is missing, if the request says so: ERROR_INPUT, and nothing is changed, if it says
+   nothing.
 
    Everything is checked before anything is written: names must be plain names of .png and .npz files, and both files
    must be regular files with the hashes in the report; otherwise ERROR_INPUT. Files are written atomically, in folders
@@ -75,8 +76,8 @@ typedef struct ReportResults {
     void (*write_json)(FILE *file, const void *comparison);
 } ReportResults;
 
-/* Writes report.html, junit.xml, results.tap and results.json into a folder that exists. results.json is last: if it is there, the
-   report is complete. */
+/* Writes report.html, junit.xml, results.tap and results.json into a folder that exists. results.json is last: if it is
+   there, the report is complete. */
 bool report_write(const ReportResults *results, const char *folder, Error *error);
 
 /* A link to a moment in a page that plays two runs: "run-NAME.html#t=0.55&body=7". */
@@ -85,8 +86,8 @@ typedef struct ReportLink {
     char text[REPORT_RUN_SIZE + PLAYER_LINK_SIZE];
 } ReportLink;
 
-/* Writes the page `name` into the folder: all frames of both runs, or of long ones those around `frame`. The link leads to that frame
-   and body. *bytes: of the page. */
+/* Writes the page `name` into the folder: all frames of both runs, or of long ones those around `frame`. The link leads
+   to that frame and body. *bytes: of the page. */
 bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
                       ReportLink *link, size_t *bytes, Error *error);
 
@@ -95,8 +96,8 @@ void regression_write_json(JsonWriter *json, const Regression *regression);
 
 /* The results of a comparison for GitHub Actions: annotations (workflow commands on standard output) and the step
    summary (Markdown). Source: docs.github.com, "Workflow commands for GitHub Actions". Names and messages are escaped:
-   none can become a command or markup. Other output with names belongs between "::stop-commands::TOKEN" and "::TOKEN::",
-   with a token that nobody can know before: a runner searches whole lines for old commands ("##[...]"). */
+   none can become a command or markup. Other output with names belongs between "::stop-commands::TOKEN" and
+   "::TOKEN::", with a token that nobody can know before: a runner searches whole lines for old commands ("##[...]"). */
 
 /* GitHub shows ten errors of a step and drops the others. */
 enum { GITHUB_ANNOTATIONS_MAX = 10 };

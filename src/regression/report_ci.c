@@ -245,8 +245,8 @@ bool github_summary_append(const Regression *regression, const char *path, Error
     return ok;
 }
 
-/* junit.xml for CI systems: a test case per frame and trajectory, with the time of its comparison. The times make it the
-   one file of a report that differs from run to run. html_put() also escapes for XML. */
+/* junit.xml for CI systems: a test case per frame and trajectory, with the time of its comparison. The times make it
+   the one file of a report that differs from run to run. html_put() also escapes for XML. */
 
 static void write_attribute(FILE *file, const char *key, const char *value) {
     fprintf(file, " %s=\"", key);

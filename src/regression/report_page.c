@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* report.html: what a comparison found, the values of all frames as curves, pictures and results for the page's script. */
+/* report.html: what a comparison found, the values of all frames as curves, pictures and results for the page's
+   script. */
 #include "pictures/page.h"
 #include "regression/regression_internal.h"
 #include "regression/regression.h"
@@ -10,8 +11,8 @@
 
 enum { HEIGHT = 100 };
 
-/* Each curve is an SVG that is stretched to its place, one unit of width per frame. Its labels are text of the page, so they keep
-   their size on any screen and are never clipped. */
+/* Each curve is an SVG that is stretched to its place, one unit of width per frame. Its labels are text of the page, so
+   they keep their size on any screen and are never clipped. */
 typedef double (*Measure)(const RegressionFrame *frame);
 
 static bool is_measured(const RegressionFrame *frame) { return frame->pixels <= PIXELS_RESIZED && !frame->sizes_alone; }

@@ -33,7 +33,8 @@ static bool is_inside(const Image *image, int x, int y) {
     return x >= 0 && y >= 0 && x < image->width && y < image->height;
 }
 
-/* Whether both pictures have one colour in this rectangle, as far as it is in them. *ground: a pixel of it; or NO_PIXEL. */
+/* Whether both pictures have one colour in this rectangle, as far as it is in them. *ground: a pixel of it; or
+   NO_PIXEL. */
 static bool is_plain(Island *island, int left, int top, int right, int bottom, size_t *ground) {
     const Image *expected = island->pictures[0], *actual = island->pictures[1];
     *ground = NO_PIXEL;

@@ -24,8 +24,8 @@ static const size_t MAX_RUN_SIZE = (size_t)2 << 30;
 
 static bool is_run(const char *name) { return file_name_ends_with(name, ".npz") && name_is_text(name); }
 
-/* Adds a file of one folder. That the other folder has no such file is a failure, unless there are pictures: then the runs
-   only explain them. */
+/* Adds a file of one folder. That the other folder has no such file is a failure, unless there are pictures: then the
+   runs only explain them. */
 static bool add_run(Regression *regression, RegressionSide side, const char *name, Error *error) {
     const RegressionSide other = side == EXPECTED ? ACTUAL : EXPECTED;
     char path[PATH_MAX];
@@ -404,7 +404,8 @@ static void add_physics(const Causes *causes, int frame) {
     add_cause(causes, frame, what, 0, false);
 }
 
-/* The named changes, or that there is a difference. Content of a picture that is a case of its own has no cause beyond it. */
+/* The named changes, or that there is a difference. Content of a picture that is a case of its own has no cause beyond
+   it. */
 static void add_changes(const Causes *causes, int frame) {
     const FrameChanges *changes = causes->regression->frames[frame].changes;
     const bool alone = causes->regression->frames[frame].alone;

@@ -174,8 +174,8 @@ ViewText view_difference(const FrameView *expected, const FrameView *actual) {
 
 /* What the pictures of a folder show: its view, and the runs that the view names. */
 
-/* Damage is not reported: without a view or a run there are fewer names, and the comparison of runs reports a damaged run
-   itself. A failing system is: names must not depend on it. */
+/* Damage is not reported: without a view or a run there are fewer names, and the comparison of runs reports a damaged
+   run itself. A failing system is: names must not depend on it. */
 static bool is_harmless(const Error *failure, Error *error) {
     if (failure->kind == ERROR_SYSTEM) *error = *failure;
     return failure->kind != ERROR_SYSTEM;

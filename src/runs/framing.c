@@ -223,8 +223,8 @@ static bool framing_stays(const Trajectory *run, const int *frames, int count, i
     return inside;
 }
 
-/* What flies off or sinks into the ground counts in no frame, or it would make all small; nor does the rest of a run most of
-   whose bodies do that. */
+/* What flies off or sinks into the ground counts in no frame, or it would make all small; nor does the rest of a run
+   most of whose bodies do that. */
 static void include_staying(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *region) {
     int moving = 0, staying = 0;
     for (int body = 0; body < run->bodies; body++)
@@ -258,8 +258,8 @@ static void include_stay(Extent *all, const Trajectory *run, int first, int body
     *all = own;
 }
 
-/* How far beyond what stands its bodies, and the bomb, get in a run after the impact, to either side. What flies off counts in
-   no run, or it would make all small. */
+/* How far beyond what stands its bodies, and the bomb, get in a run after the impact, to either side. What flies off
+   counts in no run, or it would make all small. */
 static double reach_of(const Trajectory *run, const Extent *standing, int impact) {
     const Extent near = surroundings(standing, NEAR);
     const Extent above = {near.left, near.right, standing->bottom, near.top};
@@ -269,8 +269,9 @@ static double reach_of(const Trajectory *run, const Extent *standing, int impact
     return fmax(standing->left - all.left, all.right - standing->right);
 }
 
-/* What stands, widened by what happens after the impact in half of the runs: one that bursts shows nothing of the others. To both
-   sides, so that what stands is in the middle; in steps, so that runs that differ little have the same view. */
+/* What stands, widened by what happens after the impact in half of the runs: one that bursts shows nothing of the
+   others. To both sides, so that what stands is in the middle; in steps, so that runs that differ little have the same
+   view. */
 static Extent action_extent(const Extent *standing, const Trajectory *const *runs, int count, int impact) {
     const double step = ACTION_STEP * extent_side(standing);
     double reach = HUGE_VAL;

@@ -24,10 +24,10 @@ typedef struct Extent {
 
 /* What a fixed camera shows. By default it frames what stands, so that this fills three quarters of a panel's width or
    height: the moving bodies where they start, the ground below them, and the bomb when it strikes them. The bomb comes
-   into the picture from its edge. Of what happens after the impact counts only how far what stood gets in half of the runs, as
-   long as it stays near, in coarse steps: so runs that differ little have the same view, and a body that flies off leaves the
-   picture and changes nothing in the frames before. Only if most of the first run's bodies go far away, as on a slope, is it
-   all that they reach in the whole run. */
+   into the picture from its edge. Of what happens after the impact counts only how far what stood gets in half of the
+   runs, as long as it stays near, in coarse steps: so runs that differ little have the same view, and a body that flies
+   off leaves the picture and changes nothing in the frames before. Only if most of the first run's bodies go far away,
+   as on a slope, is it all that they reach in the whole run. */
 typedef struct CameraFrame {
     bool set;      /* given: shown in the middle of a panel */
     Extent held;   /* in view whatever the panel's shape, with the margin */
@@ -68,8 +68,8 @@ double extent_side(const Extent *extent);
 void extent_include(Extent *extent, const Trajectory *run, int frame, int body);
 
 /* What runs show in these frames: the moving bodies of the first run, where they are near what stood at its start, and
-   those of the others that stay near it, if most of a run's do; without any, the static bodies. Empty if nothing can be framed. A frame
-   beyond a run's last counts as that. */
+   those of the others that stay near it, if most of a run's do; without any, the static bodies. Empty if nothing can be
+   framed. A frame beyond a run's last counts as that. */
 Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count);
 
 /* The frame in which the bomb appears; the last one if it does not. */

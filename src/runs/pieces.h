@@ -22,8 +22,9 @@ typedef struct PieceHead {
 /* Writes the file atomically, and waits until it is on the disk. */
 bool piece_file_write(const char *path, const PieceHead *head, const void *results, size_t size, Error *error);
 
-/* Returns the results, to be freed, with a NUL behind them that *size does not count. NULL with error set: ERROR_INPUT if
-   the file is damaged, cut off, or of another study or piece than the head says. The head's cpu is taken from the file. */
+/* Returns the results, to be freed, with a NUL behind them that *size does not count. NULL with error set: ERROR_INPUT
+   if the file is damaged, cut off, or of another study or piece than the head says. The head's cpu is taken from the
+   file. */
 char *piece_file_read(const char *path, PieceHead *head, size_t *size, Error *error);
 
 /* Which share of a study a process does. */
@@ -37,8 +38,8 @@ typedef struct Shard {
 /* "3/16". */
 bool shard_parse(Shard *shard, const char *text, Error *error);
 
-/* The shard, from 1, that does piece `piece` of `pieces`. Shards have equally many pieces, or one more; neighbouring pieces,
-   which are often equally long, go to different shards. */
+/* The shard, from 1, that does piece `piece` of `pieces`. Shards have equally many pieces, or one more; neighbouring
+   pieces, which are often equally long, go to different shards. */
 int shard_of(int64_t piece, int64_t pieces, int shards);
 
 /* The tasks of a job array, as Slurm numbers them: first, first + step, ... */
@@ -53,13 +54,13 @@ typedef struct ShardRequest {
     char source[160]; /* the variables that it was detected by: "SLURM_ARRAY_TASK_ID=3 of 1-16"; "": none */
 } ShardRequest;
 
-/* The request of --shard (NULL: not given), or else of the environment: a Slurm job array, PMI, OpenMPI, or Slurm tasks,
-   in this order. ERROR_INPUT for what is no share, and for a job array whose tasks have several ranks each: nothing says
-   which of the two is meant. */
+/* The request of --shard (NULL: not given), or else of the environment: a Slurm job array, PMI, OpenMPI, or Slurm
+   tasks, in this order. ERROR_INPUT for what is no share, and for a job array whose tasks have several ranks each:
+   nothing says which of the two is meant. */
 bool shard_request(ShardRequest *request, const char *option, Error *error);
 
-/* A hash of everything that determines a study's result: pieces of an interrupted study, and of other processes, are used
-   only if the key is the same. Beside it, what it was made of, to say what differs. */
+/* A hash of everything that determines a study's result: pieces of an interrupted study, and of other processes, are
+   used only if the key is the same. Beside it, what it was made of, to say what differs. */
 
 typedef struct StudyInput {
     char *path;
@@ -86,8 +87,8 @@ bool study_key_add_input(StudyKey *key, const char *path, uint64_t hash, Error *
 /* Adds the contents of a file. False with error set if it cannot be read. */
 bool study_key_add_file(StudyKey *key, const char *path, Error *error);
 
-/* A study in pieces, whose results are files. The plan of a study, its list of pieces, follows from its inputs alone, so
-   that processes on many machines have the same plan without talking to each other.
+/* A study in pieces, whose results are files. The plan of a study, its list of pieces, follows from its inputs alone,
+   so that processes on many machines have the same plan without talking to each other.
 
    The whole study is done by one process; its pieces are in DIR/parts-KEY until it has ended, so that an interrupted
    study continues. A shard does its share only, and leaves it in DIR/shards. A merge does no piece: it finds all of
@@ -130,9 +131,9 @@ typedef struct PiecePlan {
     bool (*work)(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error);
     /* Whether what a piece builds on is there; NULL: always. */
     bool (*ready)(void *context, int64_t piece);
-    /* *there: whether the files that the piece wrote beside its results, such as frames, are there and are as the results
-       say. If they are not, the piece counts as not done. False with error set if the system cannot tell. NULL: it wrote no
-       files. */
+    /* *there: whether the files that the piece wrote beside its results, such as frames, are there and are as the
+       results say. If they are not, the piece counts as not done. False with error set if the system cannot tell. NULL:
+       it wrote no files. */
     bool (*whole)(void *context, int64_t piece, const char *results, size_t size, bool *there, Error *error);
     void *context;
 } PiecePlan;
@@ -233,8 +234,8 @@ typedef struct StudyStart {
 /* Makes the file unless it is there. True with *record read in either case; the first writer wins. */
 bool study_record_meet(StudyRecord *record, const char *path, const StudyStart *start, Error *error);
 
-/* ERROR_INPUT unless this program, with this key and these arguments (argv NULL: not compared), does the recorded study, and
-   the record is as it was written: says what differs. */
+/* ERROR_INPUT unless this program, with this key and these arguments (argv NULL: not compared), does the recorded
+   study, and the record is as it was written: says what differs. */
 bool study_record_check(const StudyRecord *record, const char *path, const StudyKey *key, int argc, char **argv,
                         Error *error);
 
@@ -255,9 +256,9 @@ typedef struct PiecesEstimate {
 
 enum { PIECES_MEASURED = 32 };
 
-/* Does up to PIECES_MEASURED pieces, spread over the plan, without storing them; begins no more after half a minute. Pieces
-   that are done alone are not measured. Processor time, so that other programs do not count. ERROR_INTERRUPTED if progress
-   requests a stop. */
+/* Does up to PIECES_MEASURED pieces, spread over the plan, without storing them; begins no more after half a minute.
+   Pieces that are done alone are not measured. Processor time, so that other programs do not count. ERROR_INTERRUPTED
+   if progress requests a stop. */
 bool pieces_estimate(PiecesEstimate *estimate, const PiecePlan *plan, const Progress *progress, Error *error);
 
 /* What takes longest when `cores` cores do a study. */
@@ -265,6 +266,6 @@ typedef enum PiecesLimit { LIMIT_COMPUTING, LIMIT_LONGEST, LIMIT_FILES, LIMIT_ME
 
 extern const char *const pieces_limit_names[PIECES_LIMITS];
 
-/* Seconds of each, in the order of PiecesLimit. The first three happen at the same time, the merge afterwards. files: that
-   the shared file system makes or opens in a second. Returns which is the largest. */
+/* Seconds of each, in the order of PiecesLimit. The first three happen at the same time, the merge afterwards. files:
+   that the shared file system makes or opens in a second. Returns which is the largest. */
 PiecesLimit pieces_times(const PiecesEstimate *estimate, int64_t cores, double files, double seconds[PIECES_LIMITS]);

@@ -119,7 +119,8 @@ static bool pieces_report_measure(void *context, int i, Error *error) {
     return pieces_report_done(measuring, 1) || error_interrupted(error, "plan", "stopped");
 }
 
-/* The weight of all pieces, of the heaviest, and of the heaviest that few shards do together; these follow each other. */
+/* The weight of all pieces, of the heaviest, and of the heaviest that few shards do together; these follow each
+   other. */
 static double add_weights(const PiecePlan *plan, double *heaviest, double *together) {
     double all = 0, group = 0;
     int64_t near = -1;

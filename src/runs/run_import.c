@@ -72,8 +72,8 @@ static void note_static(const CsvImport *import) {
                  count == 1 ? "s" : "");
 }
 
-/* Completes the bodies once all rows are read: sizes, which are static, poses of static bodies in frames without their row.
-   False with error set if a body is missing between two of its frames. */
+/* Completes the bodies once all rows are read: sizes, which are static, poses of static bodies in frames without their
+   row. False with error set if a body is missing between two of its frames. */
 static bool finish_bodies(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     for (int body = 0; body < run->bodies; body++) {
@@ -153,7 +153,8 @@ static bool check_last(CsvImport *import, Error *error) {
                     import->last, import->first, import->count);
 }
 
-/* Frames that have one body each, of many: what such a run takes must be in proportion to its text, as in .npz files. */
+/* Frames that have one body each, of many: what such a run takes must be in proportion to its text, as in .npz
+   files. */
 static bool check_size(const CsvImport *import, Error *error) {
     const uint64_t frames = (uint64_t)(import->last - import->first) + 1, bodies = import->head.count;
     const uint64_t pose = 2 * sizeof(Vec2) + 2 * sizeof(float), budget = npz_budget(import->size);

@@ -154,8 +154,8 @@ bool launch_is_free(const Scene *scene, const World *world);
    or if the method fails before (MethodFailure). */
 bool launch_find_touch(const Scene *launched, const char *method, int *touch, Error *error);
 
-/* Checks that the bomb strikes a box that can move, by the engine, in one launch at least of those for training: what learns
-   from impacts needs one. A scene without a bomb passes. */
+/* Checks that the bomb strikes a box that can move, by the engine, in one launch at least of those for training: what
+   learns from impacts needs one. A scene without a bomb passes. */
 bool scene_check_strike(const Scene *scene, Error *error);
 
 /* The ERROR_INPUT of launches that all miss. */
@@ -175,10 +175,10 @@ typedef struct LaunchMisses {
 bool launches_find_misses(const Scene *scene, LaunchMisses *misses, Error *error);
 
 /* The file of one contact problem: .npz with the members of ContactProblem as arrays: kind, version, scene, frame, dt,
-   fall (0 in a file without it), bomb; per body position[N,2], angle[N], size[N,2], inv_mass[N], inv_inertia[N], velocity[N,2], angular_velocity[N];
-   per contact contact_bodies[C,2], contact_feature[C], contact_position[C,2], contact_normal[C,2], contact_arm_a[C,2],
-   contact_arm_b[C,2], contact_separation[C], contact_mass[C,2], contact_friction[C], contact_bias[C],
-   contact_warm[C,2]. Arrays with two columns hold x, y or normal, tangent. */
+   fall (0 in a file without it), bomb; per body position[N,2], angle[N], size[N,2], inv_mass[N], inv_inertia[N],
+   velocity[N,2], angular_velocity[N]; per contact contact_bodies[C,2], contact_feature[C], contact_position[C,2],
+   contact_normal[C,2], contact_arm_a[C,2], contact_arm_b[C,2], contact_separation[C], contact_mass[C,2],
+   contact_friction[C], contact_bias[C], contact_warm[C,2]. Arrays with two columns hold x, y or normal, tangent. */
 
 enum { PROBLEM_VERSION = 1, PROBLEM_NAME_SIZE = 128, PROBLEM_MAX_BODIES = 100000, PROBLEM_MAX_CONTACTS = 1000000 };
 

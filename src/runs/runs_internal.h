@@ -53,8 +53,8 @@ typedef struct CsvHead {
     CsvBody *bodies; /* by rising number */
 } CsvHead;
 
-/* Reads lines "# key: value" from *text on, which is moved behind them; *line becomes the number of the next line. `sizes`:
-   a CSV file of body,width,height,static, or NULL. The caller frees bodies, also on failure. */
+/* Reads lines "# key: value" from *text on, which is moved behind them; *line becomes the number of the next line.
+   `sizes`: a CSV file of body,width,height,static, or NULL. The caller frees bodies, also on failure. */
 bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error);
 
 /* Index of the body with this number; -1: it has no size. */

@@ -172,8 +172,8 @@ bool shard_parse(Shard *shard, const char *text, Error *error) {
     return true;
 }
 
-/* Pieces are put in an order that a step coprime to their number gives, and this order is cut into shards. The step is near
-   the golden section, which no regular pattern of long and short pieces meets again and again. */
+/* Pieces are put in an order that a step coprime to their number gives, and this order is cut into shards. The step is
+   near the golden section, which no regular pattern of long and short pieces meets again and again. */
 int shard_of(int64_t piece, int64_t pieces, int shards) {
     const double golden = 0.6180339887498949;
     if (shards <= 1 || pieces <= 1) return 1;

@@ -104,8 +104,8 @@ int trajectory_impact(const Trajectory *trajectory);
    index: the hash of the reference trajectories. */
 uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
 
-/* XXH3 over all that a picture can show: bodies and their names, view, states and contacts of all frames; the names of scene
-   and method do not count. */
+/* XXH3 over all that a picture can show: bodies and their names, view, states and contacts of all frames; the names of
+   scene and method do not count. */
 uint64_t trajectory_hash(const Trajectory *trajectory);
 
 /* A copy with every step'th frame from frame 0 on, dt multiplied by step, and the contacts of the steps that end in
@@ -114,25 +114,25 @@ Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *erro
 
 /* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], mass[N],
    body_name[N,32], position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1],
-   contact_bodies[C,2], contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program, verdict,
-   verdict_frame, verdict_body. Without the masses, the names, the velocities, the contacts, the program or the verdict where they are
-   unknown. */
+   contact_bodies[C,2], contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program,
+   verdict, verdict_frame, verdict_body. Without the masses, the names, the velocities, the contacts, the program or the
+   verdict where they are unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
-/* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the others
-   means. Other types of numbers are converted (npz_convert).
+/* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the
+   others means. Other types of numbers are converted (npz_convert).
    NULL with error set (ERROR_INPUT, naming the file) for a file that is damaged, of another version or inconsistent:
    an array whose name looks like a mistyped one,
    shapes that do not match, contacts out of range or of bodies that did not exist before the step, infinite poses, a
-   name that cannot be shown, a body that reappears after it was removed, a static body that is removed, dt or a size not
-   positive, a verdict on a frame or body that the run does not have. */
+   name that cannot be shown, a body that reappears after it was removed, a static body that is removed, dt or a size
+   not positive, a verdict on a frame or body that the run does not have. */
 Trajectory *trajectory_read(const char *path, Error *error);
 
 /* False with error set, naming `path`, if a trajectory from outside is inconsistent (trajectory_read). */
 bool trajectory_check(const Trajectory *trajectory, const char *path, Error *error);
 
-/* Sets `fixed` of a run that does not state it: bodies that are there from frame 0 to the end in one pose are static; in a
-   run of one frame, none. */
+/* Sets `fixed` of a run that does not state it: bodies that are there from frame 0 to the end in one pose are static;
+   in a run of one frame, none. */
 void trajectory_guess_fixed(Trajectory *trajectory);
 
 /* Where two trajectories differ. */
@@ -148,14 +148,14 @@ typedef struct TrajectoryDifference {
     double speed;            /* m/s, between the two velocities there; 0 if poses_only */
     int max_frame, max_body; /* where the distance is largest in the frames of both; -1, -1 if nowhere */
     double max_distance;     /* m */
-    /* m^2: squared difference of positions, mean over the frames of both, the dynamic bodies that both have there, and both
-       coordinates, as learned simulators state the error of a rollout (Sanchez-Gonzalez et al. 2020, section 4.4); NaN: no such
-       body */
+    /* m^2: squared difference of positions, mean over the frames of both, the dynamic bodies that both have there, and
+       both coordinates, as learned simulators state the error of a rollout (Sanchez-Gonzalez et al. 2020, section 4.4);
+       NaN: no such body */
     double rollout_mse;
 } TrajectoryDifference;
 
-/* Compares all poses, and velocities if both have them, bit by bit in the frames of both; NaN: the body does not exist. Contacts and names
-   do not count. */
+/* Compares all poses, and velocities if both have them, bit by bit in the frames of both; NaN: the body does not exist.
+   Contacts and names do not count. */
 void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDifference *difference);
 
 /* Largest distance (m) between the bodies of two trajectories in one frame, for bodies that exist in both. */
@@ -170,12 +170,12 @@ bool json_run_write(const Trajectory *run, const char *path, Error *error);
 
 enum { TRAJECTORY_FILE_NAME_SIZE = 2 * TRAJECTORY_NAME_SIZE + 24 };
 
-/* The file name of run `index` of these: SCENE-METHOD.npz, with the method_name() and '_' for what does not belong in a file
-   name. A second run of that name gets SCENE-METHOD-2.npz, and so on. */
+/* The file name of run `index` of these: SCENE-METHOD.npz, with the method_name() and '_' for what does not belong in a
+   file name. A second run of that name gets SCENE-METHOD-2.npz, and so on. */
 void trajectory_file_name(const Trajectory *const *runs, int index, char name[TRAJECTORY_FILE_NAME_SIZE]);
 
-/* What scene and method are called in a run that does not state it: the file's name without folder and ending. Bytes that
-   a name must not have become '_'. */
+/* What scene and method are called in a run that does not state it: the file's name without folder and ending. Bytes
+   that a name must not have become '_'. */
 void trajectory_name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]);
 
 /* Comparison of one body in one frame of two trajectories. */
@@ -283,16 +283,17 @@ typedef struct CsvRunNotes {
 } CsvRunNotes;
 
 /* path "-": standard input.
-   NULL with error set ("path:line:column: error: ..."): a frame without rows, a body that is missing in a frame between two of
-   its own, two rows of a body in a frame, bodies without a size or without rows, anything that is not a finite number,
-   times that are not equidistant, or a file above 1 GiB. */
+   NULL with error set ("path:line:column: error: ..."): a frame without rows, a body that is missing in a frame between
+   two of its own, two rows of a body in a frame, bodies without a size or without rows, anything that is not a finite
+   number, times that are not equidistant, or a file above 1 GiB. */
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error);
 
 /* Writes what csv_run_read() gives back bit by bit: all but contacts and verdict. */
 bool csv_run_write(const Trajectory *run, const char *path, Error *error);
 
-/* Writes a run while it is made, in bounded memory. A part of a run is a Trajectory whose frame 0 is the frame after the
-   last one of the part before, with the contacts of the steps that end in its frames. The parts do not show in the file. */
+/* Writes a run while it is made, in bounded memory. A part of a run is a Trajectory whose frame 0 is the frame after
+   the last one of the part before, with the contacts of the steps that end in its frames. The parts do not show in the
+   file. */
 
 typedef struct TrajectoryStream TrajectoryStream;
 
@@ -303,8 +304,8 @@ typedef enum TrajectoryFormat {
 } TrajectoryFormat;
 
 /* A stream for a run of `frames` frames; names, sizes and all else that does not change are those of `head`, which may
-   be its first part and must outlive the stream. Program and verdict are read when it is finished. NULL with error set if no
-   file can be written at `path`. */
+   be its first part and must outlive the stream. Program and verdict are read when it is finished. NULL with error set
+   if no file can be written at `path`. */
 TrajectoryStream *trajectory_stream_create(const Trajectory *head, int frames, TrajectoryFormat format,
                                            const char *path, Error *error);
 bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Error *error);

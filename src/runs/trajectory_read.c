@@ -218,8 +218,8 @@ static bool has_kind(const NpzFile *file) {
 }
 
 /* False with error set if the file is one of another kind, lacks a needed array, has a part of those that only come
-   together, or has an unknown array that looks like one that it lacks: then the error suggests that name. Other unknown arrays
-   are ignored. */
+   together, or has an unknown array that looks like one that it lacks: then the error suggests that name. Other unknown
+   arrays are ignored. */
 static bool check_arrays(NpzFile *file, Error *error) {
     char kind[64];
     if (has_kind(file))

@@ -135,8 +135,8 @@ VerdictRun verdict_run_of(const Scene *scene) {
                         .struck = verdict_struck(scene)};
 }
 
-/* The contacts of the next step. Another engine may let bodies rest a little apart: they carry each other within a share of the
-   smallest side. */
+/* The contacts of the next step. Another engine may let bodies rest a little apart: they carry each other within a
+   share of the smallest side. */
 static bool find_contacts(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
     const float near = 0.005f, smallest = isfinite(watch->smallest) ? (float)watch->smallest : 0;
     const float skin = watch->run.skin + (watch->run.other_engine ? near * smallest : 0);

@@ -400,8 +400,8 @@ bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
 void simulate_verdict_free(SimulateVerdict *verdict);
 
 /* After simulate_verdict_end(): "falls at 4.22 s (body 7, 0.53 m lower)"; of a struck scene, what stands: "collapses: 8
-   of 10 boxes fell, first at 1.2 s", "stands; 1 of 10 moved by 0.3 m". They go with a stored run, so they also say what makes it
-   no yardstick: "; 175 steps did not converge". */
+   of 10 boxes fell, first at 1.2 s", "stands; 1 of 10 moved by 0.3 m". They go with a stored run, so they also say what
+   makes it no yardstick: "; 175 steps did not converge". */
 void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]);
 
 /* s: so many falls of the run, VERDICT_CREEP_FROM for instance. */

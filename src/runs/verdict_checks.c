@@ -127,8 +127,8 @@ static bool add_sag(const VerdictWatch *watch, const VerdictStep *step) {
     return more;
 }
 
-/* How much lower contacts let bodies be. A body in the air keeps its sag, and follows that of the body which carried it last:
-   the upper boxes of a pile that gives way fall with it before they touch again. */
+/* How much lower contacts let bodies be. A body in the air keeps its sag, and follows that of the body which carried it
+   last: the upper boxes of a pile that gives way fall with it before they touch again. */
 static void find_sag(const VerdictWatch *watch, const VerdictStep *step) {
     enum { PASSES = 100 };
     for (int i = 0; i < step->body_count; i++)
@@ -161,7 +161,8 @@ static bool land(const VerdictStep *step, int on, int i, VerdictWatch *watch) {
     return body->landed = true;
 }
 
-/* A body lands by a contact with one that has landed or is static, but not by one from above, which does not carry it. */
+/* A body lands by a contact with one that has landed or is static, but not by one from above, which does not carry
+   it. */
 static bool land_all(VerdictWatch *watch, const VerdictStep *step) {
     bool more = false;
     for (int i = 0; i < step->contact_count; i++) {
@@ -262,8 +263,8 @@ static bool carry(WatchedBody *from, WatchedBody *to) {
     return to->carried = true;
 }
 
-/* Which bodies contacts carry, from static ones on. Passes go up and down the list of contacts, so that few are enough for
-   a pile that is listed from either end. */
+/* Which bodies contacts carry, from static ones on. Passes go up and down the list of contacts, so that few are enough
+   for a pile that is listed from either end. */
 static void find_carried(const VerdictWatch *watch, const VerdictStep *step) {
     bool more = true;
     for (int i = 0; i < step->body_count; i++) watch->bodies[i].carried = step->bodies[i].inv_mass == 0;
@@ -278,7 +279,8 @@ static void find_carried(const VerdictWatch *watch, const VerdictStep *step) {
     }
 }
 
-/* The part of the limit that the kinetic energy of a body is, and its speed, m/s, if it had all of that energy along a line. */
+/* The part of the limit that the kinetic energy of a body is, and its speed, m/s, if it had all of that energy along a
+   line. */
 static double unrest(const VerdictWatch *watch, const Body *body, double *speed) {
     const double energy = body_energy(body, vec2(0, 0)) * body->inv_mass; /* m^2/s^2 */
     *speed = sqrt(2 * energy);

@@ -157,8 +157,8 @@ static bool overlaps_at_start(const VerdictStep *step) {
     return false;
 }
 
-/* J: most that a step's rounding to float32 can have added. A position is rounded by half of its last bit, and by no more
-   than the body moves: what is at rest has no rounding. */
+/* J: most that a step's rounding to float32 can have added. A position is rounded by half of its last bit, and by no
+   more than the body moves: what is at rest has no rounding. */
 static double step_rounding(const VerdictWatch *watch, const VerdictStep *step) {
     const double half_bit = FLT_EPSILON / 2.0;
     const Vec2 gravity = watch->run.gravity;

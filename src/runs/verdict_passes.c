@@ -63,8 +63,8 @@ static void check_tunnels(VerdictWatch *watch, const VerdictStep *step) {
     }
 }
 
-/* Moving boxes. Two that are not deep in each other are apart along some sides, and those of the next step tell whether they
-   have changed places. */
+/* Moving boxes. Two that are not deep in each other are apart along some sides, and those of the next step tell whether
+   they have changed places. */
 
 /* A box for the test, in double. */
 typedef struct PassPose {
@@ -97,8 +97,8 @@ static unsigned sides_between(const PassPose *a, const PassPose *b, double depth
     return sides;
 }
 
-/* b was on one side of a, and is on the opposite one, and no side stayed, as seen from one of them: the sides of one that
-   rotates fast are others after a step. */
+/* b was on one side of a, and is on the opposite one, and no side stayed, as seen from one of them: the sides of one
+   that rotates fast are others after a step. */
 static bool changes_places(unsigned before, unsigned after) {
     const unsigned opposite = (before & 0x55u) << 1 | (before >> 1 & 0x55u), stayed = before & after;
     const unsigned of_a = 0x0fu, of_b = 0xf0u;
@@ -157,7 +157,8 @@ static bool is_slow(const Passage *passage) {
     return passage->way < passage->depth && passage->turns < small_turn;
 }
 
-/* `known`: the sides before the bodies were deep in each other, or NULL. Returns the sides that are to be kept, if they are deep. */
+/* `known`: the sides before the bodies were deep in each other, or NULL. Returns the sides that are to be kept, if they
+   are deep. */
 static bool check_pair(VerdictWatch *watch, const VerdictStep *step, BodyPair pair, const DeepPair *known,
                        DeepPair *deep) {
     const Passage passage = passage_of(watch, step, pair);
@@ -199,7 +200,8 @@ static bool find_near(VerdictWatch *watch, const VerdictStep *step, Error *error
 
 static int by_pair(BodyPair a, BodyPair b) { return a.a != b.a ? a.a - b.a : a.b - b.b; }
 
-/* Both lists are in the order of their pairs; the deep ones of this step are appended to the others, then take their place. */
+/* Both lists are in the order of their pairs; the deep ones of this step are appended to the others, then take their
+   place. */
 static bool check_near(VerdictWatch *watch, const VerdictStep *step, Error *error) {
     PassFinder *passes = &watch->passes;
     const int old = passes->deep_count;

@@ -81,9 +81,9 @@ typedef struct SceneParameter {
     bool whole;             /* whole numbers only */
 } SceneParameter;
 
-/* What every scene has, and settings and studies take beside its parameters: iterations, dt (the run and the time of the bomb
-   stay as long, in seconds), friction of all boxes; and in a scene with a bomb its position, mass and speed as bomb_x, bomb_y,
-   bomb_mass and bomb_speed. A parameter of the scene with such a name goes before. */
+/* What every scene has, and settings and studies take beside its parameters: iterations, dt (the run and the time of
+   the bomb stay as long, in seconds), friction of all boxes; and in a scene with a bomb its position, mass and speed as
+   bomb_x, bomb_y, bomb_mass and bomb_speed. A parameter of the scene with such a name goes before. */
 enum { SCENE_COMMON_MAX = 7 };
 
 /* The name of a body in pictures, UTF-8; empty: it has none. */
@@ -135,8 +135,8 @@ typedef struct Scene {
    longer to check, 4 s for 25,000. The format is described at the head of scenes/pyramid_settled.yaml. */
 Scene *scene_read(const char *path, Error *error);
 
-/* The same with values for some of its parameters, or of what every scene has. Refuses settings that are unknown, given twice, out of their
-   parameter's bounds or not whole where they must be: "path: error: what". */
+/* The same with values for some of its parameters, or of what every scene has. Refuses settings that are unknown, given
+   twice, out of their parameter's bounds or not whole where they must be: "path: error: what". */
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error);
 
 /* The same from the tree of a file, which stays the caller's and may be read again. */
@@ -210,6 +210,6 @@ bool launch_has_family(const Scene *scene);
 enum { LAUNCH_GRID = 201 };
 bool launches_for_training(const Scene *scene, int count, Launch *out, Error *error);
 
-/* The same over the midpoints of that grid, and other rotations, spins and masses: all launches are held-out. Over x = -5
-   to 5 m none is 0, where a bomb on a stack is an exact tie. */
+/* The same over the midpoints of that grid, and other rotations, spins and masses: all launches are held-out. Over x =
+   -5 to 5 m none is 0, where a bomb on a stack is an exact tie. */
 bool launches_for_scoring(const Scene *scene, int count, Launch *out, Error *error);

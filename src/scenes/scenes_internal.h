@@ -44,9 +44,9 @@ int64_t pattern_body_count(const Pattern *pattern);
 
 BodyDef pattern_body(const Pattern *pattern, int64_t i);
 
-/* Expressions: numbers of a scene file made of decimals and $names of the scene's parameters by + - * / and parentheses, such
-   as $height + 0.25, with blanks where one likes. Products go before sums, else from left to right. The tree's context is
-   the scene's Parameters, or NULL for a scene without. */
+/* Expressions: numbers of a scene file made of decimals and $names of the scene's parameters by + - * / and
+   parentheses, such as $height + 0.25, with blanks where one likes. Products go before sums, else from left to right.
+   The tree's context is the scene's Parameters, or NULL for a scene without. */
 
 /* A file of 1.5 MB has room for 750,000 parentheses. */
 enum { EXPRESSION_MAX_PARTS = 32, EXPRESSION_SHOWN_SIZE = 320 };
@@ -54,9 +54,9 @@ enum { EXPRESSION_MAX_PARTS = 32, EXPRESSION_SHOWN_SIZE = 320 };
 /* True if the node's text is more than a decimal: it has an operator, a '$' or a parenthesis. */
 bool expression_is(const YamlTree *tree, int node);
 
-/* The value of a scalar, in double; a decimal is an expression, too. Refused, with its place: text that is no expression,
-   unknown names, more than EXPRESSION_MAX_PARTS numbers, signs and parentheses, division by 0 and infinite intermediate
-   results. Names in it are marked as used. */
+/* The value of a scalar, in double; a decimal is an expression, too. Refused, with its place: text that is no
+   expression, unknown names, more than EXPRESSION_MAX_PARTS numbers, signs and parentheses, division by 0 and infinite
+   intermediate results. Names in it are marked as used. */
 bool expression_read(const YamlTree *tree, int node, const char *what, double *value, Error *error);
 
 /* A node's number for a message: its text "-1", or "0 kg, from 0*$ratio with ratio = 10". unit: " kg", or "". */

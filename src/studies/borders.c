@@ -164,7 +164,8 @@ static void note_looks(Borders *borders, const BorderCell *cell) {
         borders->used[VERDICT_UNDECIDED] = true;
 }
 
-/* Struck studies tell where a method agrees with the reference. Without the reference it is the whole range that counts. */
+/* Struck studies tell where a method agrees with the reference. Without the reference it is the whole range that
+   counts. */
 static bool holds_as_far(const Borders *borders, int study, const BorderCell *cell) {
     const int reference = find_reference(borders);
     if (borders->studies[study].struck || reference < 0) return border_holds_throughout(cell);
@@ -219,8 +220,8 @@ static double word_width(const char *name) {
     return widest;
 }
 
-/* Names wider than a column alternate between two heights, and so have twice the room; the last one needs half a column beside
-   its own. A word that is still too long is smaller. */
+/* Names wider than a column alternate between two heights, and so have twice the room; the last one needs half a column
+   beside its own. A word that is still too long is smaller. */
 static void lay_out_names(Borders *borders) {
     double widest = 0;
     for (int i = 0; i < borders->method_count; i++) widest = fmax(widest, word_width(borders->methods[i].name));
@@ -239,7 +240,8 @@ static void lay_out_names(Borders *borders) {
     }
 }
 
-/* Of a few studies the methods' names, which may be long, stand beside the rows. The columns share the page, up to a width. */
+/* Of a few studies the methods' names, which may be long, stand beside the rows. The columns share the page, up to a
+   width. */
 static void lay_out(Borders *borders) {
     const int columns = borders->few ? borders->study_count : borders->method_count;
     double label = 0;

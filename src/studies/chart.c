@@ -17,8 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
-   scene. */
+/* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene
+   after scene. */
 
 /* A scene and its pieces: a launch each, the last one is of the times. */
 typedef struct ChartScene {
@@ -35,8 +35,8 @@ typedef struct ChartPlan {
     PiecePlan plan;
 } ChartPlan;
 
-/* Seconds of one core per step of a body: of the converged run, of a method with the solutions that it is scored against, and
-   of a method whose times are measured. */
+/* Seconds of one core per step of a body: of the converged run, of a method with the solutions that it is scored
+   against, and of a method whose times are measured. */
 static const double converged_seconds = 1.5e-6, scored_seconds = 8e-7, timed_seconds = 3e-7;
 
 static ChartScene *scene_of(const ChartPlan *plan, int64_t piece) {
@@ -245,8 +245,8 @@ static bool add_times(const Assembly *assembly, ChartRow *rows, char cpu[CPU_NAM
     return ok;
 }
 
-/* Fills rows[contenders of the scene * ROWS_EACH]. Their texts are the scene's, but for cpu[CPU_NAME_SIZE]. Memory: of some
-   methods on all launches, and of one piece. ERROR_INPUT for a piece whose results are damaged. */
+/* Fills rows[contenders of the scene * ROWS_EACH]. Their texts are the scene's, but for cpu[CPU_NAME_SIZE]. Memory: of
+   some methods on all launches, and of one piece. ERROR_INPUT for a piece whose results are damaged. */
 static bool chart_assemble(const Pieces *pieces, const ChartScene *scene, ChartRow *rows, char cpu[CPU_NAME_SIZE],
                            SceneSolves *solves, Error *error) {
     *solves = (SceneSolves){0};

@@ -68,8 +68,8 @@ typedef struct Chart {
     int floored; /* number of marks drawn at PARETO_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
     ChartPanel panels[CHART_PANELS]; /* impact frames and the frames after; closed loop */
-    CurvePoint *front
-        [CHART_PANELS]; /* [front_count] the Pareto front by rising time, of all methods that compete and the reference */
+    /* [front_count] the Pareto front by rising time, of all methods that compete and the reference */
+    CurvePoint *front[CHART_PANELS];
     int front_count[CHART_PANELS];
     double us_least, us_most, error_least, error_most; /* ranges of all marks */
     char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; plain */
@@ -79,9 +79,9 @@ typedef struct Chart {
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
    before the bomb came, as they were scored on another scene; of a line that `highlight` names these are marks, too.
-   Errors below PARETO_RESOLUTION are drawn there. The axes show the coloured lines: other marks more than a decade away from
-   them are left out, and counted in their line. highlight: names of lines or methods, separated by commas; NULL: none; others
-   are ignored. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
+   Errors below PARETO_RESOLUTION are drawn there. The axes show the coloured lines: other marks more than a decade away
+   from them are left out, and counted in their line. highlight: names of lines or methods, separated by commas; NULL:
+   none; others are ignored. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const char *highlight,
                   Error *error);
 /* Colours the lines of a gathered chart again, with what was chosen. */
@@ -104,10 +104,10 @@ const char *chart_twin_word(const ChartLine *line);
 /* Whether each number in its setting is what the key's help calls the default. */
 bool chart_mark_is_default(const ChartMark *mark);
 
-/* Sets the rank of each line, given all its marks. At most CHART_LOUD are coloured: what the reader asks for (`highlight`,
-   programs of others), the engine, interior, the strongest rival that learns nothing, and scene-net; then the silenced twins of
-   these. The strongest rival is the one with most corners in the front of such methods, both panels together. False with error
-   set if out of memory. */
+/* Sets the rank of each line, given all its marks. At most CHART_LOUD are coloured: what the reader asks for
+   (`highlight`, programs of others), the engine, interior, the strongest rival that learns nothing, and scene-net; then
+   the silenced twins of these. The strongest rival is the one with most corners in the front of such methods, both
+   panels together. False with error set if out of memory. */
 bool chart_rank(Chart *chart, const char *highlight, const char *path, Error *error);
 
 /* What a picture calls a line: its key, plain and truncated, without the folders of a network; of a program its setting

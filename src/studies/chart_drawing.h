@@ -46,8 +46,8 @@ const ChartMark *chart_find_shipped(const ChartPanel *panel);
 /* Begins the field with the lines through the engine as shipped. */
 void chart_find_cross(ChartDrawing *drawing);
 
-/* Draws the names of all lines for which there is room beside marks and curves, settings of coloured ones, and the lines
-   through the engine as shipped. */
+/* Draws the names of all lines for which there is room beside marks and curves, settings of coloured ones, and the
+   lines through the engine as shipped. */
 void chart_draw_names(ChartDrawing *drawing, int panel);
 
 /* A drawn chart. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of the curves in a chart, where there is room beside them, and the lines through the engine as shipped, which they
-   interrupt. */
+/* Names of the curves in a chart, where there is room beside them, and the lines through the engine as shipped, which
+   they interrupt. */
 #include "figures/sketch.h"
 #include "pixels/type.h"
 #include "studies/chart_data.h"
@@ -39,7 +39,8 @@ static void draw_label(const ChartDrawing *drawing, const Label *label, const Pa
     }
 }
 
-/* At the mark, or led to it by a thin line at most so long; across a line of the cross only if there is no other place. */
+/* At the mark, or led to it by a thin line at most so long; across a line of the cross only if there is no other
+   place. */
 static bool place_label(ChartDrawing *drawing, const ChartMark *mark, const Label *label, double farthest) {
     const Point at = chart_place(drawing, mark);
     LabelWish wish = {.x = at.x,
@@ -118,7 +119,8 @@ static Label label_of(const ChartDrawing *drawing, int line, const ChartMark *ma
     return label;
 }
 
-/* At the chief mark of a line, else at another one, the most accurate first: with what is to say of that mark, or the name alone. */
+/* At the chief mark of a line, else at another one, the most accurate first: with what is to say of that mark, or the
+   name alone. */
 static const ChartMark *name_mark(ChartDrawing *drawing, const ChartMark *chief, bool whole) {
     const double farthest = 12; /* the chief mark's name may be led to it from twice as far */
     for (double far = 3; far <= farthest; far *= 2)

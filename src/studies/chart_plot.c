@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Charts of speed against accuracy: few curves in colour, each named where it ends, all others grey; what no solver reaches is
-   shaded. */
+/* Charts of speed against accuracy: few curves in colour, each named where it ends, all others grey; what no solver
+   reaches is shaded. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/sketch.h"

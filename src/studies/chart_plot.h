@@ -17,16 +17,17 @@ typedef struct ChartLook {
     ColourChoices colours; /* those that name a line count */
 } ChartLook;
 
-/* ERROR_INPUT if a choice names no line of the charts of these rows, of which method and setting count, or has a colour that is
-   refused (pictures/colours.h). */
+/* ERROR_INPUT if a choice names no line of the charts of these rows, of which method and setting count, or has a colour
+   that is refused (pictures/colours.h). */
 bool chart_colours_check(const ColourChoices *choices, const ChartRow *rows, int count, Error *error);
 
 /* Whether rows of the table have each name of the list, at most as many as there are colours. ERROR_INPUT otherwise. */
 bool chart_highlight_check(const char *highlight, const ChartRow *rows, int count, Error *error);
 
-/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path, and writes what they show as chart-SCENE.txt. x:
-   solver time per step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed
-   loop. At most six methods are in colour, each named at its curve; all others are grey. What no method reaches is shaded
-   (the Pareto front, studies/error_curve.h); dotted lines are the time and the error of the engine as shipped. The folder
-   must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not a file name. Each file appears complete or not at all. */
+/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path, and writes what they show as chart-SCENE.txt.
+   x: solver time per step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after,
+   in closed loop. At most six methods are in colour, each named at its curve; all others are grey. What no method
+   reaches is shaded (the Pareto front, studies/error_curve.h); dotted lines are the time and the error of the engine as
+   shipped. The folder must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not
+   a file name. Each file appears complete or not at all. */
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, const ChartLook *look, Error *error);

@@ -35,16 +35,19 @@ typedef struct ChartRow {
     double energy;                                /* above the converged run's, J */
     double moved;                                 /* boxes that moved more than 0.5 m */
     const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
-    double
-        us_engine; /* of an external method, which has no other times: what its engine says that a step took; median */
-    double
-        us_varies; /* 1: us_solver varies more than the times of other rows, also when measured again (StepCost); else 0. NaN: unknown */
-    /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps with impulses. NaN: none has. */
+    /* of an external method, which has no other times: what its engine says that a step took; median */
+    double us_engine;
+    /* 1: us_solver varies more than the times of other rows, also when measured again (StepCost); else 0. NaN:
+       unknown */
+    double us_varies;
+    /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps with impulses. NaN: none
+       has. */
     double signorini, cone, dissipation;
     double rollout_mse; /* m^2: as in RunMeasures, mean over the launches */
 } ChartRow;
 
-/* The header is exact, but that the last columns, from cpu on, may be missing. Refused: a median time outside its quartiles. */
+/* The header is exact, but that the last columns, from cpu on, may be missing. Refused: a median time outside its
+   quartiles. */
 extern const CsvLayout chart_layout;
 
 static inline const ChartRow *chart_row(const CsvTable *table, int i) { return (const ChartRow *)table->rows + i; }

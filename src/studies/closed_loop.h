@@ -15,8 +15,8 @@ enum { CLOSED_LOOP_FRAMES = 600 };
 typedef struct LaunchLoop {
     double frames_engine; /* first frame in which a body is more than 0.1 m from its place in the engine's
                                 run; the scene's frames: never; NAN without a run to compare with */
-    double
-        frames_converged;   /* the same of the converged run; NAN, too, if that is not converged before the runs part */
+    /* the same of the converged run; NAN, too, if that is not converged before the runs part */
+    double frames_converged;
     double moved;           /* boxes that moved more than 0.5 m in the 5 s after the launch */
     double penetration;     /* m: the deepest contact */
     double energy_put_in;   /* J: mechanical energy when the bomb was added */
@@ -25,7 +25,8 @@ typedef struct LaunchLoop {
     int steps, fallen_back; /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
 } LaunchLoop;
 
-/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch, or NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch. */
+/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch, or NULL. The
+   run ends early if its state becomes NaN or infinite. rollout: scratch. */
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
                         const RunLog *converged, LaunchLoop *result, Error *error);
 

@@ -16,17 +16,18 @@ typedef struct EqualTimeFigure {
 } EqualTimeFigure;
 
 /* Reads a chart.csv and writes folder/equal_time.csv and equal_time_methods.csv, and the latter as a figure,
-   folder/equal_time.png, .svg and .pdf with their caption, .txt: a row for each scene, a column for each method, in each cell its error as a ratio to
-   that of its best rival in the same time. Methods and scenes without any ratio are left out, and named there. */
+   folder/equal_time.png, .svg and .pdf with their caption, .txt: a row for each scene, a column for each method, in
+   each cell its error as a ratio to that of its best rival in the same time. Methods and scenes without any ratio are
+   left out, and named there. */
 bool equal_time_plot(const char *chart_csv, const char *folder, EqualTimeFigure *figure, Error *error);
 
 /* The families of a chart, each with its curve of error over time in one scene.
 
-   A family is a method with the words of its setting ("engine:warm=off"); its settings differ in numbers. The rivals of a
-   method are the families of other methods that learn nothing; a learned method's silenced twin is no rival of it. The
-   best rival at a time is the one with the least error in that time. Closed loop only. Baselines, the reference and rows
-   without time or error are left out; a setting that lost the scene is on no curve. Errors below REFERENCE_TOLERANCE
-   count as that. */
+   A family is a method with the words of its setting ("engine:warm=off"); its settings differ in numbers. The rivals of
+   a method are the families of other methods that learn nothing; a learned method's silenced twin is no rival of it.
+   The best rival at a time is the one with the least error in that time. Closed loop only. Baselines, the reference and
+   rows without time or error are left out; a setting that lost the scene is on no curve. Errors below
+   REFERENCE_TOLERANCE count as that. */
 
 typedef enum CurveStatistic { CURVE_MEAN, CURVE_MEDIAN, CURVE_P95 } CurveStatistic;
 
@@ -97,7 +98,7 @@ typedef struct EqualTime {
     RivalCurves curves;
 } EqualTime;
 
-/* The tables of a chart's rows, which must outlive them; the rows of a scene must follow each other. False with error set
-   if out of memory. */
+/* The tables of a chart's rows, which must outlive them; the rows of a scene must follow each other. False with error
+   set if out of memory. */
 bool equal_time_make(EqualTime *table, const ChartRow *rows, int count, Error *error);
 void equal_time_free(EqualTime *table);

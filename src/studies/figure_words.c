@@ -6,7 +6,8 @@
 
 #include <string.h>
 
-/* Of the meaning, without what is for those who run the method: choices before it, "on|off: ", and what follows " (". */
+/* Of the meaning, without what is for those who run the method: choices before it, "on|off: ", and what follows "
+   (". */
 void words_add(WordList *words, const char *word, const char *meaning) {
     char text[WORD_SIZE];
     const char *end = strstr(meaning, " ("), *choices = strstr(meaning, ": ");

@@ -13,7 +13,8 @@ typedef struct WordList {
     char items[WORDS_MAX][WORD_SIZE];
 } WordList;
 
-/* Add what is not there yet; unknown methods and keys have no meaning. The name may have settings, which are ignored. */
+/* Add what is not there yet; unknown methods and keys have no meaning. The name may have settings, which are
+   ignored. */
 void words_add(WordList *words, const char *word, const char *meaning);
 void words_add_method(WordList *words, const char *name);
 void words_add_settings(WordList *words, const char *name, const char *setting);

@@ -24,8 +24,8 @@ typedef struct LaunchScores {
 
 void launch_scores_free(LaunchScores *scores);
 
-/* Writes those of all methods, scores[count]. unconverged: frozen steps, as in SnapshotList. run_unconverged: as in RunLog, of the
-   converged run. */
+/* Writes those of all methods, scores[count]. unconverged: frozen steps, as in SnapshotList. run_unconverged: as in
+   RunLog, of the converged run. */
 void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged, int run_unconverged);
 
 /* What is stored of a launch. */

@@ -10,7 +10,8 @@
 void meter_pin(void);
 void meter_unpin(void);
 
-/* Nanoseconds of a monotonic clock. Tests put a clock that counts in the place of the system's (tests/studies/test_times.c). */
+/* Nanoseconds of a monotonic clock. Tests put a clock that counts in the place of the system's
+   (tests/studies/test_times.c). */
 int64_t meter_time(void);
 
 /* Nanoseconds between two consecutive calls of meter_time(), to be subtracted from every measurement. */

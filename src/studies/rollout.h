@@ -70,16 +70,16 @@ int run_log_apart(const RunLog *log, const RunLog *other, double limit, int fram
 /* Boxes that moved more than 0.5 m in the 5 s after the launch; all if the log ended early. */
 double run_log_moved(const RunLog *log, const Scene *scene);
 
-/* A run compared with the converged run of the same launch; NaN if a phase does not occur. Energy and drift are compared before
-   the converged run's first step that did not converge. */
+/* A run compared with the converged run of the same launch; NaN if a phase does not occur. Energy and drift are
+   compared before the converged run's first step that did not converge. */
 typedef struct RunMeasures {
     double penetration[PHASES]; /* m: largest of the phase */
     double energy[PHASES];      /* J: excess over the converged run at the same frame, mean over the phase */
     double drift; /* m: mean distance of the boxes from the converged run, just before the bomb touches in either run */
     double moved; /* boxes that moved more than 0.5 m in the 5 s after the launch */
-    double
-        rollout_mse; /* m^2: squared distance from the converged run, mean over frames, boxes and both coordinates; NaN if the
-                           state became NaN or infinite before that run did not converge */
+    /* m^2: squared distance from the converged run, mean over frames, boxes and both coordinates; NaN if the state
+       became NaN or infinite before that run did not converge */
+    double rollout_mse;
 } RunMeasures;
 
 RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene);

@@ -48,8 +48,8 @@ typedef struct SceneStudy {
     StudySize size;
 } SceneStudy;
 
-/* Reads the scene and its launches. `size` is for scenes of up to 110 bodies; larger ones have fewer launches. ERROR_INPUT
-   also if no launch strikes a box. */
+/* Reads the scene and its launches. `size` is for scenes of up to 110 bodies; larger ones have fewer launches.
+   ERROR_INPUT also if no launch strikes a box. */
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
                        const LaunchChoice *launches, const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
@@ -60,8 +60,8 @@ Scene scene_study_launch(const SceneStudy *study, int launch);
 /* The number of launches whose times are measured, spread evenly over those that strike. */
 int scene_study_timed(const SceneStudy *study);
 
-/* A piece of the speed-accuracy study: a launch of a scene with all methods, which share its converged run and its frozen
-   steps. */
+/* A piece of the speed-accuracy study: a launch of a scene with all methods, which share its converged run and its
+   frozen steps. */
 
 /* Scores all contenders of the study on the launch, in parallel, and writes the scores. Called from
    several threads at once, it uses one thread each. */

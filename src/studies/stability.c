@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The stability study in pieces (runs/pieces.h): some methods of a study along one parameter, or some cells of a map. */
+/* The stability study in pieces (runs/pieces.h): some methods of a study along one parameter, or some cells of a
+   map. */
 #include "studies/stability.h"
 
 #include "base/base.h"
@@ -181,7 +182,8 @@ const StabilityStudy stability_studies[] = {
      .rigid = rigid_staircase},
     {"tip", "Tall box on a slope", "tip", "slope", LINEAR(0, 0.4, 9), .stands = true, .weight = 1, .rigid = rigid_tip},
     {"kick", "Kicked tall box", "kick", "kick", LINEAR(0, 4, 9), .stands = true, .weight = 1, .rigid = rigid_kick},
-    {"ledge", "Box past an edge", "ledge", "past", LINEAR(-0.1, 0.1, 9), .stands = true, .weight = 1, .rigid = rigid_ledge},
+    {"ledge", "Box past an edge", "ledge", "past", LINEAR(-0.1, 0.1, 9), .stands = true, .weight = 1,
+     .rigid = rigid_ledge},
     {"seams", "Box over seams", "seams", "speed", LINEAR(2, 20, 10), .stands = true, .weight = 1,
      .rigid = rigid_seams},
     {"overlap", "Overlap at the start", "overlap", "spacing", LINEAR(0.4, 1, 13, .fails_low = true), .stands = true,

@@ -163,10 +163,11 @@ typedef struct StabilityOwn {
     StabilityMap maps[1];                       /* SCENE_PARAMETER_PARAMETER */
 } StabilityOwn;
 
-/* Makes the studies of the scene at `path` for texts "NAME", "NAME=FROM:TO" or "NAME=FROM:TO:STEP"; without FROM and TO a parameter's bounds.
-   A range without STEP whose ends differ by more than a factor of 20 is logarithmic. The result points into itself and to `path`.
-   ERROR_INPUT: no or unknown parameters, more than STABILITY_MAX_VARY, a parameter twice, a range that is not within the
-   parameter's bounds, a unit that tables cannot hold, a value of the scan for which the scene is refused. */
+/* Makes the studies of the scene at `path` for texts "NAME", "NAME=FROM:TO" or "NAME=FROM:TO:STEP"; without FROM and TO
+   a parameter's bounds. A range without STEP whose ends differ by more than a factor of 20 is logarithmic. The result
+   points into itself and to `path`. ERROR_INPUT: no or unknown parameters, more than STABILITY_MAX_VARY, a parameter
+   twice, a range that is not within the parameter's bounds, a unit that tables cannot hold, a value of the scan for
+   which the scene is refused. */
 bool stability_own_make(StabilityOwn *own, const char *path, const char *const *texts, int count, bool quick,
                         Error *error);
 
@@ -191,23 +192,23 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
 /* The study's scene, in this folder, with a value of its parameter. The caller frees it. */
 Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error);
 
-/* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by the
-   table of studies, or follows from the scene if it is a file. */
+/* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by
+   the table of studies, or follows from the scene if it is a file. */
 VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
                                  const EnergyLog *converged);
 
-/* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those that are
-   shifted by a micrometre. */
+/* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those
+   that are shifted by a micrometre. */
 typedef struct Convergence {
     int steps;                  /* of all of them */
     int first;                  /* step that did not converge, in the run by which methods are judged; 0: none */
     NetworkFallbacks fallbacks; /* of all of them */
 } Convergence;
 
-/* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses (runs/verdict.h).
-   It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre differ in that, and where
-   the converged run is not sound or has a step that did not converge. Of a scene that is not struck it is
-   VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
+/* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses
+   (runs/verdict.h). It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre
+   differ in that, and where the converged run is not sound or has a step that did not converge. Of a scene that is not
+   struck it is VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
 bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error);
 
 /* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is
@@ -257,8 +258,8 @@ typedef struct ConvergedRuns {
     ConvergedRun **runs; /* [count] */
 } ConvergedRuns;
 
-/* The run of the scene at the value by the method "reference", and its truth, judged as `judged`, without a converged run. NULL with
-   error set if it fails. */
+/* The run of the scene at the value by the method "reference", and its truth, judged as `judged`, without a converged
+   run. NULL with error set if it fails. */
 const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
                                        Error *error);
 
@@ -271,7 +272,8 @@ bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error);
 Convergence convergence_of(const EnergyLog *log);
 
 /* The tables of a stability study: their rows and layouts (base/csv.h), used by the study, the figures and the
-   command line. Names are plain (csv_plain_length); a setting is stored as given and may contain the path of a network. */
+   command line. Names are plain (csv_plain_length); a setting is stored as given and may contain the path of a
+   network. */
 
 enum {
     STABILITY_MAX_CELLS = 200000,
@@ -281,8 +283,9 @@ enum {
     STABILITY_SETTING_SIZE = 128
 };
 
-/* maps.csv: a cell of a map. unconverged.csv: an unshifted run beside converged runs with steps that did not converge: a cell of a
-   map, or a run of a study along one parameter: `map` is the study, y its fixed parameter or, without one, NAN and "". */
+/* maps.csv: a cell of a map. unconverged.csv: an unshifted run beside converged runs with steps that did not converge:
+   a cell of a map, or a run of a study along one parameter: `map` is the study, y its fixed parameter or, without one,
+   NAN and "". */
 typedef struct MapCell {
     const char *map, *method, *setting, *x_parameter, *x_unit, *y_parameter, *y_unit;
     double x, y;
@@ -322,8 +325,8 @@ typedef struct EngineRow {
     const char *engine, *version; /* as the program states; "": it did not get so far */
     int runs, failed;             /* without a shift; of them, those whose adapter failed */
     const char *reason;           /* of the failure at the lowest value */
-    double
-        differs; /* value of the parameter at which two equal runs had different ends; NAN: none of the repeated runs */
+    /* value of the parameter at which two equal runs had different ends; NAN: none of the repeated runs */
+    double differs;
 } EngineRow;
 
 /* Refused: a map whose name is not a file name, maps (or methods of a map) whose rows are not together, and more than
@@ -343,8 +346,8 @@ extern const char stability_struck_words[];
 /* The study of row i is one of a struck scene: it tells where methods agree with the reference. */
 bool border_is_struck(const CsvTable *table, int i);
 
-/* Writes at which values of a study or map the reference did not converge, by unconverged.csv, into text: "at rows 22, 26
-   (12 of 900 steps, residual up to 3e-07 m/s)". Names the first twelve values. False, and "", if there are none. */
+/* Writes at which values of a study or map the reference did not converge, by unconverged.csv, into text: "at rows 22,
+   26 (12 of 900 steps, residual up to 3e-07 m/s)". Names the first twelve values. False, and "", if there are none. */
 enum { UNCONVERGED_TEXT_SIZE = 512 };
 bool stability_unconverged(const CsvTable *table, const char *study, char text[UNCONVERGED_TEXT_SIZE]);
 
@@ -374,8 +377,8 @@ void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, 
 
 /* The stability study: where each method fails. Tables: borders between holding and failing along one parameter
    (stability.csv), maps over two parameters (maps.csv), methods that do not apply to a scene (refusals.csv), network
-   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv), runs beside
-   which the reference did not converge (unconverged.csv). */
+   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv), runs
+   beside which the reference did not converge (unconverged.csv). */
 
 enum { STABILITY_MAX_NAMES = 64 };
 
@@ -393,13 +396,13 @@ typedef struct StabilityOptions {
     void *draw_context;
 } StabilityOptions;
 
-/* Runs the studies and maps, writes the tables and draws; a shard does its pieces only. An interrupted run is resumed at
-   the unfinished pieces. The tables do not depend on the number of threads. ERROR_INPUT also for an unknown name,
+/* Runs the studies and maps, writes the tables and draws; a shard does its pieces only. An interrupted run is resumed
+   at the unfinished pieces. The tables do not depend on the number of threads. ERROR_INPUT also for an unknown name,
    ERROR_INTERRUPTED if progress stops the run. *pieces tells what was done; it has no plan any more. */
 bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error);
 
-/* Runs the row's method once more, unshifted, at a value of its study's parameter; `scenes` as above. The cell points into
-   the study and the row. */
+/* Runs the row's method once more, unshifted, at a value of its study's parameter; `scenes` as above. The cell points
+   into the study and the row. */
 bool stability_run_cell(const StabilityStudy *study, const char *scenes, const BorderRow *row, double value,
                         MapCell *cell, Error *error);
 
@@ -427,8 +430,8 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
 
 /* The figures of a stability study, drawn from its tables. */
 
-/* Reads folder/stability.csv and folder/maps.csv, of the studies of a scene file or, with own NULL, of the table, and draws,
-   as .png, .svg and a caption .txt of one line, which also explains the words of the figure,
+/* Reads folder/stability.csv and folder/maps.csv, of the studies of a scene file or, with own NULL, of the table, and
+   draws, as .png, .svg and a caption .txt of one line, which also explains the words of the figure,
      map-NAME   one per map: a panel per method with a border, a tile per cell; the caption names methods
                 that hold or fail everywhere
      borders    how far each method holds in each study (studies/stability_internal.h)
@@ -439,7 +442,8 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
    figures already drawn stay. */
 bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error);
 
-/* map_pages.csv: which cells of the maps, and which failing sides of borders, have a page that plays what happened there. */
+/* map_pages.csv: which cells of the maps, and which failing sides of borders, have a page that plays what happened
+   there. */
 
 /* Of a method in a map. */
 enum { MAP_PAGES_EACH = 8 };
@@ -460,8 +464,8 @@ typedef struct MapPlace {
     int x, y;
 } MapPlace;
 
-/* The cells of a method that get a page: those that fail beside one that holds, at a border, are the ones that tell why; at
-   most MAP_PAGES_EACH of them, evenly. Without a border, the first that fails. Returns their number. */
+/* The cells of a method that get a page: those that fail beside one that holds, at a border, are the ones that tell
+   why; at most MAP_PAGES_EACH of them, evenly. Without a border, the first that fails. Returns their number. */
 int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_EACH]);
 
 /* The row of a cell; NULL: none. */
@@ -469,5 +473,6 @@ const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int 
 
 /* stability.html: borders and maps as tables, whose letters link to pages of runs. */
 
-/* Writes folder/stability.html from the tables there: stability.csv, maps.csv, map_pages.csv, and engines.csv if it is there. */
+/* Writes folder/stability.html from the tables there: stability.csv, maps.csv, map_pages.csv, and engines.csv if it is
+   there. */
 bool stability_html_write(const char *folder, Error *error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One run of a stability study: its scene, how it is judged, the converged run beside it; and maps, which have such a run in
-   each cell. */
+/* One run of a stability study: its scene, how it is judged, the converged run beside it; and maps, which have such a
+   run in each cell. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"

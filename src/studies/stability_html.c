@@ -108,8 +108,8 @@ static void put_map(FILE *out, const StabilityHtml *html) {
     fputs("</div>\n</section>\n", out);
 }
 
-/* Borders: for each study those of all methods, in a grid with as many columns as the window has room for. A table with a column for
-   each of a dozen engines would hide most of them. */
+/* Borders: for each study those of all methods, in a grid with as many columns as the window has room for. A table with
+   a column for each of a dozen engines would hide most of them. */
 
 static const MapPage *find_border_page(const StabilityHtml *html, const BorderRow *row) {
     for (int i = 0; i < html->table.count; i++) {

@@ -76,11 +76,11 @@ bool border_holds_throughout(const BorderCell *cell);
 
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
 
-/* Writes the figure and its caption: a row for each study, struck ones last, and a column for each method that applies to one
-   of them; the caption names the others. Of up to three studies the methods are rows. A cell is the range of the study, with the parts that hold and those that fail,
-   each in the colour of its verdict. Columns and rows are sorted by what holds, the reference first. The foot names where the
-   reference did not converge, by unconverged.csv. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
-   BORDERS_MAX_STUDIES studies. */
+/* Writes the figure and its caption: a row for each study, struck ones last, and a column for each method that applies
+   to one of them; the caption names the others. Of up to three studies the methods are rows. A cell is the range of the
+   study, with the parts that hold and those that fail, each in the colour of its verdict. Columns and rows are sorted
+   by what holds, the reference first. The foot names where the reference did not converge, by unconverged.csv.
+   ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or BORDERS_MAX_STUDIES studies. */
 bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged, const StabilityOwn *own,
                              PlotPage *page, Error *error);
 
@@ -113,9 +113,10 @@ int stability_grid_cells(const StabilityMap *map, bool quick);
 bool stability_grid_begin(GridContext *context, const StabilityGrid *grid, Error *error);
 void stability_grid_end(GridContext *context);
 
-/* Judges the cells first .. end - 1, row by row from the least y, and writes their rows of the tables "maps" and "unconverged", with a section
-   for each of grid->methods (studies/contenders.h). Omits methods that do not apply to the scene, methods that set their own
-   number of sweeps if the map scans it, and the reference, by which runs are judged, unless the scene is struck. */
+/* Judges the cells first .. end - 1, row by row from the least y, and writes their rows of the tables "maps" and
+   "unconverged", with a section for each of grid->methods (studies/contenders.h). Omits methods that do not apply to
+   the scene, methods that set their own number of sweeps if the map scans it, and the reference, by which runs are
+   judged, unless the scene is struck. */
 bool stability_grid_write(const GridContext *context, int first, int end, FILE *results, const Progress *progress,
                           Error *error);
 
@@ -138,9 +139,10 @@ typedef struct ScanContext {
 bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error *error);
 void stability_scan_end(ScanContext *context);
 
-/* Does the methods first .. end - 1 and writes their rows (studies/piece_tables.h) of the tables "stability", "refusals",
-   "fallbacks" (every unshifted run of a method that may fall back), "rest" (every unshifted run, if study.rests) and
-   "unconverged" (every unshifted run whose converged runs did not converge throughout), ordered by method. Omits methods that set their own number of sweeps if the study scans it. */
+/* Does the methods first .. end - 1 and writes their rows (studies/piece_tables.h) of the tables "stability",
+   "refusals", "fallbacks" (every unshifted run of a method that may fall back), "rest" (every unshifted run, if
+   study.rests) and "unconverged" (every unshifted run whose converged runs did not converge throughout), ordered by
+   method. Omits methods that set their own number of sweeps if the study scans it. */
 bool stability_scan_write(ScanContext *context, int first, int end, FILE *results, const Progress *progress,
                           Error *error);
 

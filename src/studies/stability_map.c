@@ -122,8 +122,8 @@ static Labels choose_labels(const double *values, int count, int least) {
     return best;
 }
 
-/* An axis with a place for each value, in the order of the values, 0 to count - 1. room: mm that a value has. Numbers are
-   thinned so that they do not touch, to values that are as round as possible. The ticks must outlive the axis. */
+/* An axis with a place for each value, in the order of the values, 0 to count - 1. room: mm that a value has. Numbers
+   are thinned so that they do not touch, to values that are as round as possible. The ticks must outlive the axis. */
 static PlotAxis map_axis(PlotTicks *ticks, bool across, const double *values, int count, double room) {
     const double needed = across ? map_axis_width(values, count) + 1.7 : number_height;
     const Labels labels = choose_labels(values, count, (int)ceil(needed / room));
@@ -183,8 +183,8 @@ const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int 
     return NULL;
 }
 
-/* Blues, then orange to red to black: hues that the colour-blind can distinguish. In studies of struck scenes what agrees is
-   green, and a bar or a cross says that too few or too many fall. */
+/* Blues, then orange to red to black: hues that the colour-blind can distinguish. In studies of struck scenes what
+   agrees is green, and a bar or a cross says that too few or too many fall. */
 const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_SETTLES] = {"settles", 0xEAF3FA, 0x7FA6BF, METHOD_CIRCLE, false, 0.35},
     [VERDICT_AGREES] = {"agrees", 0xDDEBE0, 0x4F7D5E, METHOD_SQUARE, false, 0.35},
@@ -205,8 +205,8 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [LOOK_MISSING] = {"not run", NO_COLOUR, 0x909090, VERDICT_BARE, false, 1},
 };
 
-/* mm. Seams between small tiles would be most of what is seen; these overlap instead, as half-covered pixels would let the
-   page through. */
+/* mm. Seams between small tiles would be most of what is seen; these overlap instead, as half-covered pixels would let
+   the page through. */
 static const double most_symbol = 2.0, seam = 0.07, overlap = 0.02, least_with_seam = 1.2, legend_tile = 2.9,
                     name_gap = 1.3;
 

@@ -21,8 +21,8 @@ void stepper_pool_end(StepperPool *pool);
 /* Destroys the steppers, which no thread may use; they are made again when they are needed. */
 void stepper_pool_empty(StepperPool *pool);
 
-/* Chooses a method that is not marked in chosen[count], from `from` on, and marks it: one that no other thread uses, or else
-   one that it waits for. Returns its index; stepper_pool_give() must follow. */
+/* Chooses a method that is not marked in chosen[count], from `from` on, and marks it: one that no other thread uses, or
+   else one that it waits for. Returns its index; stepper_pool_give() must follow. */
 int stepper_pool_take(StepperPool *pool, bool *chosen, int from);
 void stepper_pool_give(StepperPool *pool, int index);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The archive of an .npz that a bundle has, in place of base/npz_zip.c. Its members are stored, and the page has no damaged
-   disk: they have no checksum. */
+/* The archive of an .npz that a bundle has, in place of base/npz_zip.c. Its members are stored, and the page has no
+   damaged disk: they have no checksum. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "live/bundle.h"

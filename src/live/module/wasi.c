@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What wasi-libc would import from its host. With these functions the module has no imports, so it cannot do more than compute. */
+/* What wasi-libc would import from its host. With these functions the module has no imports, so it cannot do more than
+   compute. */
 #include <locale.h>
 #include <wasi/api.h>
 

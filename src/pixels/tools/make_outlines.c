@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Build-time tool: prints the outlines and widths of two fonts as C (pixels/type.h) in unscaled font units, so that they do
-   not depend on the version of FreeType. Usage: make_outlines REGULAR.otf SEMIBOLD.otf SMALL.otf OUTPUT.c; the characters of
-   SMALL.otf must have the indices of REGULAR.otf there. */
+/* Build-time tool: prints the outlines and widths of two fonts as C (pixels/type.h) in unscaled font units, so that
+   they do not depend on the version of FreeType. Usage: make_outlines REGULAR.otf SEMIBOLD.otf SMALL.otf OUTPUT.c; the
+   characters of SMALL.otf must have the indices of REGULAR.otf there. */
 #include "pixels/type.h"
 
 #include <ft2build.h>
