@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lets calls that read folders fail. These functions replace those of the C library in the program that includes this; include
-   it first. */
+/* Lets calls that read folders fail. These functions replace those of the C library in the program that includes this;
+   include it first. */
 #pragma once
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include <dirent.h>

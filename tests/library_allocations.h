@@ -16,8 +16,8 @@ void *calloc(size_t count, size_t size) { return allocation_fails() ? NULL : __l
 void *realloc(void *block, size_t size) { return allocation_fails() ? NULL : __libc_realloc(block, size); }
 #endif
 
-/* Calls `work`, which returns whether it was done, with each allocation failing once, and all from it on. Each time it is
-   done or lacks memory. */
+/* Calls `work`, which returns whether it was done, with each allocation failing once, and all from it on. Each time it
+   is done or lacks memory. */
 static inline void assert_memory_is_named(bool (*work)(Error *error)) {
     for (int rest = 0; rest < 2; rest++) {
         int failures = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The program of a folder's tests: `tests_solvers laws` runs the main() of tests/methods/test_laws.c. TEST_FILES lists the
-   files as TEST_FILE(what); tests/CMakeLists.txt writes it. */
+/* The program of a folder's tests: `tests_solvers laws` runs the main() of tests/methods/test_laws.c. TEST_FILES lists
+   the files as TEST_FILE(what); tests/CMakeLists.txt writes it. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a test owns and lets go at the end of the block: OWN(Scene) *scene = scene_named("stack"); FREED char *text = ... The last
-   declared goes first. */
+/* What a test owns and lets go at the end of the block: OWN(Scene) *scene = scene_named("stack"); FREED char *text =
+   ... The last declared goes first. */
 #pragma once
 #include "testing.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Python programs within tests: NumPy has the last word on what an .npz is. One Python runs all programs of a test, because
-   NumPy takes longer to load than most programs to run. */
+/* Python programs within tests: NumPy has the last word on what an .npz is. One Python runs all programs of a test,
+   because NumPy takes longer to load than most programs to run. */
 #pragma once
 #include "testing.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes that a seed makes: structures of 2 to 80 bodies, with sides of 0.01 to 20 m, masses spread by up to a million and
-   friction of 0 to 2; every other one is struck. The same seed gives the same scene on every machine. */
+/* Scenes that a seed makes: structures of 2 to 80 bodies, with sides of 0.01 to 20 m, masses spread by up to a million
+   and friction of 0 to 2; every other one is struck. The same seed gives the same scene on every machine. */
 #pragma once
 #include "base/base.h"
 #include "scenes/scenes.h"

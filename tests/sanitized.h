@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a sanitizer watches. It makes a program up to ten times slower, and what it finds in a series of cases that
-   differ only in their numbers it finds in a few of them. So the sanitizers' builds run one case in `sampled(n)`, as does
-   tests/run without --all; with it the release build runs all. */
+   differ only in their numbers it finds in a few of them. So the sanitizers' builds run one case in `sampled(n)`, as
+   does tests/run without --all; with it the release build runs all. */
 #pragma once
 #include <stdlib.h>
 

@@ -17,9 +17,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* TEST(law) { ... } is a test, in the order of the file; `state` is cmocka's, and `error` is an empty one of the test's own.
-   TEST_WITH() has the fixtures that are called before and after it, each of which is FIXTURE(name) { ... } with the same two.
-   RUN_TESTS(before, after) ends the file: its fixtures, or NULL, are called once, before and after all. */
+/* TEST(law) { ... } is a test, in the order of the file; `state` is cmocka's, and `error` is an empty one of the test's
+   own. TEST_WITH() has the fixtures that are called before and after it, each of which is FIXTURE(name) { ... } with
+   the same two. RUN_TESTS(before, after) ends the file: its fixtures, or NULL, are called once, before and after
+   all. */
 enum { TESTS_MAX = 64 }; /* of a file */
 static struct CMUnitTest tests_of_file[TESTS_MAX] __attribute__((unused));
 static size_t test_count __attribute__((unused));
@@ -109,8 +110,8 @@ __attribute__((format(printf, 1, 2))) static inline const char *printed(const ch
     return text;
 }
 
-/* Puts these bytes in a file and returns its path. A new file each time: some file systems write an overwritten one to disk
-   at once, for safety. */
+/* Puts these bytes in a file and returns its path. A new file each time: some file systems write an overwritten one to
+   disk at once, for safety. */
 static inline const char *write_bytes(const char *path, const void *data, size_t size) {
     remove(path);
     FILE *file = fopen(path, "wb");

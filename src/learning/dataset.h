@@ -75,7 +75,8 @@ static inline bool dataset_is_test(const Dataset *dataset, int64_t row) {
     return dataset->launch_test[dataset->launch[row]] != 0;
 }
 
-/* What an output is trained to predict: one of all changes, or, of two outputs, the change of b's velocity relative to a's. */
+/* What an output is trained to predict: one of all changes, or, of two outputs, the change of b's velocity relative to
+   a's. */
 static inline float dataset_target(const Dataset *dataset, int64_t row, int outputs, int k) {
     const int count = pair_change_count(dataset->target);
     const float *changes = dataset->changes + row * count;

@@ -85,7 +85,8 @@ void png_file_close(PngFile *file);
 /* Reads the whole file. ERROR_INPUT if it has changed. */
 bool png_file_load(PngFile *file, Error *error);
 
-/* Whether image_decode_png() would read the file, in memory for some rows. At most once; then the file may be loaded. */
+/* Whether image_decode_png() would read the file, in memory for some rows. At most once; then the file may be
+   loaded. */
 bool png_file_check(PngFile *file, Error *error);
 
 /* Whether all bytes are equal. */

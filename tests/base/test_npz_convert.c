@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Arrays of other types and orders, as NumPy writes them: converted exactly, or refused with the value that does not fit. */
+/* Arrays of other types and orders, as NumPy writes them: converted exactly, or refused with the value that does not
+   fit. */
 #include "made.h"
 
 #include "python.h"

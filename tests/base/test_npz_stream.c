@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* .npz whose arrays grow: the same bytes as those of whole arrays, however the rows come; large arrays come back, and are
-   deflated only where that pays; nothing is left of a stream that is not finished. */
+/* .npz whose arrays grow: the same bytes as those of whole arrays, however the rows come; large arrays come back, and
+   are deflated only where that pays; nothing is left of a stream that is not finished. */
 #include "made.h"
 
 #include "files.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A process that is killed while it writes leaves the old file, and nothing that the next one does not remove; also on file
-   systems on which every file has a name. */
+/* A process that is killed while it writes leaves the old file, and nothing that the next one does not remove; also on
+   file systems on which every file has a name. */
 #define _GNU_SOURCE /* O_TMPFILE, RTLD_NEXT */
 #include "testing.h"
 

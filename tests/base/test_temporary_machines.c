@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Machines that write into one folder at the same time, as over NFS: every file has a name, and locks hold on one machine
-   only, hold nothing, or are not there. A sweep never removes what a living process writes, and no two use one name, even if
-   the numbers of the processes and their clocks are equal. */
+/* Machines that write into one folder at the same time, as over NFS: every file has a name, and locks hold on one
+   machine only, hold nothing, or are not there. A sweep never removes what a living process writes, and no two use one
+   name, even if the numbers of the processes and their clocks are equal. */
 #define _GNU_SOURCE /* O_TMPFILE, RTLD_NEXT */
 #include "testing.h"
 
@@ -89,7 +89,8 @@ static void make_folder(const char *name) {
     assert_ok(file_make_directory(folder, &error), error);
 }
 
-/* A process on that node, which writes a file of this name and content, and ends, dies or stops before it has the name. */
+/* A process on that node, which writes a file of this name and content, and ends, dies or stops before it has the
+   name. */
 static pid_t start(Node where, const char *name, bool dies, bool stops) {
     const pid_t child = fork();
     if (child != 0) return child;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A library for LD_PRELOAD that makes each folder one that machines share, at its worst: no file is without a name, and every
-   lock is given to everyone. TWINBOX_MACHINE tells machines apart, as the start of a kernel does. */
+/* A library for LD_PRELOAD that makes each folder one that machines share, at its worst: no file is without a name, and
+   every lock is given to everyone. TWINBOX_MACHINE tells machines apart, as the start of a kernel does. */
 #define _GNU_SOURCE /* O_TMPFILE */
 #include <errno.h>
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs random structures by the reference and counts the steps that do not converge. Prints a line for each structure that
-   has some, with the count of those that converge without position correction: with it, they may have no solution.
+/* Runs random structures by the reference and counts the steps that do not converge. Prints a line for each structure
+   that has some, with the count of those that converge without position correction: with it, they may have no solution.
    Arguments: the first seed and how many (default: all). Exit status 1 if more than 0.1% of the steps are left. */
 #include "random_structures.h"
 

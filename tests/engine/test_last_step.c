@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The contact problem of the last step and its solution stay valid when bodies are added after it: the bomb comes then. */
+/* The contact problem of the last step and its solution stay valid when bodies are added after it: the bomb comes
+   then. */
 #include "owned.h"
 
 #include "engine/engine.h"

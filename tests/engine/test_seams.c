@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contacts that are mended: which faces a box and a tile touch with, and from when on thin boxes touch. Answers follow from the
-   places of the boxes. */
+/* Contacts that are mended: which faces a box and a tile touch with, and from when on thin boxes touch. Answers follow
+   from the places of the boxes. */
 #include "owned.h"
 
 #include "engine/engine.h"

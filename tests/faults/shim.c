@@ -16,9 +16,9 @@
      mkdir     mkdir, mkdirat, mkdtemp
      process   fork, posix_spawnp, pipe, socketpair, pthread_create, dup, dup2
      wait      poll, waitpid (always EINTR)
-   MODE fail: the call fails with the usual errno. rest: so do all later ones. eintr: it fails with EINTR. short: it moves
-   half of the bytes (read, write and their like; not streams). kill: SIGKILL for all processes of the run, before the call.
-   term: SIGTERM for the first process of the run, before the call, which is not changed.
+   MODE fail: the call fails with the usual errno. rest: so do all later ones. eintr: it fails with EINTR. short: it
+   moves half of the bytes (read, write and their like; not streams). kill: SIGKILL for all processes of the run, before
+   the call. term: SIGTERM for the first process of the run, before the call, which is not changed.
 
    TWINBOX_FAULT_COUNTS=FILE   maps FILE, where all processes of a run count: see Counts.
    TWINBOX_FAULT_SITES=FILE    appends "CALL N FUNCTION" for the first call from each place, which is its stack.
@@ -88,8 +88,8 @@ void shim_leave(bool before) { inside = before; }
 
 static bool within(const Range *range, const char *address) { return address >= range->begin && address < range->end; }
 
-/* The program is the first, then what it is linked with; libraries that are loaded later are not in the list. Neither is the
-   loader, which ends the program (status 127) when it gets no memory. */
+/* The program is the first, then what it is linked with; libraries that are loaded later are not in the list. Neither
+   is the loader, which ends the program (status 127) when it gets no memory. */
 static int add_range(struct dl_phdr_info *info, size_t size, void *unused) {
     (void)size;
     (void)unused;

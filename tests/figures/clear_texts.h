@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts of a figure that cannot be read: cut by the page, shortened, covered by another text, crossed by a line, too pale for
-   what is behind them, or read with a line that ends at a number as its minus sign. Include testing.h first. */
+/* Texts of a figure that cannot be read: cut by the page, shortened, covered by another text, crossed by a line, too
+   pale for what is behind them, or read with a line that ends at a number as its minus sign. Include testing.h
+   first. */
 #pragma once
 #include "figures/figures_internal.h"
 #include "figures/sketch.h"

@@ -27,7 +27,8 @@ bool __wrap_sketch_draw(const Sketch *sketch, const char *stem, SketchFormat las
     return true;
 }
 
-/* Widths and font sizes; the first three are drawn always, others may be refused, with a message that says what is needed. */
+/* Widths and font sizes; the first three are drawn always, others may be refused, with a message that says what is
+   needed. */
 static const double sizes[][2] = {{85, 8}, {174, 8}, {400, 8},  {40, 8},  {40, 5},
                                   {60, 8}, {85, 14}, {174, 14}, {400, 14}};
 enum { SIZES = sizeof sizes / sizeof *sizes, USUAL = 3, LEAST = 4 };
@@ -77,7 +78,8 @@ TEST(figures_of_runs) {
     assert_clear(&faults);
 }
 
-/* 40 mm are documented as the least width: at the font size by default, every kind has room for as few runs as it takes. */
+/* 40 mm are documented as the least width: at the font size by default, every kind has room for as few runs as it
+   takes. */
 TEST(the_least_width_is_enough) {
     Trajectory *runs[] = {read_run("stack", "engine"), read_run("stack", "pair-net")};
     for (int i = 0; figure_kinds()[i] != NULL; i++) {

@@ -120,8 +120,8 @@ static bool is_led(const Sketch *sketch, Point point, const PageBox *box) {
     return false;
 }
 
-/* Six contacts within a few millimetres, as where a bomb strikes: every number is there, apart from all others and from all
-   rings, and at the end of a line from its contact, or clearly nearest to it. */
+/* Six contacts within a few millimetres, as where a bomb strikes: every number is there, apart from all others and from
+   all rings, and at the end of a line from its contact, or clearly nearest to it. */
 TEST(crowded_numbers_lead_to_their_contacts) {
     enum { CONTACTS = 6 };
     OWN(Trajectory) *run = run_make("engine", 2);

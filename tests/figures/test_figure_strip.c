@@ -118,8 +118,8 @@ static int read_turned(const Sketch *sketch, char name[256]) {
     return lines;
 }
 
-/* Whatever the width of the page, the method's name and its settings are there as a whole: turned beside the row in at most
-   two lines, or above it in one. */
+/* Whatever the width of the page, the method's name and its settings are there as a whole: turned beside the row in at
+   most two lines, or above it in one. */
 TEST(names_are_never_cut) {
     static const char *const names[] = {"momentum:k=20", "playback:launches=a-name-that-fits-nowhere.csv"};
     int beside = 0, above = 0;

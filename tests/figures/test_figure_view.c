@@ -32,8 +32,8 @@ static bool shows(const WorldWindow *window, double x, double y) {
            y < window->bottom + window->height;
 }
 
-/* A box of the second run falls farther than those of the first: their figure shows it. What flies off in the second run, or
-   sinks into the ground, changes nothing, not even by where it was before. */
+/* A box of the second run falls farther than those of the first: their figure shows it. What flies off in the second
+   run, or sinks into the ground, changes nothing, not even by where it was before. */
 TEST(a_view_holds_what_all_runs_show) {
     Trajectory *runs[] = {run_make("engine", 12), run_make("pair-net", 12)};
     const FigureSpec one = spec_of(runs, 1), both = spec_of(runs, 2);

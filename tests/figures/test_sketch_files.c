@@ -231,7 +231,8 @@ TEST(an_svg_of_outlines_needs_no_font) {
                                 "fill-opacity=\"0.250\" stroke=\"#000000\" stroke-width=\"0.170\""));
 }
 
-/* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
+/* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its
+   title. */
 TEST(a_pdf_is_read_as_it_is_seen) {
     Sketch sketch;
     sketch_begin(&sketch, 100, 40);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fuzzing of everything that reads what others wrote. A target makes a file or a text of any bytes, gives it to a reader
-   and checks what comes back. test_replay.c runs all targets on the stored inputs (corpus/TARGET); with TWINBOX_FUZZ,
-   libFuzzer runs each on inputs that it makes (fuzzer.c, run).
+/* Fuzzing of everything that reads what others wrote. A target makes a file or a text of any bytes, gives it to a
+   reader and checks what comes back. test_replay.c runs all targets on the stored inputs (corpus/TARGET); with
+   TWINBOX_FUZZ, libFuzzer runs each on inputs that it makes (fuzzer.c, run).
 
    A finding is an abort with a message; the sanitizers have more: memory errors, undefined behaviour, leaks. */
 #pragma once
@@ -43,18 +43,18 @@ bool fuzz_try(const char *target, const uint8_t *data, size_t size);
 /* Stops the program with this finding. */
 void fuzz_fail(const char *format, ...) PRINTF_LIKE(1, 2) __attribute__((noreturn));
 
-/* The path of a file with these bytes in a folder of this process, which goes at exit. Valid until the same name is written
-   next. */
+/* The path of a file with these bytes in a folder of this process, which goes at exit. Valid until the same name is
+   written next. */
 const char *fuzz_file(const char *name, const void *data, size_t size);
 
 /* Copies the bytes to text[room] as a string; what follows a NUL, or has no room, is left out. */
 void fuzz_text(char *text, size_t room, const uint8_t *data, size_t size);
 
-/* What a reader may take, accepted or refused: inputs are small. Processor time counts in fuzzers only, with the sanitizers'
-   factor of ten; memory wherever the address sanitizer counts it, in libraries, too. */
+/* What a reader may take, accepted or refused: inputs are small. Processor time counts in fuzzers only, with the
+   sanitizers' factor of ten; memory wherever the address sanitizer counts it, in libraries, too. */
 enum { FUZZ_MILLISECONDS = 100, FUZZ_SANITIZED = 10, FUZZ_MEBIBYTES = 64 };
 
-/* A call of a reader begins; it has ended. It accepts and sets no error, or it refuses with an input error "PLACE: error: why"
-   or "PLACE:line:column: error: why", where `place` is the file or the option; NULL: any. */
+/* A call of a reader begins; it has ended. It accepts and sets no error, or it refuses with an input error "PLACE:
+   error: why" or "PLACE:line:column: error: why", where `place` is the file or the option; NULL: any. */
 void fuzz_begin(void);
 void fuzz_end(bool accepted, const Error *error, const char *place);

@@ -77,8 +77,8 @@ static void check_known(const Manifest *manifest, const uint8_t *data, size_t si
     free(texts);
 }
 
-/* Options: bit 0 and 1, whether the head stands before manifest.json and before its journal. Then both texts, separated by a
-   NUL. */
+/* Options: bit 0 and 1, whether the head stands before manifest.json and before its journal. Then both texts, separated
+   by a NUL. */
 void fuzz_manifest(const uint8_t *data, size_t size) {
     Manifest manifest;
     Error error = {0};

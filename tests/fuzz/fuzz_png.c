@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures: files of any bytes with valid checksums; pixels of any bytes in valid files. The decoder of twinbox and libpng
-   must agree. */
+/* Pictures: files of any bytes with valid checksums; pixels of any bytes in valid files. The decoder of twinbox and
+   libpng must agree. */
 #include "fuzz_png.h"
 #include "fuzz.h"
 
@@ -118,8 +118,8 @@ static void put_chunk(Builder *file, const char *type, const uint8_t *data, size
 
 enum { HEAD = 8, PALETTE = 48, EXTRA = 32, COPIES = 64 };
 
-/* The head: width, height, depth, colour, interlacing, level of compression, which chunks, in how many parts; then maybe a
-   palette and transparency; the rest are filtered rows, repeated. */
+/* The head: width, height, depth, colour, interlacing, level of compression, which chunks, in how many parts; then
+   maybe a palette and transparency; the rest are filtered rows, repeated. */
 static size_t build(const uint8_t *data, size_t size, uint8_t *out, size_t room) {
     static uint8_t rows[1 << 18];
     const uint8_t *head = data, *more = data + HEAD;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every target on its stored inputs, which no reader may fail on. With arguments, TARGET FILE...: a target on these files,
-   such as one that libFuzzer has found. */
+/* Every target on its stored inputs, which no reader may fail on. With arguments, TARGET FILE...: a target on these
+   files, such as one that libFuzzer has found. */
 #include "testing.h"
 
 #include "base/file.h"

@@ -71,8 +71,8 @@ static void release(Recorded *recorded) {
     gns_example_free(&recorded->example);
 }
 
-/* A velocity plus its target acceleration and gravity is the true next velocity less a tenth of what the noise moved the
-   particle by, per step. */
+/* A velocity plus its target acceleration and gravity is the true next velocity less a tenth of what the noise moved
+   the particle by, per step. */
 TEST(targets_lead_to_the_true_velocity) {
     static Recorded clean, noisy;
     record(&clean, 0);
@@ -104,8 +104,8 @@ TEST(targets_lead_to_the_true_velocity) {
     release(&noisy);
 }
 
-/* In free flight the target of a box's centre is 0, from the first step on: before it exists, a body flies with its start
-   velocity. */
+/* In free flight the target of a box's centre is 0, from the first step on: before it exists, a body flies with its
+   start velocity. */
 TEST(free_flight_has_no_target) {
     static Recorded clean;
     record(&clean, 0);

@@ -124,7 +124,8 @@ static void assert_same_end(Trajectory *a, Trajectory *b) {
     trajectory_destroy(b);
 }
 
-/* net=off and an empty memory solve every step to convergence; a memory gives the same run each time, and another one. */
+/* net=off and an empty memory solve every step to convergence; a memory gives the same run each time, and another
+   one. */
 TEST(the_method_without_its_memory_is_its_twin) {
     OWN(Scene) *scene = scene_named("single");
     Counts counts;

@@ -67,8 +67,8 @@ TEST(inputs_are_standardised_by_the_rows_trained_on) {
     assert_true(train->x[BLOCK_ROWS] == 0 && train->x[BLOCK_ROWS + 3] == 0);
 }
 
-/* A box at rest has velocities of 1e-10 m/s beside positions of metres: no scale of 1e11, or the first step of another run would
-   reach the network as 1e10. A column that varies by more than the rounding of 6 m has its own. */
+/* A box at rest has velocities of 1e-10 m/s beside positions of metres: no scale of 1e11, or the first step of another
+   run would reach the network as 1e10. A column that varies by more than the rounding of 6 m has its own. */
 TEST(rounding_errors_are_no_input) {
     Dataset *dataset = small_dataset();
     for (int r = 0; r < 5; r++) {

@@ -5,7 +5,8 @@
 
 enum { LAUNCHES = 20, ROWS = 400 };
 
-/* Launch of row r: (7 r) mod 19, so launch 19 has no rows; 3, 8, 13 and 18 are held out. Numbers tell row and column. */
+/* Launch of row r: (7 r) mod 19, so launch 19 has no rows; 3, 8, 13 and 18 are held out. Numbers tell row and
+   column. */
 static Dataset *make_dataset(bool context) {
     Dataset *dataset = calloc(1, sizeof *dataset);
     assert_non_null(dataset);

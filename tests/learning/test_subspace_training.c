@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A small training: the same bits for any number of threads and however often it is interrupted; rows and components are
-   those of the recorded launches. */
+/* A small training: the same bits for any number of threads and however often it is interrupted; rows and components
+   are those of the recorded launches. */
 #include "trainings.h"
 #include "owned.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* pack BUNDLE SCENE [METHOD...]: writes the bundle of a page, for tests/live/live.mjs. pack MODULE networks|plain: writes a
-   module. */
+/* pack BUNDLE SCENE [METHOD...]: writes the bundle of a page, for tests/live/live.mjs. pack MODULE networks|plain:
+   writes a module. */
 #include "base/base.h"
 #include "base/file.h"
 #include "live/live.h"

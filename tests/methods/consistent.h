@@ -28,8 +28,8 @@ static inline void assert_consistent(const ContactProblem *problem, const Contac
     }
 }
 
-/* As assert_consistent(), in double: relative to the sum of the impulses of a body, as redundant contacts may have large
-   ones that cancel. */
+/* As assert_consistent(), in double: relative to the sum of the impulses of a body, as redundant contacts may have
+   large ones that cancel. */
 static inline void assert_velocities_fit(const ContactProblem *problem, const ContactSolution *found) {
     const double rounding = found->fallbacks.by_sweeps > 0 ? 1e-4 : 1e-6; /* sweeps add up float changes */
     for (int i = 0; i < problem->body_count; i++) {

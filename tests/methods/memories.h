@@ -22,8 +22,8 @@ static inline HybridMemory *make_memory(void) {
     return memory;
 }
 
-/* An entry for `contacts` contacts with hash 7 + contacts, impulses (n, n / 10) with n = first + contact, a ball of this
-   radius, and neighbours with weights; both NULL: none. Returns its index. */
+/* An entry for `contacts` contacts with hash 7 + contacts, impulses (n, n / 10) with n = first + contact, a ball of
+   this radius, and neighbours with weights; both NULL: none. Returns its index. */
 static inline int add_entry(HybridMemory *memory, int contacts, const float *key, float first, float radius,
                             const int32_t *near, const float *weights) {
     Error error = {0};

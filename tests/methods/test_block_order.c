@@ -28,8 +28,8 @@ static int fill_of(int count, int edge_count) {
     return below - edge_count;
 }
 
-/* `trees` random trees of `size` nodes each: leaves can always come before what they hang on. Approximate degrees miss a
-   few. */
+/* `trees` random trees of `size` nodes each: leaves can always come before what they hang on. Approximate degrees miss
+   a few. */
 static int make_trees(int trees, int size) {
     int count = 0;
     for (int tree = 0; tree < trees; tree++)

@@ -27,7 +27,8 @@ TEST(a_moved_box_is_found_again) {
     }
 }
 
-/* A box that is stretched along an edge keeps its pose; its particles are off by the stretch of two of three columns. */
+/* A box that is stretched along an edge keeps its pose; its particles are off by the stretch of two of three
+   columns. */
 TEST(a_stretched_box_keeps_its_pose) {
     const Vec2 size = {1, 1};
     const BodyPose pose = {{0, 0}, 0};

@@ -96,8 +96,8 @@ TEST(a_chain_has_two_colours) {
     assert_memory_equal(colours.visits, expected, sizeof expected);
 }
 
-/* On the ground, which no impulse moves, all lie at once; on a body that moves one after the other, and there are more of
-   them than colours. */
+/* On the ground, which no impulse moves, all lie at once; on a body that moves one after the other, and there are more
+   of them than colours. */
 TEST(a_star_has_one_colour_or_more_than_there_are) {
     static RandomProblem random;
     OWN(Colours) colours = {0};

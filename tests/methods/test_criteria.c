@@ -122,7 +122,8 @@ TEST(spin_counts_at_the_arms) {
     assert_near(found.energy, (25 + 49) / 12., 1e-6);
 }
 
-/* Solvers: the converged solution breaks no law beyond the rounding of its impulses; one sweep breaks those of contact. */
+/* Solvers: the converged solution breaks no law beyond the rounding of its impulses; one sweep breaks those of
+   contact. */
 TEST(the_reference_keeps_all_laws) {
     static RandomProblem random;
     const ContactSolver one = make_engine("k=1,warm=off");

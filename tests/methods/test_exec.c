@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The methods exec and exec-solver read what a program writes: answers with random damage end the run with a reason, or are
-   numbers that an engine or a solver could have answered. The program is a shell that writes a file whatever it is asked. */
+/* The methods exec and exec-solver read what a program writes: answers with random damage end the run with a reason, or
+   are numbers that an engine or a solver could have answered. The program is a shell that writes a file whatever it is
+   asked. */
 #include "owned.h"
 
 #include "methods/adapter.h"

@@ -59,7 +59,8 @@ static void steps(Run *run, int first, int last) {
 
 static const BodyDef ground = {.fixed = true, .size = {200, 20}, .position = {0, -10}, .friction = 0.2f};
 
-/* Without the network, and with outputs that are not credible, boxes fall: y = -g t (t + dt) / 2, through everything. */
+/* Without the network, and with outputs that are not credible, boxes fall: y = -g t (t + dt) / 2, through
+   everything. */
 TEST(boxes_fall_without_the_network) {
     static const struct {
         const char *settings;
@@ -77,7 +78,8 @@ TEST(boxes_fall_without_the_network) {
         assert_near(now[1].position.y, 0.9f - 5 * (1 + 1.0 / 60), 1e-3);
         assert_near(now[2].position.x, 3.2, 1e-3);
         assert_near(now[2].position.y, 1.8f + 1 - 5 * (1 + 1.0 / 60), 1e-3);
-        /* Particles on straight ways, so that a box that is not kept rigid grows: the network has to learn what turns them. */
+        /* Particles on straight ways, so that a box that is not kept rigid grows: the network has to learn what turns
+           them. */
         assert_near(now[2].angle, 0.18 + 2, c == 1 ? 1 : 0.1);
         assert_near(now[0].position.y, -10, 0);
         assert_int_equal(world_solution(run.world)->fallbacks.not_finite, cases[c].discarded);

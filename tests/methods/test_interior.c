@@ -80,8 +80,9 @@ TEST(impacts_have_the_reference_solution) {
     }
 }
 
-/* Friction allows several solutions here, 0.07 m/s apart, so this is about the residual alone. Shallow contacts close by
-   up to 1 mm/s. The path of two of the five impacts turns back: they take 20 iterations, more work than a step may. */
+/* Friction allows several solutions here, 0.07 m/s apart, so this is about the residual alone. Shallow contacts close
+   by up to 1 mm/s. The path of two of the five impacts turns back: they take 20 iterations, more work than a step
+   may. */
 TEST(impacts_of_a_pyramid_are_solved_to_the_tolerance) {
     static const struct {
         const char *text;
@@ -224,8 +225,8 @@ static double log_of_estimates(const ContactProblem *problem) {
     return sum;
 }
 
-/* The estimate decides when the velocities of the answer are computed. Too small it would cost time for answers that are
-   refused, too large it would cost iterations. */
+/* The estimate decides when the velocities of the answer are computed. Too small it would cost time for answers that
+   are refused, too large it would cost iterations. */
 TEST(the_estimate_is_near_the_residual) {
     World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_struck_pyramid(1), make_struck_pyramid(4),
                        make_heap(4)};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The method interior where its iterations fail: at impacts whose central path turns back; and the work that this takes. */
+/* The method interior where its iterations fail: at impacts whose central path turns back; and the work that this
+   takes. */
 #include "allocations.h"
 #include "consistent.h"
 #include "kernels.h"
@@ -42,8 +43,8 @@ static double error_of(const ContactSolverKind *kind, const char *settings, cons
     return error;
 }
 
-/* The path of each turns back: few converge within the work that a step may take. Iterations and sweeps from their best answer
-   leave less than sweeps of the same work. */
+/* The path of each turns back: few converge within the work that a step may take. Iterations and sweeps from their best
+   answer leave less than sweeps of the same work. */
 TEST(struck_walls_are_solved_better_than_by_sweeps_of_the_same_work) {
     double gain = 0;
     int problems = 0;
@@ -111,7 +112,8 @@ TEST(the_path_ends_at_the_tolerance) {
     assert_true(reference.residual > 1e-9);
 }
 
-/* A pyramid of 36 boxes of 1 kg, as steps by the method lead on after a box of `mass` has reached its top. Checks each. */
+/* A pyramid of 36 boxes of 1 kg, as steps by the method lead on after a box of `mass` has reached its top. Checks
+   each. */
 static void strike_pyramid(float mass, double *work, int *by_sweeps) {
     OWN(World) *world = make_world();
     Error error = {0};
@@ -132,8 +134,8 @@ static void strike_pyramid(float mass, double *work, int *by_sweeps) {
     for (int i = 1; i <= 36; i++) assert_true(world_bodies(world)[i].position.y > 0);
 }
 
-/* Measured by the boxes' own masses iterations begin far from what a heavy body passes on, and all steps of the impact end in
-   sweeps, with errors of metres per second. */
+/* Measured by the boxes' own masses iterations begin far from what a heavy body passes on, and all steps of the impact
+   end in sweeps, with errors of metres per second. */
 TEST(heavy_bodies_are_no_hindrance) {
     static const struct {
         float mass;

@@ -33,8 +33,8 @@ TEST(stacks_at_rest_stay_in_place) {
     }
 }
 
-/* At 209 m positions round to 15 micrometres, which no contact can close by. Each box that was told to moved on in every
-   step. */
+/* At 209 m positions round to 15 micrometres, which no contact can close by. Each box that was told to moved on in
+   every step. */
 TEST(a_pyramid_far_from_the_origin_comes_to_rest) {
     OWN(World) *world = make_world();
     add_body(world, &(BodyDef){.size = {40, 1}, .fixed = true, .friction = 0.6f, .position = {0, 208.5f}});
@@ -90,7 +90,8 @@ static void add_wall(World *world, int courses, int per_course, float friction) 
         }
 }
 
-/* Boxes of 1 and 100 kg in turns, pressed together between walls: impulses that nothing limits are there from the start. */
+/* Boxes of 1 and 100 kg in turns, pressed together between walls: impulses that nothing limits are there from the
+   start. */
 static void add_jam(World *world) {
     for (int side = -1; side <= 1; side += 2)
         add_body(world, &(BodyDef){.size = {1, 10}, .fixed = true, .friction = 1, .position = {3 * (float)side, 5}});

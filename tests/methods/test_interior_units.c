@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The method interior in other units: nothing that it does depends on how heavy, large or slow the bodies are, or on gravity and
-   the time step. Factors are powers of two, so that equal steps have equal bits. */
+/* The method interior in other units: nothing that it does depends on how heavy, large or slow the bodies are, or on
+   gravity and the time step. Factors are powers of two, so that equal steps have equal bits. */
 #include "kernels.h"
 #include "reference_worlds.h"
 
@@ -100,8 +100,8 @@ static bool is_struck(const ContactProblem *problem) {
     return struck;
 }
 
-/* Lengths can only change in impacts: at rest contacts close to a share of the slop, which is the engine's. Among these are
-   impacts that sweeps end, that quick iterations solve, that others solve, and that none does. */
+/* Lengths can only change in impacts: at rest contacts close to a share of the slop, which is the engine's. Among these
+   are impacts that sweeps end, that quick iterations solve, that others solve, and that none does. */
 TEST(impacts_in_other_units_have_the_same_bits) {
     static const float masses[] = {4, 70, 40000};
     int struck = 0;
@@ -155,8 +155,8 @@ static double moved_at_rest(int rows, float gravity, float dt) {
     return most;
 }
 
-/* At 8 Hz, or under Jupiter's gravity at 20 Hz, a step of gravity makes 1.25 m/s: a speed from which impacts were told, and solved
-   to a tolerance at which the pyramid sank, and the box jumped. */
+/* At 8 Hz, or under Jupiter's gravity at 20 Hz, a step of gravity makes 1.25 m/s: a speed from which impacts were told,
+   and solved to a tolerance at which the pyramid sank, and the box jumped. */
 TEST(boxes_rest_at_long_steps_and_under_any_gravity) {
     static const struct {
         int rows;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Islands: their loops, as many as edges that are left when a tree through the island is taken away; and each as a problem
-   of its own. */
+/* Islands: their loops, as many as edges that are left when a tree through the island is taken away; and each as a
+   problem of its own. */
 #include "testing.h"
 
 #include "methods/islands.h"

@@ -38,9 +38,10 @@ static bool stays_upright(const char *text, int height, float gravity) {
     return stands;
 }
 
-/* A column of n boxes (mass m, side h) whose contacts have the stiffness c against turning buckles under its own weight if
-   m g h n^3 > 7.837 c (Greenhill 1881). Two contacts at h / 2 beside the centre have c = 2 k (h / 2)^2; each is a spring of
-   the frequency `hertz` on its effective mass, k = m_n (2 pi hertz)^2, with 1 / m_n = 2 / m + 2 (h / 2)^2 / (m h^2 / 6). */
+/* A column of n boxes (mass m, side h) whose contacts have the stiffness c against turning buckles under its own weight
+   if m g h n^3 > 7.837 c (Greenhill 1881). Two contacts at h / 2 beside the centre have c = 2 k (h / 2)^2; each is a
+   spring of the frequency `hertz` on its effective mass, k = m_n (2 pi hertz)^2, with 1 / m_n = 2 / m + 2 (h / 2)^2 /
+   (m h^2 / 6). */
 static double euler_height(double hertz, double gravity) {
     const double pi = 3.14159265358979, m = 1, h = 1, radius = h / 2;
     const double effective = 1 / (2 / m + 2 * radius * radius / (m * h * h / 6));
@@ -138,8 +139,8 @@ TEST(arms_stay_while_boxes_sink) {
     assert_near(deep.then.separation, -0.1, 1e-6);
 }
 
-/* The tolerance is a share of the smaller side: the same of boxes of 0.1, 1 and 10 m. Sinking uses none of it, so that a stack
-   of 20 whose contacts give way stands with 0.01. */
+/* The tolerance is a share of the smaller side: the same of boxes of 0.1, 1 and 10 m. Sinking uses none of it, so that
+   a stack of 20 whose contacts give way stands with 0.01. */
 TEST(stacks_of_all_sizes_stand) {
     const struct {
         const char *text;
@@ -161,8 +162,8 @@ TEST(stacks_of_all_sizes_stand) {
     }
 }
 
-/* The left corner of a box that turns clockwise by t about its centre rises by t / 2. 0.7 m is the distance of a corner from
-   the centre, 0.7 t its shift. */
+/* The left corner of a box that turns clockwise by t about its centre rises by t / 2. 0.7 m is the distance of a corner
+   from the centre, 0.7 t its shift. */
 TEST(a_separation_follows_the_turn_of_a_box) {
     const Second turned = step_to(0.05f, vec2(0, 0.495f), -0.04f, false),
                  far = step_to(0.05f, vec2(0, 0.495f), -0.08f, false);
@@ -244,8 +245,8 @@ TEST(a_copied_world_keeps_the_same_contacts) {
     assert_memory_equal(world_bodies(world), world_bodies(copy), (size_t)world_body_count(world) * sizeof(Body));
 }
 
-/* A box that slides is found anew from time to time, up to `keep` late: its contacts must not throw it up then. It stops
-   with its centre 0.02 m before the edge of a ledge, where rigid boxes stay level. */
+/* A box that slides is found anew from time to time, up to `keep` late: its contacts must not throw it up then. It
+   stops with its centre 0.02 m before the edge of a ledge, where rigid boxes stay level. */
 TEST(finding_contacts_anew_does_not_tilt_a_sliding_box) {
     for (int i = 0; i < KEEPING; i++) {
         OWN(Scene) *scene = scene_with("ledge", "past", -0.02);
@@ -256,8 +257,8 @@ TEST(finding_contacts_anew_does_not_tilt_a_sliding_box) {
     }
 }
 
-/* A tall box that rocks has a single contact most of the time. Were it kept, its corner would swing in from up to `keep` away,
-   and rocking would gain energy. */
+/* A tall box that rocks has a single contact most of the time. Were it kept, its corner would swing in from up to
+   `keep` away, and rocking would gain energy. */
 TEST(rocking_gains_no_energy) {
     for (int i = 0; i < KEEPING; i++) {
         for (int speed = 4; speed <= 16; speed += 2 * sampled(3)) {

@@ -204,8 +204,8 @@ TEST(islands_do_not_change_each_other) {
     }
 }
 
-/* Velocities that are computed anew between blocks are those that momentum goes on with: the rest of the run is the same but for
-   rounding errors. Alone, momentum would go on along what they changed by. */
+/* Velocities that are computed anew between blocks are those that momentum goes on with: the rest of the run is the
+   same but for rounding errors. Alone, momentum would go on along what they changed by. */
 TEST(refreshed_velocities_keep_the_course) {
     enum { SWEEPS = 200, EVERY = 8 };
     OWN(World) *world = make_struck_stack(false);
@@ -233,7 +233,8 @@ TEST(refreshed_velocities_keep_the_course) {
     }
 }
 
-/* Lanes have the bits of the pairs one by one: factors of groups, also below 0, what is measured, what is returned to. */
+/* Lanes have the bits of the pairs one by one: factors of groups, also below 0, what is measured, what is returned
+   to. */
 TEST(watched_sweeps_have_the_same_bits_in_lanes) {
     enum { SWEEPS = 8 };
     static RandomProblem random;

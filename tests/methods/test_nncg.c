@@ -46,8 +46,8 @@ typedef struct Plain {
     bool anew[CONTACTS_MAX + BODIES_MAX];
 } Plain;
 
-/* islands[contact_count]. Contacts of two bodies that do not move are islands, too: those of the same first body. Returns a
-   limit of the numbers. */
+/* islands[contact_count]. Contacts of two bodies that do not move are islands, too: those of the same first body.
+   Returns a limit of the numbers. */
 static int find_islands(const ContactProblem *problem, int *islands) {
     Islands found = {0};
     assert_true(islands_find(&found, problem));

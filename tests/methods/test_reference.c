@@ -142,9 +142,9 @@ static double fastest_spin(Reference *reference, const ContactProblem *problem) 
     return fastest;
 }
 
-/* Boxes that just touch part by a rounding error now and then, and lose contacts. The next step is then another problem:
-   with all contacts the tower stands; without one of the lowest box and one between the second and the third, a box
-   turns at more than 4 rad/s. */
+/* Boxes that just touch part by a rounding error now and then, and lose contacts. The next step is then another
+   problem: with all contacts the tower stands; without one of the lowest box and one between the second and the third,
+   a box turns at more than 4 rad/s. */
 TEST(contacts_lost_by_rounding_change_the_solution) {
     OWN(World) *world = make_shifted_tower();
     OWN(Reference) reference = {0};

@@ -6,8 +6,8 @@
 
 #include "methods/residual.h"
 
-/* Two boxes side by side on the ground, two contacts each: the velocities of the boxes are those that the contacts have,
-   but for their sign. */
+/* Two boxes side by side on the ground, two contacts each: the velocities of the boxes are those that the contacts
+   have, but for their sign. */
 typedef struct Boxes {
     ProblemBody bodies[3];
     ContactPoint contacts[4];
@@ -117,8 +117,8 @@ static void assert_with_friction(const ContactProblem *problem, double residual)
     assert_false(residual_of_visits_reaches(&sweeps, problem->contact_count, (float)(1.0001 * residual + 1e-6)));
 }
 
-/* Both boxes slide at 7 m/s. Without a normal impulse that is no error. With one of 1 N s, friction of 0.2 N s may brake
-   each contact of 1 kg by 0.2 m/s, and more does not. */
+/* Both boxes slide at 7 m/s. Without a normal impulse that is no error. With one of 1 N s, friction of 0.2 N s may
+   brake each contact of 1 kg by 0.2 m/s, and more does not. */
 TEST(slip_counts_as_far_as_friction_can_brake_it) {
     Boxes boxes;
     make_boxes(&boxes, 0, 0);

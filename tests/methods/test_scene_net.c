@@ -29,8 +29,9 @@ static Gained gained_by(const Known *known, int i) {
     return gained;
 }
 
-/* What a body gained is what the impulses, one way on a and the other way on b, gave it. Every visit rounds in the unit of
-   the velocities that there are, which are its neighbours', too: sweeps need not converge on random effective masses. */
+/* What a body gained is what the impulses, one way on a and the other way on b, gave it. Every visit rounds in the unit
+   of the velocities that there are, which are its neighbours', too: sweeps need not converge on random effective
+   masses. */
 static void assert_impulses_explain(const Known *known, double rounding) {
     double most = 0;
     for (int i = 0; i < known->random.problem.body_count; i++) most = fmax(most, gained_by(known, i).most);
@@ -163,7 +164,8 @@ TEST(no_answer_throws_a_body_away) {
         }
 }
 
-/* A bomb between two walls, pushed by both alike: nothing is left of that, nor of its own speed, which was rounded away. */
+/* A bomb between two walls, pushed by both alike: nothing is left of that, nor of its own speed, which was rounded
+   away. */
 TEST(pushes_that_cancel_are_no_answer) {
     static Known known;
     static const Slot slots[] = {{0, 1, 0}, {1, 2, 1}};

@@ -34,7 +34,8 @@ TEST(the_rms_is_over_the_bodies_that_move) {
     assert_int_equal(found.counted, 2);
 }
 
-/* By |dv|^2 + dspin^2 / 6: 36 / 6 is less than 7, and more than 5. Static bodies do not count; what is no number does. */
+/* By |dv|^2 + dspin^2 / 6: 36 / 6 is less than 7, and more than 5. Static bodies do not count; what is no number
+   does. */
 TEST(the_worst_body_has_the_largest_error) {
     const BodyVelocity spins = {{0, 0}, 6};
     assert_int_equal(error_of(spins, (BodyVelocity){{sqrtf(7), 0}, 0}).worst, 2);

@@ -113,7 +113,8 @@ TEST(tanh_is_odd) {
 }
 
 /* What these functions gave when the test was written, on x86-64 by gcc 12 and clang 14 at -O0 to -O3: a compiler or
-   processor that contracts, reorders or widens an operation gives other bits, of the small terms in one value of many. */
+   processor that contracts, reorders or widens an operation gives other bits, of the small terms in one value of
+   many. */
 TEST(bits_are_the_same_everywhere) {
     uint64_t hash = FNV1A64_START;
     for (uint32_t bits = 0x30000000; from_bits(bits) < 90; bits += 1009) {

@@ -73,9 +73,9 @@ static int count_active(const Case *made) {
     return count;
 }
 
-/* Central differences: their error is of the order of step^2, below 1e-8 here. Across the kink of a rectifier they would
-   be wrong: as many values are active on both sides of each step. Slopes that are not 0 are counted, or a lost term would
-   go unseen; below its kink a rectifier has none. */
+/* Central differences: their error is of the order of step^2, below 1e-8 here. Across the kink of a rectifier they
+   would be wrong: as many values are active on both sides of each step. Slopes that are not 0 are counted, or a lost
+   term would go unseen; below its kink a rectifier has none. */
 static void check_gradient(int layers, const int *widths, const Activation *activations) {
     OWN(Case) made = make_case(layers, widths, activations);
     FREED double *gradient = calloc((size_t)made.count, sizeof *gradient);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is written is read; what holds no network of scene-net, or an impossible one, is refused with place and reason. */
+/* What is written is read; what holds no network of scene-net, or an impossible one, is refused with place and
+   reason. */
 #include "net_files.h"
 #include "owned.h"
 #include "scene_net_layers.h"

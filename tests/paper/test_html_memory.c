@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whichever allocation fails, also of cmark-gfm, which aborts by itself: a page is written whole, or memory is named. */
+/* Whichever allocation fails, also of cmark-gfm, which aborts by itself: a page is written whole, or memory is
+   named. */
 #include "made.h"
 #include "library_allocations.h"
 

@@ -164,9 +164,9 @@ static Box moved(const Box *a, const Box *b, Vec2 axis, double way) {
     return away;
 }
 
-/* Moving a box by the smallest overlap separates the two. The engine's normal is along the axis of the smallest overlap,
-   or of a nearly equal one (clearly_better() in engine/box.c). Its points are as deep as that, or less deep where
-   clipping has cut the deepest corner off. */
+/* Moving a box by the smallest overlap separates the two. The engine's normal is along the axis of the smallest
+   overlap, or of a nearly equal one (clearly_better() in engine/box.c). Its points are as deep as that, or less deep
+   where clipping has cut the deepest corner off. */
 TEST(the_smallest_overlap_separates_the_boxes) {
     const double slack = 1e-4;
     uint32_t seed = 1;

@@ -69,8 +69,8 @@ static double weigh(bool quick, double *trainings) {
     return sum;
 }
 
-/* The time left follows from the weights, which are about seconds: those of the help, under a minute and some twenty minutes.
-   In the quick study, trainings took 12 of 30 s, measured as processor time. */
+/* The time left follows from the weights, which are about seconds: those of the help, under a minute and some twenty
+   minutes. In the quick study, trainings took 12 of 30 s, measured as processor time. */
 TEST(weights_are_the_seconds_of_the_help) {
     double trainings;
     assert_in_range((int)weigh(true, &trainings), 20, 60);

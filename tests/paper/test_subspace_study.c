@@ -17,7 +17,8 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
     return part->write(study, part->index, results, progress, error);
 }
 
-/* The part of the single box: the scene has two bodies that move, so one row of eight components, which lose nothing. */
+/* The part of the single box: the scene has two bodies that move, so one row of eight components, which lose
+   nothing. */
 TEST(a_scene_has_a_row_for_each_engine_and_size) {
     Pieces done;
     static const CsvLayout *const layout = &subspace_study_layout;

@@ -206,8 +206,8 @@ TEST(strips_are_refused_or_stopped) {
     assert_refused(system_strips_draw(systems, "/nowhere", true, folder(), NULL, &error), "/nowhere/stack.yaml");
 }
 
-/* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa, the
-   search for leaks crashes in one of a hundred runs. They watch strips and pages in other tests. */
+/* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa,
+   the search for leaks crashes in one of a hundred runs. They watch strips and pages in other tests. */
 TEST(a_page_plays_the_runs_of_the_strips) {
 #ifdef SANITIZED
     skip();

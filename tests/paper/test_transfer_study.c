@@ -44,7 +44,8 @@ TEST(errors_stand_beside_the_constant) {
     OWN(Dataset) *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
     assert_ok(drawn != NULL, error);
     const Dataset *const data[] = {NULL, NULL, pyramid};
-    /* An untrained network predicts anything; a trained one, with inputs of the contact, beats the constant predictor. */
+    /* An untrained network predicts anything; a trained one, with inputs of the contact, beats the constant
+       predictor. */
     const TransferRow begun = run(data, (TransferStudy){.seed = 3, .launches = 2});
     const TransferRow trained = run(data, (TransferStudy){.seed = 3, .launches = 2, .iterations = 40});
     assert_near(begun.constant, constant_by_hand(drawn), 1e-9);

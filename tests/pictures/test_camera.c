@@ -58,7 +58,8 @@ TEST_WITH(what_stands_and_what_strikes_is_held, make, destroy) {
         }
 }
 
-/* Wherever a body flies after the impact, or less than half of all bodies without one, every frame has the same view. */
+/* Wherever a body flies after the impact, or less than half of all bodies without one, every frame has the same
+   view. */
 TEST_WITH(a_body_that_flies_off_changes_nothing, make, destroy) {
     static const float far[] = {20, 1e3F, 1e5F, 1e30F, NAN};
     for (int impact = 0; impact < 2; impact++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All letters of films can be read: of panels, time lines and both cards, none is cut, shortened, on another one, on a box or
-   arrow, or across the edge of a panel or a rule. */
+/* All letters of films can be read: of panels, time lines and both cards, none is cut, shortened, on another one, on a
+   box or arrow, or across the edge of a panel or a rule. */
 #include "testing.h"
 
 #include "made.h"
@@ -89,7 +89,8 @@ static int ink_on(const Drawing *drawing, const GlyphInstance *glyph, size_t thi
     return count;
 }
 
-/* What is wrong with a letter; NULL: nothing. What is below the ground on which a letter lies as a whole does not count. */
+/* What is wrong with a letter; NULL: nothing. What is below the ground on which a letter lies as a whole does not
+   count. */
 static const char *fault_of(const Film *film, const GlyphInstance *glyph) {
     const Drawing *drawing = &film->drawing;
     const size_t things = drawing->rect_count + drawing->shape_count;

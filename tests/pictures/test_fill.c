@@ -25,8 +25,8 @@ static void include_body(Extent *seen, const Camera *camera, const Trajectory *r
     seen->bottom = fmin(seen->bottom, camera->scale * all.bottom - camera->top);
 }
 
-/* The share of a panel's width or height, the larger, that the boxes and static bodies in view cover together, in any of the
-   frames; from the ground, which is at 0 m or below, if they are in the air. */
+/* The share of a panel's width or height, the larger, that the boxes and static bodies in view cover together, in any
+   of the frames; from the ground, which is at 0 m or below, if they are in the air. */
 static double share_filled(const Picture *picture, int first, int last, bool with_bomb) {
     const Trajectory *run = picture->runs[0];
     const Rect *panel = &picture->layout.panels[0];

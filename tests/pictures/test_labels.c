@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Labels stand in their boxes however these are turned, scale with them, are left out where they could not be read, and stand out
-   from every colour of a box. */
+/* Labels stand in their boxes however these are turned, scale with them, are left out where they could not be read, and
+   stand out from every colour of a box. */
 #include "testing.h"
 #include "owned_drawings.h"
 

@@ -7,8 +7,8 @@
 
 enum { NARROWEST = 320, WIDEST = 1600, STEP = 8 };
 
-/* Whether the layout is the one for the rows drawn. The scales, and by them the width of the entries, depend on the room
-   that rows leave. */
+/* Whether the layout is the one for the rows drawn. The scales, and by them the width of the entries, depend on the
+   room that rows leave. */
 static bool has_room_for_its_rows(const Trajectory *const *runs, const RenderLook *look, int width, int height) {
     Error error = {0};
     Picture picture;

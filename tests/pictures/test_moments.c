@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of a video: counts, order and fractions; films of any frame rate play in real time, and films of a given length
-   last as long. */
+/* The order of a video: counts, order and fractions; films of any frame rate play in real time, and films of a given
+   length last as long. */
 #include "owned.h"
 
 #include "pictures/render.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Long and high scenes fill their panels, in pictures of all shapes, and the grid is the one in which they are largest. */
+/* Long and high scenes fill their panels, in pictures of all shapes, and the grid is the one in which they are
+   largest. */
 #include "testing.h"
 #include "owned_drawings.h"
 

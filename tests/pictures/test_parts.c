@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whatever a picture draws outside its panels is in one of its parts, and nothing but the panels' content is in panels. */
+/* Whatever a picture draws outside its panels is in one of its parts, and nothing but the panels' content is in
+   panels. */
 #include "testing.h"
 #include "owned_drawings.h"
 

@@ -38,8 +38,8 @@ static Lab seen(uint32_t colour, int sight) {
 
 static double distance(Lab a, Lab b) { return sqrt(pow(a.l - b.l, 2) + pow(a.a - b.a, 2) + pow(a.b - b.b, 2)); }
 
-/* Of each method with a colour of its own, the eight most compared first; of seven others, which take all spare ones; of the
-   bomb; of contacts. */
+/* Of each method with a colour of its own, the eight most compared first; of seven others, which take all spare ones;
+   of the bomb; of contacts. */
 enum { SIGHTS = 4, OTHERS = 7, MOST = COLOURS_MAX + 2 };
 
 typedef struct Colours {
@@ -80,8 +80,8 @@ static Colours colours_of(LookTheme theme) {
     return all;
 }
 
-/* 2.3 is what a trained eye just notices; boxes are small and apart. The bomb also has a sign on it. Those that are compared most are
-   further apart, and so are all for normal sight. */
+/* 2.3 is what a trained eye just notices; boxes are small and apart. The bomb also has a sign on it. Those that are
+   compared most are further apart, and so are all for normal sight. */
 TEST(colours_of_boxes_and_the_bomb_differ_for_all_readers) {
     for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++)
         for (int sight = 0; sight < SIGHTS; sight++) {

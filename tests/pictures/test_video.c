@@ -136,8 +136,8 @@ TEST(films_state_their_colours) {
 
 static double light_of(const uint8_t rgb[3]) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
 
-/* The root of the mean square, in levels of 255, by which the light of a film's frames differs from the pictures'. Colours
-   have half the pixels. */
+/* The root of the mean square, in levels of 255, by which the light of a film's frames differs from the pictures'.
+   Colours have half the pixels. */
 static double film_error(const VideoOptions *options) {
     enum { PIXELS = WIDTH * HEIGHT };
     char from[300], text[256], decoded[300];

@@ -33,8 +33,8 @@ static bool has_curves(const Typeface *face, const Glyph *glyph) {
     return false;
 }
 
-/* Straight edges differ by the rounding of a level; FreeType draws curves as lines that may be a fifth of a pixel (10 of 51
-   levels) away. Digits are left out: those of the atlas have equal widths. */
+/* Straight edges differ by the rounding of a level; FreeType draws curves as lines that may be a fifth of a pixel (10
+   of 51 levels) away. Digits are left out: those of the atlas have equal widths. */
 TEST(own_glyphs_are_those_of_freetype) {
     static const Typeface *const faces[FONT_FACES] = {&type_regular, &type_semibold};
     int compared = 0;

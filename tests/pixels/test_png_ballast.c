@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a file has beside its pixels does not matter, whatever its size; what its pixels have must be sound, however it is cut
-   into chunks. Each file is read by both decoders: libpng's is forced by Adam7, which of one pixel is the plain order. */
+/* What a file has beside its pixels does not matter, whatever its size; what its pixels have must be sound, however it
+   is cut into chunks. Each file is read by both decoders: libpng's is forced by Adam7, which of one pixel is the plain
+   order. */
 #include "owned.h"
 
 #define PNG_PARTS_ROOM (1 << 23)

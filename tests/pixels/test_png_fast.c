@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fast decoder against libpng, on thousands of files: of every layout, filter, compression and split into chunks; then
-   the same files damaged, with checksums that are made right again. What it accepts, libpng accepts, with the same pixels;
-   and it accepts what it is for. */
+/* The fast decoder against libpng, on thousands of files: of every layout, filter, compression and split into chunks;
+   then the same files damaged, with checksums that are made right again. What it accepts, libpng accepts, with the same
+   pixels; and it accepts what it is for. */
 #include "owned.h"
 
 #include "regression/compare.h"
@@ -208,8 +208,8 @@ static void make_checksum(uint8_t *chunk) {
     store_number(chunk + 8 + length, (uint32_t)crc32(0, chunk + 4, length + 4));
 }
 
-/* Changes bytes of a chunk, its type included, and makes its checksum right. In headers and at the ends of chunks, where
-   the stream's own checksum is, more often than elsewhere. */
+/* Changes bytes of a chunk, its type included, and makes its checksum right. In headers and at the ends of chunks,
+   where the stream's own checksum is, more often than elsewhere. */
 static void change_chunk(uint8_t *chunk) {
     uint32_t length = png_number(chunk), from = draw(16) == 0 ? 0 : 4;
     if (from == 4 && length == 0) return;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files that are larger than a piece: they give what whole files give, and a change of a file never looks like success. */
+/* Files that are larger than a piece: they give what whole files give, and a change of a file never looks like
+   success. */
 #include "owned.h"
 
 #include "base/file.h"

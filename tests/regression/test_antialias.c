@@ -183,8 +183,8 @@ TEST(real_changes_are_detected) {
         for (int k = 0; k < 6; k++) assert_difference(&shapes[i], &plain, &changes[k]);
 }
 
-/* The case of pixelmatch's issue 74: a ring or line of one pixel, with exact coverage and with 4 x 4 samples, is the same;
-   without it, or with a gap in it, the picture is another. */
+/* The case of pixelmatch's issue 74: a ring or line of one pixel, with exact coverage and with 4 x 4 samples, is the
+   same; without it, or with a gap in it, the picture is another. */
 TEST(rings_and_lines_of_one_pixel_are_not_hidden) {
     static const TestShape thin[] = {
         {RING, 0, 1, 5}, {RING, 0, 1, 8}, {RING, 0, 1, 17}, {LINE, 0, 1, 18}, {LINE, 31, 1, 18}};
@@ -271,8 +271,8 @@ static Image *outlined(double angle, double width, double move, const int line[3
     return image;
 }
 
-/* An outline that moves also moves the border of what is on its sides. A few of one pixel change by more than a part of an edge may. It
-   must not fade, vanish or change its colour. */
+/* An outline that moves also moves the border of what is on its sides. A few of one pixel change by more than a part of
+   an edge may. It must not fade, vanish or change its colour. */
 TEST(outlines_move_between_two_colours) {
     static const int dark[3] = {50, 50, 50}, red[3] = {120, 40, 40};
     static const double moves[] = {-0.25, 0.15, 0.25}, angles[] = {0, 0.3, 0.785, 1.5707963267948966};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What happened in pictures of which nothing else is known. Each is drawn from seeds, so the right name is known: glyphs of
-   random pixels and discs with exact coverage, on plain, shaded and patterned ground. */
+/* What happened in pictures of which nothing else is known. Each is drawn from seeds, so the right name is known:
+   glyphs of random pixels and discs with exact coverage, on plain, shaded and patterned ground. */
 #include "content_changes.h"
 #include "made.h"
 

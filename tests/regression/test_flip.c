@@ -189,8 +189,8 @@ static void assert_gaussian(const FlipKernel *kernel, double deviation) {
         assert_near(middle[k] / middle[0], exp(-k * k / (2 * width * width)), 1e-6);
 }
 
-/* The constants of the paper's table 1: a1, b1, a2, b2 of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees, and the width
-   of a feature, 0.082 degrees, which is two deviations. A filter is the sum of both Gaussians over all pixels. */
+/* The constants of the paper's table 1: a1, b1, a2, b2 of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees, and the
+   width of a feature, 0.082 degrees, which is two deviations. A filter is the sum of both Gaussians over all pixels. */
 TEST(filters_have_the_published_widths) {
     static const double scale[FLIP_CHANNELS][2] = {{1, 0}, {1, 0}, {34.1, 13.5}},
                         spread[FLIP_CHANNELS][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}};

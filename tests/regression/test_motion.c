@@ -95,7 +95,8 @@ static void write_shifted(Image *image, bool page, int right, int down) {
         }
 }
 
-/* A whole picture that is shifted is one region, of any texture and in any direction; but nothing is told that another change breaks. */
+/* A whole picture that is shifted is one region, of any texture and in any direction; but nothing is told that another
+   change breaks. */
 TEST(a_shift_of_everything_is_one_region) {
     static const int shifts[][2] = {{3, 0}, {0, 5}, {2, 3}, {-7, 4}, {-1, -16}};
     for (size_t i = 0; i < 2 * sizeof shifts / sizeof shifts[0]; i++)

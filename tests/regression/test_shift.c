@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Content that moved by whole pixels passes; content that appeared, vanished or changed does not. Limits of a region. */
+/* Content that moved by whole pixels passes; content that appeared, vanished or changed does not. Limits of a
+   region. */
 #include "made.h"
 
 #include "regression/compare.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What compare takes from a foreign manifest.json: names that are names, not commands to a terminal or a log, and a view
-   that does not come after megabytes of other members. */
+/* What compare takes from a foreign manifest.json: names that are names, not commands to a terminal or a log, and a
+   view that does not come after megabytes of other members. */
 #include "testing.h"
 
 #include "regression/naming.h"

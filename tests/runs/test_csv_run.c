@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs as CSV: what is written is read back bit by bit; what a file does not state is assumed and noted; what cannot be a
-   run is refused with its line. */
+/* Runs as CSV: what is written is read back bit by bit; what a file does not state is assumed and noted; what cannot be
+   a run is refused with its line. */
 #include "owned.h"
 
 #include "example.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs of other programs: position, angle, size and dt are enough; what is absent has a meaning; wrong names are named. */
+/* Runs of other programs: position, angle, size and dt are enough; what is absent has a meaning; wrong names are
+   named. */
 #include "made.h"
 
 #include "example.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes from the ends of what a file may hold (scenes/scene_read.c): thin and huge boxes, feathers under a million tonnes,
-   shots and spins beyond all reason, half of it inside each other. What a method makes of them may be nonsense; it may
-   not be a number that is none, nor be kept where a step is refused. */
+/* Scenes from the ends of what a file may hold (scenes/scene_read.c): thin and huge boxes, feathers under a million
+   tonnes, shots and spins beyond all reason, half of it inside each other. What a method makes of them may be nonsense;
+   it may not be a number that is none, nor be kept where a step is refused. */
 #include "made.h"
 
 #include "engine/uniform.h"
@@ -47,8 +47,8 @@ static void make_scene(Scene *scene, BodyDef bodies[BOXES_MAX], uint32_t *seed) 
     bodies[0].fixed = true;
 }
 
-/* 1e9 kg on feathers, one of them as wide as a mountain: float32 cannot add up what passes through them, and a thousand of
-   the engine's sweeps make more of it each time. */
+/* 1e9 kg on feathers, one of them as wide as a mountain: float32 cannot add up what passes through them, and a thousand
+   of the engine's sweeps make more of it each time. */
 static void make_heap(Scene *scene, BodyDef bodies[BOXES_MAX]) {
     const BodyDef heap[] = {
         {.size = {20, 1}, .fixed = true, .position = {0, -0.5f}},

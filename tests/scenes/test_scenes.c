@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every key of the format; hash and world of a scene. (The bodies of those in scenes/: their runs in golden/trajectories.) */
+/* Every key of the format; hash and world of a scene. (The bodies of those in scenes/: their runs in
+   golden/trajectories.) */
 #include "scene_text.h"
 #include "made.h"
 

@@ -34,9 +34,9 @@ static inline void draw(void) {
     assert_ok(stability_figures_write(temporary_folder, NULL, NULL, &error), error);
 }
 
-/* Defines areas(svg, "#RRGGBB"): filled areas of a colour, each [left, top, right, bottom] in mm; count(svg, "#RRGGBB");
-   texts(svg); caption(name); and cells("Title", colour): the parts of this colour in a row of the borders figure, from the
-   left; holds, falls, ...: colours. */
+/* Defines areas(svg, "#RRGGBB"): filled areas of a colour, each [left, top, right, bottom] in mm; count(svg,
+   "#RRGGBB"); texts(svg); caption(name); and cells("Title", colour): the parts of this colour in a row of the borders
+   figure, from the left; holds, falls, ...: colours. */
 #define SVG_FUNCTIONS                                                                                          \
     "import sys, re, xml.etree.ElementTree as tree\n"                                                          \
     "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                                  \

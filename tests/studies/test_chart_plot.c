@@ -311,7 +311,8 @@ static void expect_ranks(const char *rows, const char *highlight, const int *ran
 
 TEST(six_lines_at_most_are_in_colour) {
     enum { G = CHART_GREY, H = CHART_HIDDEN, C = CHART_COLOURED };
-    /* The engine, avbd (two corners of the front of those that learn nothing, nncg has one), scene-net and its twin, interior. */
+    /* The engine, avbd (two corners of the front of those that learn nothing, nncg has one), scene-net and its twin,
+       interior. */
     expect_ranks(many_methods, NULL, (const int[]){C, G, C, C, C, G, H, C}, 8);
     /* sain is asked for: there is no room for both twins. */
     expect_ranks(many_methods, "sain", (const int[]){C, G, C, C, C, C, H, C}, 8);

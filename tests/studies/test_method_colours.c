@@ -95,7 +95,8 @@ static void check_figure(Trajectory *const *runs, const RunColours *colours, int
     sketch_free(&sketch);
 }
 
-/* Of at_once runs each: the last picture has the four whose colours depend on what is beside them, so no other has any of these. */
+/* Of at_once runs each: the last picture has the four whose colours depend on what is beside them, so no other has any
+   of these. */
 static int next_picture(int first, int at_once, int last) {
     if (first + at_once >= last) return first < last ? last : last + 1;
     return first + 2 * at_once > last ? last - at_once : first + at_once;

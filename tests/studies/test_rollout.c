@@ -30,8 +30,8 @@ TEST(the_reference_has_no_error) {
     free_scores(scores);
 }
 
-/* A box that has sunk by 5 mm catches at a seam in the engine's run. The reference, whose own contacts are mended, must solve
-   these steps, not others: it is scored against itself. */
+/* A box that has sunk by 5 mm catches at a seam in the engine's run. The reference, whose own contacts are mended, must
+   solve these steps, not others: it is scored against itself. */
 TEST(frozen_steps_have_the_contacts_of_the_engine) {
     BodyDef bodies[7];
     for (int i = 0; i < 6; i++) bodies[i] = (BodyDef){.size = {1, 1}, .fixed = true, .position = {(float)i, -0.5f}};

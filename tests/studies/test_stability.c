@@ -49,9 +49,9 @@ TEST(studies_scan_parameters_of_their_scenes) {
     }
 }
 
-/* A stack of n leans by at most width / n a box; a box tips where its centre passes its corner, or where a turn about the corner
-   (inertia m (w^2 + h^2) / 3, speed of the top h w) lifts it that far; it slides where the slope exceeds the friction, and
-   slides on by v^2 / (2 mu g), here to the edge of the last tile. */
+/* A stack of n leans by at most width / n a box; a box tips where its centre passes its corner, or where a turn about
+   the corner (inertia m (w^2 + h^2) / 3, speed of the top h w) lifts it that far; it slides where the slope exceeds the
+   friction, and slides on by v^2 / (2 mu g), here to the edge of the last tile. */
 TEST(rigid_answers_follow_from_the_scenes) {
     OWN(Scene) *stairs = read_scene("tilted_stack"), *tip = read_scene("tip"), *kick = read_scene("kick");
     OWN(Scene) *ramp = read_scene("friction_ramp"), *seams = read_scene("seams");

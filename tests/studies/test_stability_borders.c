@@ -23,8 +23,8 @@ TEST(borders_are_drawn_as_in_the_table) {
               "expect(names, ['nncg', 'engine:k=10', 'momentum', 'scene-net', 'pair-net'], 'order')\n");
 }
 
-/* A method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26, in a range of 15 to 30; the other holds
-   throughout. Between 15 and 16 it is undecided. */
+/* A method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26, in a range of 15 to 30; the
+   other holds throughout. Between 15 and 16 it is undecided. */
 TEST(parts_end_at_the_borders) {
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,15,16,falls\na,engine,,h,,20,19,sinks\na,engine,,h,,25,26,falls\n"
                                         "a,nncg,,h,,30,,settles\n");
@@ -59,8 +59,8 @@ TEST(undecided_values_are_pale) {
               "expect(texts(read('borders')).count('undecided'), 1, 'legend')\n");
 }
 
-/* Of more studies than three, methods are columns. The reference is first; as far as it holds counts, not the whole range. A study
-   without it counts over the whole range. */
+/* Of more studies than three, methods are columns. The reference is first; as far as it holds counts, not the whole
+   range. A study without it counts over the whole range. */
 TEST(methods_are_counted_beside_the_reference) {
     start_afresh(MAPS ONE_CELL,
                  BORDERS "a,engine,,h,,10,20,falls\na,nncg,,h,,20,30,falls\na,reference,,h,,20,30,falls\n"
@@ -91,8 +91,8 @@ TEST(methods_that_do_not_apply_are_left_out_and_named) {
               "assert 'Left out' not in caption('borders') and 'not applicable' not in texts(read('borders'))\n");
 }
 
-/* Heights of the study are 2 to 40, rates 480 to 20; of its rows, 11 to 16. Names with parameters that the study does not
-   have are another program's. */
+/* Heights of the study are 2 to 40, rates 480 to 20; of its rows, 11 to 16. Names with parameters that the study does
+   not have are another program's. */
 TEST(a_range_is_that_of_its_study) {
     static const struct {
         const char *row, *range, *title;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Times of methods whose work is known. The system's clock is replaced by one that counts: reading it takes some nanoseconds,
-   so does collision detection, and the solver of the method "known" takes what its settings say. So every time that a study
-   writes is known exactly. */
+/* Times of methods whose work is known. The system's clock is replaced by one that counts: reading it takes some
+   nanoseconds, so does collision detection, and the solver of the method "known" takes what its settings say. So every
+   time that a study writes is known exactly. */
 #include "made.h"
 
 #include "methods/sweeps.h"
@@ -201,7 +201,8 @@ TEST(a_time_that_varies_more_than_the_others_is_measured_again_and_marked) {
     }
 }
 
-/* Three times as much as the middle one of the others is not more than that; nor is a tenth, or the error of a clock. */
+/* Three times as much as the middle one of the others is not more than that; nor is a tenth, or the error of a
+   clock. */
 TEST(what_varies_like_the_others_is_measured_once) {
     static const char wide[] = "known:a=90000,b=100000,c=110000", wider[] = "known:a=70000,b=100000,c=131000",
                       narrow[] = "known:a=91000,b=100000,c=110000", still[] = "known:a=100000,b=100000,c=100000",

@@ -10,7 +10,8 @@ TEST(a_resting_box_settles) {
     assert_reading(trial_end(&trial), VERDICT_SETTLES, -1, 1, 0, 0, "m/s");
 }
 
-/* A box of any mass that is moved at this speed, up or turning; the limit of a box of 1 m is sqrt(2e-4 10) = 44.72 mm/s. */
+/* A box of any mass that is moved at this speed, up or turning; the limit of a box of 1 m is sqrt(2e-4 10) = 44.72
+   mm/s. */
 static VerdictReading run_at_speed(double mm, bool turning, float mass) {
     Trial trial;
     trial_begin(&trial);

@@ -26,7 +26,8 @@ TEST(energy_may_not_exceed_what_was_brought) {
     assert_reading(lifted_by(0.0015f), VERDICT_EXPLODES, -1, 101, 0.015, 1e-5, "J");
 }
 
-/* A skin of 7.5 mm lifts the box by 15 mm; what exceeds that by more than 1.4 mm (alone: what gravity does in a step) or 0.1 m (beside) explodes. */
+/* A skin of 7.5 mm lifts the box by 15 mm; what exceeds that by more than 1.4 mm (alone: what gravity does in a step)
+   or 0.1 m (beside) explodes. */
 static VerdictReading lifted_with_skin(float rise, float skin, bool alone) {
     Trial trial;
     trial_begin(&trial);
@@ -72,7 +73,8 @@ TEST(a_skin_lifts_each_box_of_a_pile) {
     }
 }
 
-/* From 3 m to 0.5 m, 25 J are lost: 5% of them, 0.125 m, may come back. The box has lost its 25 J for a whole second. */
+/* From 3 m to 0.5 m, 25 J are lost: 5% of them, 0.125 m, may come back. The box has lost its 25 J for a whole
+   second. */
 static VerdictReading regains(float rise) {
     Trial trial;
     begin_alone(&trial);

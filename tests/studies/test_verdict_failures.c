@@ -115,7 +115,8 @@ TEST(exploding_exceeds_the_runs_own_bound_and_the_converged_run) {
     assert_verdict(run_with_energy(0.0140, 0, 1e-6), VERDICT_EXPLODES);
 }
 
-/* A box at rest has a side of 10 m^2/s^2 to lose: five times that is no impact, however much energy a converged run has. */
+/* A box at rest has a side of 10 m^2/s^2 to lose: five times that is no impact, however much energy a converged run
+   has. */
 TEST(a_burst_explodes_beside_any_run) {
     for (int side = 0; side < 2; side++) {
         Trial trial;

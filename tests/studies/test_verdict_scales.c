@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The verdict on a run is that of its copies: lengths s times as long with times the root of s, masses m times as large. */
+/* The verdict on a run is that of its copies: lengths s times as long with times the root of s, masses m times as
+   large. */
 #include "made.h"
 #include "sanitized.h"
 #include "studies/trial.h"

@@ -15,7 +15,8 @@ void samples_add(Samples *samples, double value);
 double samples_quantile(const Samples *samples, double share);
 double samples_median(const Samples *samples);
 
-/* Seconds of processor time, which does not count pauses on a busy machine (a long run has more of them than a short one). */
+/* Seconds of processor time, which does not count pauses on a busy machine (a long run has more of them than a short
+   one). */
 double processor_seconds(void);
 
 /* Ends the program with a reason. */

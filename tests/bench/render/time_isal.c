@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prints the seconds that a sequence takes in two processes, from their start until the files are on disk. Last
-   argument: "own" for twinbox's encoder, "isal" for ISA-L (igzip) at level 1 without filters. The rest is the same. ISA-L
-   gets the same advantages: rows are kept and only changed ones are packed again, it computes the checksums, and its
-   output is not copied. */
+   argument: "own" for twinbox's encoder, "isal" for ISA-L (igzip) at level 1 without filters. The rest is the same.
+   ISA-L gets the same advantages: rows are kept and only changed ones are packed again, it computes the checksums, and
+   its output is not copied. */
 #include "runs.h"
 
 #include "base/file.h"

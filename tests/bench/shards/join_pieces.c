@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* join_pieces FOLDER COUNT make|merge: the pieces of a study that is as large as wanted, each with the rows of a cell of a
-   map for four methods; or the tables that they give. */
+/* join_pieces FOLDER COUNT make|merge: the pieces of a study that is as large as wanted, each with the rows of a cell
+   of a map for four methods; or the tables that they give. */
 #include "studies/piece_tables.h"
 
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What libraries store in memory of twinbox: the memory sanitizer does not see their stores, so it is told of them here. The
-   linker hands twinbox's calls to these functions. A program that does not use a library does not link it: the calls
-   are weak. */
+/* What libraries store in memory of twinbox: the memory sanitizer does not see their stores, so it is told of them
+   here. The linker hands twinbox's calls to these functions. A program that does not use a library does not link it:
+   the calls are weak. */
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multilarge_nlinear.h>
 #include <jansson.h>
@@ -15,7 +15,8 @@
 
 #pragma weak png_get_rowbytes
 
-/* A library's own variables lie where functions of twinbox had theirs: what is below this frame counts as initialised. */
+/* A library's own variables lie where functions of twinbox had theirs: what is below this frame counts as
+   initialised. */
 static void begin_call(void) {
     enum { DEPTH = 1 << 16 };
     char *here = __builtin_frame_address(0);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The memory sanitizer would take all memory that a library allocates and fills for uninitialised, as the library's stores
-   are not seen. So only memory that twinbox itself allocates begins uninitialised: the linker hands its calls to the
-   functions below, and the options leave the libraries' calls alone. */
+/* The memory sanitizer would take all memory that a library allocates and fills for uninitialised, as the library's
+   stores are not seen. So only memory that twinbox itself allocates begins uninitialised: the linker hands its calls to
+   the functions below, and the options leave the libraries' calls alone. */
 #include <sanitizer/allocator_interface.h>
 #include <sanitizer/msan_interface.h>
 #include <stddef.h>

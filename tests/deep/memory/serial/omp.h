@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OpenMP with one thread, for the memory sanitizer: OpenMP's library is built without it, and what that library passes to a
-   thread would count as uninitialised. */
+/* OpenMP with one thread, for the memory sanitizer: OpenMP's library is built without it, and what that library passes
+   to a thread would count as uninitialised. */
 #pragma once
 
 static inline int omp_get_max_threads(void) { return 1; }
