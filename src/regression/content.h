@@ -143,10 +143,35 @@ Motion content_motion(const Patch *const *patches, int count, const Motion *hint
    `pixels` of them differ. ERROR_MEMORY. */
 bool content_shift(const Image *expected, const Image *actual, int64_t pixels, Motion *shift, Error *error);
 
-/* Whether the actual picture is the expected one, shifted: all that both have is equal. */
-bool content_is_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift);
+/* What a shift explains of the difference: its pixels and bounds. They become IGNORED_RULE in `left`, a mask. *missed: what it does
+   not explain, without a strip that it uncovers, where anything may be. */
+enum { SHIFT_STRIP = 16 }; /* pixels: strips up to this wide belong to the shift */
+ImageRegion content_mark_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift,
+                                 uint8_t *left, int64_t *missed);
 
-/* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its first rows that differ tell; then
-   it is worth being read as a whole. */
-bool content_may_be_shifted(const Image rows[2], const ContentTraits *traits, int width, int height, bool *may,
-                            Error *error);
+/* Places of two pictures by a hash of what they show there. */
+typedef struct Anchor {
+    uint64_t hash;
+    int x, y;
+} Anchor;
+
+typedef struct Anchors {
+    Anchor *list;
+    size_t count, capacity;
+    uint64_t every; /* one of so many windows, a power of two */
+} Anchors;
+
+/* Rows that differ, by some of their pixels, for a shift up or down. */
+typedef struct ShiftRows {
+    Anchors of[2]; /* pictures */
+} ShiftRows;
+
+bool shift_rows_add(ShiftRows *rows, int y, const uint8_t *a, const uint8_t *b, int width,
+                    Error *error);        /* ERROR_MEMORY */
+Motion shift_rows_count(ShiftRows *rows); /* 0, 0: they do not agree. Once only. */
+void shift_rows_end(ShiftRows *rows);
+
+/* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its rows, or `first`, the first ones
+   that differ, tell; then it is worth being read as a whole. */
+bool content_may_be_shifted(const Image first[2], ShiftRows *rows, const ContentTraits *traits, int width, int height,
+                            bool *may, Error *error);
