@@ -7,12 +7,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CHANNELS = 4, NEAR = 3, STARTS_MAX = 80, DESCENTS = 3, STEPS_MAX = 40, PROFILE_MAX = 2048, PATCHES_MAX = 2 };
+enum { CHANNELS = 4, STARTS_MAX = 17, DESCENTS = 3, STEPS_MAX = 40, PROFILE_MAX = 2048, PATCHES_MAX = 2 };
 
 typedef struct Search {
     const Patch *const *patches;
     int patch_count;
-    Motion edges; /* the shift of the edges; 0, 0: not known */
     int starts;
     Motion start[STARTS_MAX];
 } Search;
@@ -119,7 +118,6 @@ static void add_sides(Search *search) {
     if (search->patch_count == 1 && width < PROFILE_MAX && height < PROFILE_MAX) {
         right[3] = edge_shift(patch, false);
         down[3] = edge_shift(patch, true);
-        search->edges = (Motion){right[3], down[3], 0};
     }
     for (int i = 0; i < 16; i++) add_start(search, right[i % 4], down[i / 4]);
 }
@@ -207,27 +205,6 @@ static Motion refined(const Search *search, Motion base) {
     return found;
 }
 
-/* Whether a pixel of this patch came from where the picture changed, or went there. Else another place looks the same by chance:
-   the period of a pattern. */
-static bool has_partner(const Patch *patch, const Dot *dot, int right, int down) {
-    const int sign = dot->kind == DOT_APPEARS ? -1 : 1, x = dot->x + sign * right, y = dot->y + sign * down;
-    const Image *a = patch->pictures[0], *b = patch->pictures[1];
-    return x >= 0 && y >= 0 && x < a->width && y < a->height &&
-           image_pixel_difference(a, b, (size_t)y * (size_t)a->width + (size_t)x) > 0;
-}
-
-static bool has_partners(const Search *search, const Motion *motion) {
-    enum { NEARBY = 1, SHARE = 10 };
-    const int right = (int)rint(motion->right), down = (int)rint(motion->down);
-    if ((abs(right) <= NEARBY && abs(down) <= NEARBY) || search->patch_count > 1) return true;
-    if (right == (int)search->edges.right && down == (int)search->edges.down) return true;
-    int all = 0, found = 0;
-    for (int i = 0; i < search->patch_count; i++)
-        for (int k = 0; k < search->patches[i]->count; k++, all++)
-            found += has_partner(search->patches[i], &search->patches[i]->dots[k], right, down);
-    return found * SHARE >= all;
-}
-
 /* The smallest offset towards this one that explains as much, by steps that halve: of an even area, all larger ones do. */
 static Motion shrunk(const Search *search, Motion found) {
     enum { LONGEST = 1 << 11 };
@@ -239,7 +216,7 @@ static Motion shrunk(const Search *search, Motion found) {
                 if (fabs(*along) < step) break;
                 *along -= copysign(step, *along);
                 content_motion_judge(search, &tried);
-                if (tried.explained < found.explained || !has_partners(search, &tried)) break;
+                if (tried.explained < found.explained) break;
                 found = tried;
             }
     return found;
@@ -250,8 +227,6 @@ Motion content_motion(const Patch *const *patches, int count, const Motion *hint
     Search search = {.patches = patches, .patch_count = count};
     add_start(&search, hint->right, hint->down);
     add_sides(&search);
-    for (int k = 0; k < (2 * NEAR + 1) * (2 * NEAR + 1); k++)
-        add_start(&search, k % (2 * NEAR + 1) - NEAR, k / (2 * NEAR + 1) - NEAR);
     qsort(search.start, (size_t)search.starts, sizeof *search.start, by_explained);
     Motion best = {0, 0, 0};
     for (int i = 0; i < DESCENTS && i < search.starts && best.explained < EXACT; i++) {
@@ -260,7 +235,7 @@ Motion content_motion(const Patch *const *patches, int count, const Motion *hint
         descend(&search, &found);
         found = shrunk(&search, found);
         if (found.explained < EXACT) found = refined(&search, found);
-        if (found.explained > best.explained && has_partners(&search, &found)) best = found;
+        if (found.explained > best.explained) best = found;
     }
     const Motion part = best.explained < EXACT ? refined(&search, (Motion){0, 0, 0}) : best;
     return part.explained > best.explained ? part : best;
