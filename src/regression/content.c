@@ -287,7 +287,7 @@ static bool name_shifted(const Image *const pictures[2], const uint8_t *masked, 
 static bool find_shifted(const Image *const pictures[2], const uint8_t *masked, const ImageDifference *difference,
                          Motion *shift, FrameChanges *changes, bool *named, Error *error) {
     enum { FEW = 4 };
-    if (!content_shift(pictures[0], pictures[1], difference->pixels, shift, error)) return false;
+    if (!content_shift(pictures[0], pictures[1], pictures[0]->width, difference->pixels, shift, error)) return false;
     const double far = fmax(fabs(shift->right), fabs(shift->down));
     const bool many = changes->regions.kept >= FEW;
     *named = far > 0 && changes->count == 0 && (many || changes->regions.kept == 1 || far <= SHIFT_STRIP);
@@ -339,14 +339,15 @@ bool content_name_by_ground(const Image *expected, const Image *actual, int firs
 
 bool content_may_be_shifted(const Image rows[2], ShiftRows *votes, const ContentTraits *traits, int width, int height,
                             bool *may, Error *error) {
-    enum { ENOUGH = 32, LITTLE = 1 << 20 };
+    enum { ENOUGH = 32, COLUMNS = 512, LITTLE = 1 << 20 };
     const int64_t pixels = (int64_t)width * height;
     *may = kind_of_most(traits) == CHANGE_UNSURE && pixels <= CONTENT_WHOLE_MAX;
     if (!*may || pixels <= LITTLE) return true;
     Motion shift = shift_rows_count(votes);
     if (shift.down == 0 && rows[0].height >= ENOUGH) {
         const Image first[2] = {rows_of(&rows[0], 0, ENOUGH), rows_of(&rows[1], 0, ENOUGH)};
-        if (!content_shift(&first[0], &first[1], (int64_t)width * ENOUGH, &shift, error)) return false;
+        const int columns = int_min(width, COLUMNS);
+        if (!content_shift(&first[0], &first[1], columns, (int64_t)columns * ENOUGH, &shift, error)) return false;
     }
     *may = shift.right != 0 || shift.down != 0;
     return true;

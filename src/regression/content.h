@@ -140,8 +140,9 @@ static const double MOTION_EXACT = 0.999; /* explains all */
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint);
 
 /* How far most of what differs has moved, such as what follows a banner; 0, 0 if it does not agree. The pictures have one size, and
-   `pixels` of them differ. ERROR_MEMORY. */
-bool content_shift(const Image *expected, const Image *actual, int64_t pixels, Motion *shift, Error *error);
+   `pixels` of those in their middle `columns` differ. ERROR_MEMORY. */
+bool content_shift(const Image *expected, const Image *actual, int columns, int64_t pixels, Motion *shift,
+                   Error *error);
 
 /* What a shift explains of the difference: its pixels and bounds. They become IGNORED_RULE in `left`, a mask. *missed: what it does
    not explain, without a strip that it uncovers, where anything may be. */

@@ -29,32 +29,35 @@ static uint64_t power(uint64_t base, int exponent) {
     return product;
 }
 
-/* The windows whose first row is y and in which the pictures differ, by a hash that rolls along them. False if out of memory. */
-static bool add_row(Anchors *anchors, const Image *image, const Image *other, int y) {
+/* The windows in the middle columns whose first row is y and in which the pictures differ, by a hash that rolls along them. False if
+   out of memory. */
+static bool add_row(Anchors *anchors, const Image *image, const Image *other, int columns, int y) {
+    const int left = (image->width - columns) / 2;
     const size_t width = (size_t)image->width, first = (size_t)y * width;
     const uint32_t *pixels = (const uint32_t *)image->pixels + first, *others = (const uint32_t *)other->pixels + first;
     const uint64_t leaves = power(BASE, WINDOW);
-    uint64_t columns[WINDOW] = {0}, hash = 0;
+    uint64_t window[WINDOW] = {0}, hash = 0;
     if (memcmp(pixels, others, 4 * width * ROWS) == 0) return true;
-    for (int x = 0, alike = 0, since = WINDOW; x < image->width; x++) {
+    for (int x = left, alike = 0, since = WINDOW; x < left + columns; x++) {
         uint64_t column = 0;
         bool differs = false;
         for (size_t i = (size_t)x; i < ROWS * width; i += width)
             column = (column ^ pixels[i]) * PRIME, differs |= pixels[i] != others[i];
-        alike = column == columns[(x + WINDOW - 1) % WINDOW] ? alike + 1 : 1;
+        alike = column == window[(x + WINDOW - 1) % WINDOW] ? alike + 1 : 1;
         since = differs ? 0 : since + 1;
-        hash = hash * BASE + column - leaves * columns[x % WINDOW];
-        columns[x % WINDOW] = column;
+        hash = hash * BASE + column - leaves * window[x % WINDOW];
+        window[x % WINDOW] = column;
         const uint64_t mixed = (hash ^ hash >> 31) * BASE;
-        if (x + 1 < WINDOW || alike >= WINDOW || since >= WINDOW || (mixed >> 40 & (anchors->every - 1)) != 0) continue;
+        if (x + 1 < left + WINDOW || alike >= WINDOW || since >= WINDOW || (mixed >> 40 & (anchors->every - 1)) != 0)
+            continue;
         if (!add_anchor(anchors, &(Anchor){mixed, x, y})) return false;
     }
     return true;
 }
 
-static bool find_anchors(Anchors *anchors, const Image *image, const Image *other) {
+static bool find_anchors(Anchors *anchors, const Image *image, const Image *other, int columns) {
     bool ok = true;
-    for (int y = 0; ok && y + ROWS <= image->height; y++) ok = add_row(anchors, image, other, y);
+    for (int y = 0; ok && y + ROWS <= image->height; y++) ok = add_row(anchors, image, other, columns, y);
     return ok;
 }
 
@@ -98,11 +101,12 @@ static void count_votes(Anchors *expected, Anchors *actual, Motion *shift) {
     if (most < VOTES_LEAST || 2 * most < votes) *shift = (Motion){0, 0, 0};
 }
 
-bool content_shift(const Image *expected, const Image *actual, int64_t pixels, Motion *shift, Error *error) {
+bool content_shift(const Image *expected, const Image *actual, int columns, int64_t pixels, Motion *shift,
+                   Error *error) {
     Anchors from = {.every = 1}, to = {.every = 1};
     *shift = (Motion){0, 0, 0};
     while ((int64_t)from.every * VOTERS < pixels) from.every = to.every = 2 * from.every;
-    const bool ok = (find_anchors(&from, expected, actual) && find_anchors(&to, actual, expected)) ||
+    const bool ok = (find_anchors(&from, expected, actual, columns) && find_anchors(&to, actual, expected, columns)) ||
                     error_memory(error, "regions");
     if (ok) count_votes(&from, &to, shift);
     free(from.list);
