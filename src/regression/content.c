@@ -174,15 +174,12 @@ static bool are_scattered(const ImageRegions *regions) {
 static bool name_regions(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
                          FrameChanges *changes, Error *error) {
     Verdict verdicts[IMAGE_REGIONS_MAX] = {0};
-    Motion hint = {0};
     int regions[IMAGE_REGIONS_MAX], count = 0;
-    const bool scattered = are_scattered(&changes->regions), shifted = shift->right != 0 || shift->down != 0;
+    const bool scattered = are_scattered(&changes->regions);
     bool ok = true;
     for (int i = 0; ok && i < changes->regions.kept; i++) {
         if (changes->region_change[i] >= 0) continue;
-        if (shifted) hint = *shift;
-        ok = judge_region(pictures, masked, &changes->regions.list[i], scattered, &hint, &verdicts[count], error);
-        if (verdicts[count].kind == CHANGE_MOVED) hint = verdicts[count].motion;
+        ok = judge_region(pictures, masked, &changes->regions.list[i], scattered, shift, &verdicts[count], error);
         regions[count++] = i;
     }
     if (ok) {

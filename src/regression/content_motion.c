@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CHANNELS = 4, STARTS_MAX = 17, DESCENTS = 3, STEPS_MAX = 40, PROFILE_MAX = 2048, PATCHES_MAX = 2 };
+enum { CHANNELS = 4, STARTS_MAX = 17, STEPS_MAX = 40, PROFILE_MAX = 2048, PATCHES_MAX = 2 };
 
 typedef struct Search {
     const Patch *const *patches;
@@ -228,15 +228,11 @@ Motion content_motion(const Patch *const *patches, int count, const Motion *hint
     add_start(&search, hint->right, hint->down);
     add_sides(&search);
     qsort(search.start, (size_t)search.starts, sizeof *search.start, by_explained);
-    Motion best = {0, 0, 0};
-    for (int i = 0; i < DESCENTS && i < search.starts && best.explained < EXACT; i++) {
-        Motion found = search.start[i];
-        if (found.explained < HOPELESS) break;
-        descend(&search, &found);
-        found = shrunk(&search, found);
-        if (found.explained < EXACT) found = refined(&search, found);
-        if (found.explained > best.explained) best = found;
-    }
+    Motion best = search.starts > 0 ? search.start[0] : (Motion){0, 0, 0};
+    if (best.explained < HOPELESS) return refined(&search, (Motion){0, 0, 0});
+    descend(&search, &best);
+    best = shrunk(&search, best);
+    if (best.explained < EXACT) best = refined(&search, best);
     const Motion part = best.explained < EXACT ? refined(&search, (Motion){0, 0, 0}) : best;
     return part.explained > best.explained ? part : best;
 }
