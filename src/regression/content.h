@@ -24,9 +24,9 @@
    noise       small differences of any pattern, or nine tenths of the pixels differ only along edges (antialias_mark())
    replaced    something appears and something vanishes, a tenth each at least, or colours change without their pattern
 
-   If all that differs is the same picture, shifted, that is one region. Anything else is unsure. At last, faint regions and those that moved by at most two pixels become noise, if they are four or
-   more and did not move alike. If noise lies all over a picture, the stronger regions are named without it, and the noise is
-   one more region.
+   If a shift explains all that differs, that is one region; or most, where more than half of the picture differs. Anything else is
+   unsure. At last, faint regions and those that moved by at most two pixels become noise, if they are four or more and did not
+   move alike. If noise lies all over a picture, the stronger regions are named without it, and the noise is one more region.
 
    Fails: a faint watermark beside noise is noise; glyphs that another rasterizer moves all by the same have moved; a new band of
    colour under lines and one that changed from white are the same picture. tests/bench/compare/changes measures it. */
