@@ -64,12 +64,6 @@ static bool judge_region(const Image *const pictures[2], const uint8_t *masked, 
     return true;
 }
 
-static bool have_one_size(const Patch *a, const Patch *b) {
-    enum { NEARLY = 2 };
-    return abs(a->region.right - a->region.left - b->region.right + b->region.left) <= NEARLY &&
-           abs(a->region.bottom - a->region.top - b->region.bottom + b->region.top) <= NEARLY;
-}
-
 /* Whether two regions may be the places of one thing: it left the first and came to the second, or one is a part of what moved in
    the other. */
 static bool may_join(const Verdict *a, const Verdict *b) {
@@ -77,8 +71,8 @@ static bool may_join(const Verdict *a, const Verdict *b) {
     const bool a_moved = a->kind == CHANGE_MOVED, b_moved = b->kind == CHANGE_MOVED;
     if (a->kind == CHANGE_NOISE || b->kind == CHANGE_NOISE || (a_moved && b_moved)) return false;
     if (a_moved || b_moved) return true;
-    return a->kind != CHANGE_COLOUR && b->kind != CHANGE_COLOUR && have_one_size(a->patch, b->patch) &&
-           patch_share(a->patch, DOT_APPEARS) <= LITTLE && patch_share(b->patch, DOT_VANISHES) <= LITTLE;
+    return a->kind != CHANGE_COLOUR && b->kind != CHANGE_COLOUR && patch_share(a->patch, DOT_APPEARS) <= LITTLE &&
+           patch_share(b->patch, DOT_VANISHES) <= LITTLE;
 }
 
 static void join_pairs(Verdict *verdicts, int count) {
