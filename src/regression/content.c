@@ -328,13 +328,14 @@ bool content_name_by_ground(const Image *expected, const Image *actual, int firs
     return ok;
 }
 
-bool content_may_be_shifted(const Image rows[2], ShiftRows *votes, const ContentTraits *traits, int width, int height,
+bool content_may_be_shifted(const Image rows[2], Anchors votes[2], const ContentTraits *traits, int width, int height,
                             bool *may, Error *error) {
     enum { ENOUGH = 32, COLUMNS = 512, LITTLE = 1 << 20 };
     const int64_t pixels = (int64_t)width * height;
     *may = kind_of_most(traits) == CHANGE_UNSURE && pixels <= CONTENT_WHOLE_MAX;
     if (!*may || pixels <= LITTLE) return true;
-    Motion shift = shift_rows_count(votes);
+    Motion shift = {0};
+    shift_count(&votes[0], &votes[1], &shift);
     if (shift.down == 0 && rows[0].height >= ENOUGH) {
         const Image first[2] = {rows_of(&rows[0], 0, ENOUGH), rows_of(&rows[1], 0, ENOUGH)};
         const int columns = int_min(width, COLUMNS);
@@ -350,12 +351,12 @@ static bool may_be_shifted(const Image *const pictures[2], const ContentTraits *
     const int width = pictures[0]->width, height = pictures[0]->height,
               top = int_max(difference->top - CONTENT_MARGIN, 0);
     const Image rows[2] = {rows_of(pictures[0], top, height - top), rows_of(pictures[1], top, height - top)};
-    ShiftRows votes = {0};
+    Anchors votes[2] = {0};
     bool ok = true;
     for (int y = 0; ok && y < height - top; y++)
-        ok = shift_rows_add(&votes, y, rows_of(&rows[0], y, 1).pixels, rows_of(&rows[1], y, 1).pixels, width, error);
-    ok = ok && content_may_be_shifted(rows, &votes, traits, width, height, may, error);
-    shift_rows_end(&votes);
+        ok = shift_rows_add(votes, y, rows_of(&rows[0], y, 1).pixels, rows_of(&rows[1], y, 1).pixels, width, error);
+    ok = ok && content_may_be_shifted(rows, votes, traits, width, height, may, error);
+    free(votes[0].list), free(votes[1].list);
     return ok;
 }
 

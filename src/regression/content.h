@@ -162,17 +162,14 @@ typedef struct Anchors {
     uint64_t every; /* one of so many windows, a power of two */
 } Anchors;
 
-/* Rows that differ, by some of their pixels, for a shift up or down. */
-typedef struct ShiftRows {
-    Anchors of[2]; /* pictures */
-} ShiftRows;
+/* Adds a row of both pictures, if it differs, by some of its pixels: for a shift up or down. ERROR_MEMORY. */
+bool shift_rows_add(Anchors rows[2], int y, const uint8_t *a, const uint8_t *b, int width, Error *error);
 
-bool shift_rows_add(ShiftRows *rows, int y, const uint8_t *a, const uint8_t *b, int width,
-                    Error *error);        /* ERROR_MEMORY */
-Motion shift_rows_count(ShiftRows *rows); /* 0, 0: they do not agree. Once only. */
-void shift_rows_end(ShiftRows *rows);
+/* The shift of at least half of what only one place of either picture shows; 0, 0: there is none. Sorts the lists, and leaves shifts
+   in the actual one. */
+void shift_count(Anchors *expected, Anchors *actual, Motion *shift);
 
 /* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its rows, or `first`, the first ones
    that differ, tell; then it is worth being read as a whole. */
-bool content_may_be_shifted(const Image first[2], ShiftRows *rows, const ContentTraits *traits, int width, int height,
+bool content_may_be_shifted(const Image first[2], Anchors rows[2], const ContentTraits *traits, int width, int height,
                             bool *may, Error *error);

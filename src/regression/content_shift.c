@@ -82,8 +82,7 @@ static const Anchor *find_single(const Anchors *anchors, uint64_t hash) {
     return low + 1 < anchors->count && found[1].hash == hash ? NULL : found;
 }
 
-/* Replaces the windows of the actual picture by their shifts, and finds the one of at least half of them. */
-static void count_votes(Anchors *expected, Anchors *actual, Motion *shift) {
+void shift_count(Anchors *expected, Anchors *actual, Motion *shift) {
     if (expected->count > 0) qsort(expected->list, expected->count, sizeof *expected->list, by_hash);
     size_t votes = 0, most = 0, run = 0;
     Anchor *list = actual->list;
@@ -108,13 +107,13 @@ bool content_shift(const Image *expected, const Image *actual, int columns, int6
     while ((int64_t)from.every * VOTERS < pixels) from.every = to.every = 2 * from.every;
     const bool ok = (find_anchors(&from, expected, actual, columns) && find_anchors(&to, actual, expected, columns)) ||
                     error_memory(error, "regions");
-    if (ok) count_votes(&from, &to, shift);
+    if (ok) shift_count(&from, &to, shift);
     free(from.list);
     free(to.list);
     return ok;
 }
 
-bool shift_rows_add(ShiftRows *rows, int y, const uint8_t *a, const uint8_t *b, int width, Error *error) {
+bool shift_rows_add(Anchors rows[2], int y, const uint8_t *a, const uint8_t *b, int width, Error *error) {
     enum { SAMPLES = 32 }; /* of the middle half: columns at the sides may stay */
     const size_t first = (size_t)width / 4;
     if (memcmp(a, b, 4 * (size_t)width) == 0) return true;
@@ -127,19 +126,9 @@ bool shift_rows_add(ShiftRows *rows, int y, const uint8_t *a, const uint8_t *b, 
             anchor.hash = (anchor.hash ^ pixel) * PRIME;
             even &= pixel == pixels[0];
         }
-        if (!even && !add_anchor(&rows->of[i], &anchor)) return error_memory(error, "regions");
+        if (!even && !add_anchor(&rows[i], &anchor)) return error_memory(error, "regions");
     }
     return true;
-}
-
-Motion shift_rows_count(ShiftRows *rows) {
-    Motion shift = {0, 0, 0};
-    count_votes(&rows->of[0], &rows->of[1], &shift);
-    return shift;
-}
-
-void shift_rows_end(ShiftRows *rows) {
-    for (int i = 0; i < 2; i++) free(rows->of[i].list);
 }
 
 static bool is_masked(const uint8_t *masked, size_t pixel) { return masked != NULL && masked[pixel] != IGNORED_NOT; }

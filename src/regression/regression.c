@@ -42,7 +42,7 @@ typedef struct RowJudge {
     RegionScan *scan;     /* from the first row that differs */
     ContentTraits traits; /* of some rows */
     ContentBand band;     /* the rows that differ, if they are few */
-    ShiftRows shift;
+    Anchors shift[SIDES]; /* rows that differ */
     uint8_t *rows[SIDES]; /* [4 * width]; behind them: */
     uint8_t *levels;      /* [width] */
     Error error;
@@ -73,7 +73,7 @@ static void judge_difference(RowJudge *judge, int y, const uint8_t *a, const uin
     if (judge->scan == NULL)
         judge->scan = region_scan_create(judge->width, judge->height, &judge->regions, &judge->error);
     if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
-    (void)shift_rows_add(&judge->shift, y, a, b, judge->width, &judge->error);
+    (void)shift_rows_add(judge->shift, y, a, b, judge->width, &judge->error);
     if (y % CONTENT_ROWS == 0) traits_add_row(&judge->traits, a, b, judge->levels, 0, judge->width);
 }
 
@@ -91,7 +91,7 @@ static bool name_rows(RowJudge *judge, RegressionFrame *frame, bool *named, Erro
     const bool lost = ground && judge->band.lost;
     bool shifted = false;
     if (!ground && frame_failed(frame) &&
-        !content_may_be_shifted(rows, &judge->shift, &judge->traits, judge->width, judge->height, &shifted, error))
+        !content_may_be_shifted(rows, judge->shift, &judge->traits, judge->width, judge->height, &shifted, error))
         return false;
     *named = !frame_failed(frame) || !(shifted || (lost && (int64_t)judge->width * judge->height <= CONTENT_WHOLE_MAX));
     if (judge->difference.equal || !*named) return true;
@@ -119,7 +119,7 @@ static bool judge_rows(const Regression *regression, RegressionFrame *frame, Png
     }
     region_scan_destroy(judge.scan);
     content_band_end(&judge.band);
-    shift_rows_end(&judge.shift);
+    free(judge.shift[EXPECTED].list), free(judge.shift[ACTUAL].list);
     free(judge.rows[EXPECTED]);
     if (judge.error.kind != ERROR_NONE) *error = judge.error;
     return ok;
