@@ -64,12 +64,6 @@ static bool judge_region(const Image *const pictures[2], const uint8_t *masked, 
     return true;
 }
 
-static bool have_one_size(const Patch *a, const Patch *b) {
-    enum { NEARLY = 2 };
-    return abs(a->region.right - a->region.left - b->region.right + b->region.left) <= NEARLY &&
-           abs(a->region.bottom - a->region.top - b->region.bottom + b->region.top) <= NEARLY;
-}
-
 /* Whether two regions may be the places of one thing: it left the first and came to the second, or one is a part of
    what moved in the other. */
 static bool may_join(const Verdict *a, const Verdict *b) {
@@ -77,8 +71,8 @@ static bool may_join(const Verdict *a, const Verdict *b) {
     const bool a_moved = a->kind == CHANGE_MOVED, b_moved = b->kind == CHANGE_MOVED;
     if (a->kind == CHANGE_NOISE || b->kind == CHANGE_NOISE || (a_moved && b_moved)) return false;
     if (a_moved || b_moved) return true;
-    return a->kind != CHANGE_COLOUR && b->kind != CHANGE_COLOUR && have_one_size(a->patch, b->patch) &&
-           patch_share(a->patch, DOT_APPEARS) <= LITTLE && patch_share(b->patch, DOT_VANISHES) <= LITTLE;
+    return a->kind != CHANGE_COLOUR && b->kind != CHANGE_COLOUR && patch_share(a->patch, DOT_APPEARS) <= LITTLE &&
+           patch_share(b->patch, DOT_VANISHES) <= LITTLE;
 }
 
 static void join_pairs(Verdict *verdicts, int count) {
@@ -174,15 +168,12 @@ static bool are_scattered(const ImageRegions *regions) {
 static bool name_regions(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
                          FrameChanges *changes, Error *error) {
     Verdict verdicts[IMAGE_REGIONS_MAX] = {0};
-    Motion hint = {0};
     int regions[IMAGE_REGIONS_MAX], count = 0;
-    const bool scattered = are_scattered(&changes->regions), shifted = shift->right != 0 || shift->down != 0;
+    const bool scattered = are_scattered(&changes->regions);
     bool ok = true;
     for (int i = 0; ok && i < changes->regions.kept; i++) {
         if (changes->region_change[i] >= 0) continue;
-        if (shifted) hint = *shift;
-        ok = judge_region(pictures, masked, &changes->regions.list[i], scattered, &hint, &verdicts[count], error);
-        if (verdicts[count].kind == CHANGE_MOVED) hint = verdicts[count].motion;
+        ok = judge_region(pictures, masked, &changes->regions.list[i], scattered, shift, &verdicts[count], error);
         regions[count++] = i;
     }
     if (ok) {
@@ -232,9 +223,9 @@ static uint8_t *copy_mask(const Image *picture, const uint8_t *masked, Error *er
 
 /* The regions become those of what `left` does not ignore, and one of all the rest, at place 0 or the last. */
 static bool name_apart(const Image *const pictures[2], const uint8_t *left, const ImageDifference *difference,
-                       const Verdict *rest, bool first, FrameChanges *changes, Error *error) {
+                       const Verdict *rest, ImageRegion all, bool first, FrameChanges *changes, Error *error) {
     ImageRegions *regions = &changes->regions;
-    ImageRegion all = {difference->pixels, difference->left, difference->top, difference->right, difference->bottom};
+    all.pixels = difference->pixels;
     if (!image_regions_find(pictures[0], pictures[1], left, difference, regions, error)) return false;
     if (regions->kept == IMAGE_REGIONS_MAX) regions->kept--;
     if (!name_regions(pictures, left, &(Motion){0}, changes, error)) return false;
@@ -259,44 +250,40 @@ static bool name_above(const Image *const pictures[2], const uint8_t *masked, in
     if (!*named) return true;
     uint8_t *strong = copy_mask(pictures[0], masked, error);
     if (strong != NULL) level_mark(pictures[0], pictures[1], floor, strong);
-    const bool ok = strong != NULL && name_apart(pictures, strong, difference, &weak, false, changes, error);
+    const ImageRegion all = {0, difference->left, difference->top, difference->right, difference->bottom};
+    const bool ok = strong != NULL && name_apart(pictures, strong, difference, &weak, all, false, changes, error);
     free(strong);
     return ok;
 }
 
-/* Pixels: strips up to this wide, which a shift uncovers at the sides, belong to it. */
-enum { SIDES_SMALL = 16 };
-
-/* The actual picture is the expected one, shifted. A strip that it uncovers is a region of its own, unless it is
-   small. */
+/* Names what a shift explains of the difference as one region, and the rest apart. *named: that is all; or most, where
+   so much differs that no region has a ground. */
 static bool name_shifted(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
-                         const ImageDifference *difference, FrameChanges *changes, Error *error) {
-    const int width = pictures[0]->width, height = pictures[0]->height;
-    const int right = fabs(shift->right) <= SIDES_SMALL ? 0 : (int)shift->right,
-              down = fabs(shift->down) <= SIDES_SMALL ? 0 : (int)shift->down;
-    uint8_t *new = copy_mask(pictures[0], masked, error);
-    for (int y = int_max(down, 0); new != NULL &&y < int_min(height + down, height); y++)
-        for (int x = int_max(right, 0); x < int_min(width + right, width); x++) {
-            uint8_t *pixel = &new[(size_t)y * (size_t)width + (size_t)x];
-            if (*pixel == IGNORED_NOT) *pixel = IGNORED_RULE;
-        }
+                         const ImageDifference *difference, FrameChanges *changes, bool *named, Error *error) {
+    static const double MOST = 0.75;
+    const bool filled = 2 * difference->pixels > (int64_t)pictures[0]->width * pictures[0]->height;
     const Verdict moved = {.kind = CHANGE_MOVED, .motion = *shift};
-    const bool ok = new != NULL &&name_apart(pictures, new, difference, &moved, true, changes, error);
-    free(new);
+    int64_t missed;
+    uint8_t *left = copy_mask(pictures[0], masked, error);
+    if (left == NULL) return false;
+    const ImageRegion all = content_mark_shifted(pictures[0], pictures[1], masked, shift, left, &missed);
+    *named = (double)all.pixels >= (filled ? MOST : 1) * (double)(all.pixels + missed);
+    const bool ok = !*named || name_apart(pictures, left, difference, &moved, all, true, changes, error);
+    free(left);
     return ok;
 }
 
-/* *named: it is the same picture, shifted, and that is less to tell than its regions. *shift is that of most of it in
-   any case. */
+/* *named: a shift explains most of the difference, and that is less to tell than its regions. Else *shift is that of
+   most, which few regions tell more exactly. */
 static bool find_shifted(const Image *const pictures[2], const uint8_t *masked, const ImageDifference *difference,
                          Motion *shift, FrameChanges *changes, bool *named, Error *error) {
     enum { FEW = 4 };
-    if (!content_shift(pictures[0], pictures[1], difference->pixels, shift, error)) return false;
-    const bool alone = fmax(fabs(shift->right), fabs(shift->down)) <= SIDES_SMALL;
-    *named = changes->count == 0 && (alone || changes->regions.kept == 1 || changes->regions.kept >= FEW) &&
-             content_is_shifted(pictures[0], pictures[1], masked, shift);
-    if (*named) return name_shifted(pictures, masked, shift, difference, changes, error);
-    if (changes->regions.kept < FEW) *shift = (Motion){0}; /* each tells more exactly */
+    if (!content_shift(pictures[0], pictures[1], pictures[0]->width, difference->pixels, shift, error)) return false;
+    const double far = fmax(fabs(shift->right), fabs(shift->down));
+    const bool many = changes->regions.kept >= FEW;
+    *named = far > 0 && changes->count == 0 && (many || changes->regions.kept == 1 || far <= SHIFT_STRIP);
+    if (*named && !name_shifted(pictures, masked, shift, difference, changes, named, error)) return false;
+    if (!*named && !many) *shift = (Motion){0};
     return true;
 }
 
@@ -341,17 +328,36 @@ bool content_name_by_ground(const Image *expected, const Image *actual, int firs
     return ok;
 }
 
-bool content_may_be_shifted(const Image rows[2], const ContentTraits *traits, int width, int height, bool *may,
-                            Error *error) {
-    enum { ENOUGH = 32, LITTLE = 1 << 20 };
+bool content_may_be_shifted(const Image rows[2], Anchors votes[2], const ContentTraits *traits, int width, int height,
+                            bool *may, Error *error) {
+    enum { ENOUGH = 32, COLUMNS = 512, LITTLE = 1 << 20 };
     const int64_t pixels = (int64_t)width * height;
-    Motion shift = {0};
     *may = kind_of_most(traits) == CHANGE_UNSURE && pixels <= CONTENT_WHOLE_MAX;
-    if (!*may || pixels <= LITTLE || rows[0].height < ENOUGH) return true;
-    const Image first[2] = {rows_of(&rows[0], 0, ENOUGH), rows_of(&rows[1], 0, ENOUGH)};
-    if (!content_shift(&first[0], &first[1], (int64_t)width * ENOUGH, &shift, error)) return false;
+    if (!*may || pixels <= LITTLE) return true;
+    Motion shift = {0};
+    shift_count(&votes[0], &votes[1], &shift);
+    if (shift.down == 0 && rows[0].height >= ENOUGH) {
+        const Image first[2] = {rows_of(&rows[0], 0, ENOUGH), rows_of(&rows[1], 0, ENOUGH)};
+        const int columns = int_min(width, COLUMNS);
+        if (!content_shift(&first[0], &first[1], columns, (int64_t)columns * ENOUGH, &shift, error)) return false;
+    }
     *may = shift.right != 0 || shift.down != 0;
     return true;
+}
+
+/* As judge_rows() does for pictures that are read in pieces. */
+static bool may_be_shifted(const Image *const pictures[2], const ContentTraits *traits,
+                           const ImageDifference *difference, bool *may, Error *error) {
+    const int width = pictures[0]->width, height = pictures[0]->height,
+              top = int_max(difference->top - CONTENT_MARGIN, 0);
+    const Image rows[2] = {rows_of(pictures[0], top, height - top), rows_of(pictures[1], top, height - top)};
+    Anchors votes[2] = {0};
+    bool ok = true;
+    for (int y = 0; ok && y < height - top; y++)
+        ok = shift_rows_add(votes, y, rows_of(&rows[0], y, 1).pixels, rows_of(&rows[1], y, 1).pixels, width, error);
+    ok = ok && content_may_be_shifted(rows, votes, traits, width, height, may, error);
+    free(votes[0].list), free(votes[1].list);
+    return ok;
 }
 
 bool content_name(const Image *expected, const Image *actual, const uint8_t *masked, const ImageDifference *difference,
@@ -362,10 +368,8 @@ bool content_name(const Image *expected, const Image *actual, const uint8_t *mas
     const int floor = changes->count == 0 ? traits_floor(&traits) : 0;
     if (content_has_ground(&traits, difference, expected->width, expected->height))
         return content_name_by_ground(expected, actual, 0, masked, floor, difference, changes, error);
-    const int top = int_max(difference->top - CONTENT_MARGIN, 0), left = expected->height - top;
-    const Image rows[2] = {rows_of(expected, top, left), rows_of(actual, top, left)};
     bool named = false;
-    if (!content_may_be_shifted(rows, &traits, expected->width, expected->height, &named, error)) return false;
+    if (!may_be_shifted(pictures, &traits, difference, &named, error)) return false;
     if (named && !find_shifted(pictures, masked, difference, &(Motion){0}, changes, &named, error)) return false;
     if (!named) content_name_most(&traits, changes);
     return true;

@@ -28,9 +28,10 @@
    noise       small differences of any pattern, or nine tenths of the pixels differ only along edges (antialias_mark())
    replaced    something appears and something vanishes, a tenth each at least, or colours change without their pattern
 
-   If all that differs is the same picture, shifted, that is one region. Anything else is unsure. At last, faint regions
-   and those that moved by at most two pixels become noise, if they are four or more and did not move alike. If noise
-   lies all over a picture, the stronger regions are named without it, and the noise is one more region.
+   If a shift explains all that differs, that is one region; or most, where more than half of the picture differs.
+   Anything else is unsure. At last, faint regions and those that moved by at most two pixels become noise, if they are
+   four or more and did not move alike. If noise lies all over a picture, the stronger regions are named without it, and
+   the noise is one more region.
 
    Fails: a faint watermark beside noise is noise; glyphs that another rasterizer moves all by the same have moved; a
    new band of colour under lines and one that changed from white are the same picture. tests/bench/compare/changes
@@ -146,13 +147,36 @@ static const double MOTION_EXACT = 0.999; /* explains all */
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint);
 
 /* How far most of what differs has moved, such as what follows a banner; 0, 0 if it does not agree. The pictures have
-   one size, and `pixels` of them differ. ERROR_MEMORY. */
-bool content_shift(const Image *expected, const Image *actual, int64_t pixels, Motion *shift, Error *error);
+   one size, and `pixels` of those in their middle `columns` differ. ERROR_MEMORY. */
+bool content_shift(const Image *expected, const Image *actual, int columns, int64_t pixels, Motion *shift,
+                   Error *error);
 
-/* Whether the actual picture is the expected one, shifted: all that both have is equal. */
-bool content_is_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift);
+/* What a shift explains of the difference: its pixels and bounds. They become IGNORED_RULE in `left`, a mask. *missed:
+   what it does not explain, without a strip that it uncovers, where anything may be. */
+enum { SHIFT_STRIP = 16 }; /* pixels: strips up to this wide belong to the shift */
+ImageRegion content_mark_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift,
+                                 uint8_t *left, int64_t *missed);
 
-/* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its first rows that
-   differ tell; then it is worth being read as a whole. */
-bool content_may_be_shifted(const Image rows[2], const ContentTraits *traits, int width, int height, bool *may,
-                            Error *error);
+/* Places of two pictures by a hash of what they show there. */
+typedef struct Anchor {
+    uint64_t hash;
+    int x, y;
+} Anchor;
+
+typedef struct Anchors {
+    Anchor *list;
+    size_t count, capacity;
+    uint64_t every; /* one of so many windows, a power of two */
+} Anchors;
+
+/* Adds a row of both pictures, if it differs, by some of its pixels: for a shift up or down. ERROR_MEMORY. */
+bool shift_rows_add(Anchors rows[2], int y, const uint8_t *a, const uint8_t *b, int width, Error *error);
+
+/* The shift of at least half of what only one place of either picture shows; 0, 0: there is none. Sorts the lists, and
+   leaves shifts in the actual one. */
+void shift_count(Anchors *expected, Anchors *actual, Motion *shift);
+
+/* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its rows, or `first`,
+   the first ones that differ, tell; then it is worth being read as a whole. */
+bool content_may_be_shifted(const Image first[2], Anchors rows[2], const ContentTraits *traits, int width, int height,
+                            bool *may, Error *error);

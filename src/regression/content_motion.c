@@ -7,14 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CHANNELS = 4, NEAR = 3, STARTS_MAX = 80, DESCENTS = 3, STEPS_MAX = 40, PROFILE_MAX = 2048, PATCHES_MAX = 2 };
+enum { CHANNELS = 4, STEPS_MAX = 40, PROFILE_MAX = 2048, PATCHES_MAX = 2 };
 
 typedef struct Search {
     const Patch *const *patches;
     int patch_count;
-    Motion edges; /* the shift of the edges; 0, 0: not known */
-    int starts;
-    Motion start[STARTS_MAX];
+    Motion best; /* of the starts */
 } Search;
 
 static int level_at(const Image *image, int x, int y, int c) {
@@ -55,13 +53,17 @@ static void content_motion_judge(const Search *search, Motion *motion) {
     }
 }
 
-static void add_start(Search *search, double right, double down) {
+/* Of two that explain as much, the smaller one. */
+static bool is_better(const Motion *a, const Motion *b) {
+    if (a->explained != b->explained) return a->explained > b->explained;
+    return fabs(a->right) + fabs(a->down) < fabs(b->right) + fabs(b->down);
+}
+
+static void try_start(Search *search, double right, double down) {
     Motion start = {rint(right), rint(down), 0};
-    for (int i = 0; i < search->starts; i++)
-        if (search->start[i].right == start.right && search->start[i].down == start.down) return;
-    if (search->starts == STARTS_MAX || (start.right == 0 && start.down == 0)) return;
+    if (start.right == 0 && start.down == 0) return;
     content_motion_judge(search, &start);
-    search->start[search->starts++] = start;
+    if (is_better(&start, &search->best)) search->best = start;
 }
 
 /* The shift of one profile that is most like the other. */
@@ -105,23 +107,22 @@ static int edge_shift(const Patch *patch, bool by_row) {
     return best_shift(profiles[0], profiles[1], count);
 }
 
-/* Shifts of the sides of what was there to those of what is there now, and of its edges. Each shift to the right is
+/* The shift of a corner of what was there to that of what is there now, and of its edges. Each shift to the right is
    tried with each one down. */
 static void add_sides(Search *search) {
     const Patch *patch = search->patches[0];
     const ViewRect a = patch->box[0], b = search->patches[search->patch_count - 1]->box[1];
     const int width = patch->region.right - patch->region.left, height = patch->region.bottom - patch->region.top;
-    int right[4] = {0}, down[4] = {0};
+    int right[3] = {0}, down[3] = {0};
     if (a.right >= a.left && b.right >= b.left) {
-        right[1] = b.left - a.left, right[2] = b.right - a.right;
-        down[1] = b.top - a.top, down[2] = b.bottom - a.bottom;
+        right[1] = b.left - a.left;
+        down[1] = b.top - a.top;
     }
     if (search->patch_count == 1 && width < PROFILE_MAX && height < PROFILE_MAX) {
-        right[3] = edge_shift(patch, false);
-        down[3] = edge_shift(patch, true);
-        search->edges = (Motion){right[3], down[3], 0};
+        right[2] = edge_shift(patch, false);
+        down[2] = edge_shift(patch, true);
     }
-    for (int i = 0; i < 16; i++) add_start(search, right[i % 4], down[i / 4]);
+    for (int i = 0; i < 9; i++) try_start(search, right[i % 3], down[i / 3]);
 }
 
 /* To a neighbour while that explains more. */
@@ -137,14 +138,6 @@ static void descend(const Search *search, Motion *motion) {
         if (best.explained <= motion->explained) return;
         *motion = best;
     }
-}
-
-static int by_explained(const void *a, const void *b) {
-    const Motion *x = a, *y = b;
-    if (x->explained != y->explained) return x->explained > y->explained ? -1 : 1;
-    const double far_x = fabs(x->right) + fabs(x->down), far_y = fabs(y->right) + fabs(y->down);
-    if (far_x != far_y) return far_x < far_y ? -1 : 1;
-    return x->right != y->right ? (x->right < y->right ? -1 : 1) : (x->down > y->down) - (x->down < y->down);
 }
 
 /* Normal equations of the part of a pixel that remains, and the squared difference. */
@@ -207,27 +200,6 @@ static Motion refined(const Search *search, Motion base) {
     return found;
 }
 
-/* Whether a pixel of this patch came from where the picture changed, or went there. Else another place looks the same
-   by chance: the period of a pattern. */
-static bool has_partner(const Patch *patch, const Dot *dot, int right, int down) {
-    const int sign = dot->kind == DOT_APPEARS ? -1 : 1, x = dot->x + sign * right, y = dot->y + sign * down;
-    const Image *a = patch->pictures[0], *b = patch->pictures[1];
-    return x >= 0 && y >= 0 && x < a->width && y < a->height &&
-           image_pixel_difference(a, b, (size_t)y * (size_t)a->width + (size_t)x) > 0;
-}
-
-static bool has_partners(const Search *search, const Motion *motion) {
-    enum { NEARBY = 1, SHARE = 10 };
-    const int right = (int)rint(motion->right), down = (int)rint(motion->down);
-    if ((abs(right) <= NEARBY && abs(down) <= NEARBY) || search->patch_count > 1) return true;
-    if (right == (int)search->edges.right && down == (int)search->edges.down) return true;
-    int all = 0, found = 0;
-    for (int i = 0; i < search->patch_count; i++)
-        for (int k = 0; k < search->patches[i]->count; k++, all++)
-            found += has_partner(search->patches[i], &search->patches[i]->dots[k], right, down);
-    return found * SHARE >= all;
-}
-
 /* The smallest offset towards this one that explains as much, by steps that halve: of an even area, all larger ones
    do. */
 static Motion shrunk(const Search *search, Motion found) {
@@ -240,7 +212,7 @@ static Motion shrunk(const Search *search, Motion found) {
                 if (fabs(*along) < step) break;
                 *along -= copysign(step, *along);
                 content_motion_judge(search, &tried);
-                if (tried.explained < found.explained || !has_partners(search, &tried)) break;
+                if (tried.explained < found.explained) break;
                 found = tried;
             }
     return found;
@@ -249,20 +221,13 @@ static Motion shrunk(const Search *search, Motion found) {
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint) {
     static const double EXACT = MOTION_EXACT, HOPELESS = 0.1;
     Search search = {.patches = patches, .patch_count = count};
-    add_start(&search, hint->right, hint->down);
+    try_start(&search, hint->right, hint->down);
     add_sides(&search);
-    for (int k = 0; k < (2 * NEAR + 1) * (2 * NEAR + 1); k++)
-        add_start(&search, k % (2 * NEAR + 1) - NEAR, k / (2 * NEAR + 1) - NEAR);
-    qsort(search.start, (size_t)search.starts, sizeof *search.start, by_explained);
-    Motion best = {0, 0, 0};
-    for (int i = 0; i < DESCENTS && i < search.starts && best.explained < EXACT; i++) {
-        Motion found = search.start[i];
-        if (found.explained < HOPELESS) break;
-        descend(&search, &found);
-        found = shrunk(&search, found);
-        if (found.explained < EXACT) found = refined(&search, found);
-        if (found.explained > best.explained && has_partners(&search, &found)) best = found;
-    }
+    Motion best = search.best;
+    if (best.explained < HOPELESS) return refined(&search, (Motion){0, 0, 0});
+    descend(&search, &best);
+    best = shrunk(&search, best);
+    if (best.explained < EXACT) best = refined(&search, best);
     const Motion part = best.explained < EXACT ? refined(&search, (Motion){0, 0, 0}) : best;
     return part.explained > best.explained ? part : best;
 }

@@ -14,18 +14,15 @@
 
 enum { WINDOW = 16, ROWS = 4, VOTERS = 1 << 11, VOTES_LEAST = 12, ANCHORS_MAX = 1 << 18 };
 
-static const uint64_t BASE = 0x9E3779B97F4A7C15u;
+static const uint64_t BASE = 0x9E3779B97F4A7C15u, PRIME = 0x100000001b3u;
 
-typedef struct Anchor {
-    uint64_t hash; /* of a window that is not of one colour, which looks the same anywhere */
-    int x, y;
-} Anchor;
-
-typedef struct Anchors {
-    Anchor *list;
-    size_t count, capacity;
-    uint64_t every; /* one of so many windows, a power of two */
-} Anchors;
+static bool add_anchor(Anchors *anchors, const Anchor *anchor) {
+    if (anchors->count == ANCHORS_MAX) return true; /* a pattern that repeats the same windows */
+    if (!array_reserve((void **)&anchors->list, &anchors->capacity, anchors->count + 1, sizeof *anchors->list))
+        return false;
+    anchors->list[anchors->count++] = *anchor;
+    return true;
+}
 
 static uint64_t power(uint64_t base, int exponent) {
     uint64_t product = 1;
@@ -33,36 +30,35 @@ static uint64_t power(uint64_t base, int exponent) {
     return product;
 }
 
-/* The windows whose first row is y and in which the pictures differ, by a hash that rolls along them. False if out of
-   memory. */
-static bool add_row(Anchors *anchors, const Image *image, const Image *other, int y) {
+/* The windows in the middle columns whose first row is y and in which the pictures differ, by a hash that rolls along
+   them. False if out of memory. */
+static bool add_row(Anchors *anchors, const Image *image, const Image *other, int columns, int y) {
+    const int left = (image->width - columns) / 2;
     const size_t width = (size_t)image->width, first = (size_t)y * width;
     const uint32_t *pixels = (const uint32_t *)image->pixels + first, *others = (const uint32_t *)other->pixels + first;
     const uint64_t leaves = power(BASE, WINDOW);
-    uint64_t columns[WINDOW] = {0}, hash = 0;
+    uint64_t window[WINDOW] = {0}, hash = 0;
     if (memcmp(pixels, others, 4 * width * ROWS) == 0) return true;
-    for (int x = 0, alike = 0, since = WINDOW; x < image->width; x++) {
+    for (int x = left, alike = 0, since = WINDOW; x < left + columns; x++) {
         uint64_t column = 0;
         bool differs = false;
         for (size_t i = (size_t)x; i < ROWS * width; i += width)
-            column = (column ^ pixels[i]) * 0x100000001b3u, differs |= pixels[i] != others[i];
-        alike = column == columns[(x + WINDOW - 1) % WINDOW] ? alike + 1 : 1;
+            column = (column ^ pixels[i]) * PRIME, differs |= pixels[i] != others[i];
+        alike = column == window[(x + WINDOW - 1) % WINDOW] ? alike + 1 : 1;
         since = differs ? 0 : since + 1;
-        hash = hash * BASE + column - leaves * columns[x % WINDOW];
-        columns[x % WINDOW] = column;
+        hash = hash * BASE + column - leaves * window[x % WINDOW];
+        window[x % WINDOW] = column;
         const uint64_t mixed = (hash ^ hash >> 31) * BASE;
-        if (x + 1 < WINDOW || alike >= WINDOW || since >= WINDOW || (mixed >> 40 & (anchors->every - 1)) != 0) continue;
-        if (anchors->count == ANCHORS_MAX) return true; /* a pattern that repeats the same windows */
-        if (!array_reserve((void **)&anchors->list, &anchors->capacity, anchors->count + 1, sizeof *anchors->list))
-            return false;
-        anchors->list[anchors->count++] = (Anchor){mixed, x, y};
+        if (x + 1 < left + WINDOW || alike >= WINDOW || since >= WINDOW || (mixed >> 40 & (anchors->every - 1)) != 0)
+            continue;
+        if (!add_anchor(anchors, &(Anchor){mixed, x, y})) return false;
     }
     return true;
 }
 
-static bool find_anchors(Anchors *anchors, const Image *image, const Image *other) {
+static bool find_anchors(Anchors *anchors, const Image *image, const Image *other, int columns) {
     bool ok = true;
-    for (int y = 0; ok && y + ROWS <= image->height; y++) ok = add_row(anchors, image, other, y);
+    for (int y = 0; ok && y + ROWS <= image->height; y++) ok = add_row(anchors, image, other, columns, y);
     return ok;
 }
 
@@ -87,8 +83,8 @@ static const Anchor *find_single(const Anchors *anchors, uint64_t hash) {
     return low + 1 < anchors->count && found[1].hash == hash ? NULL : found;
 }
 
-/* Replaces the windows of the actual picture by their shifts, and finds the one of at least half of them. */
-static void count_votes(const Anchors *expected, Anchors *actual, Motion *shift) {
+void shift_count(Anchors *expected, Anchors *actual, Motion *shift) {
+    if (expected->count > 0) qsort(expected->list, expected->count, sizeof *expected->list, by_hash);
     size_t votes = 0, most = 0, run = 0;
     Anchor *list = actual->list;
     for (size_t i = 0; i < actual->count; i++) {
@@ -105,31 +101,74 @@ static void count_votes(const Anchors *expected, Anchors *actual, Motion *shift)
     if (most < VOTES_LEAST || 2 * most < votes) *shift = (Motion){0, 0, 0};
 }
 
-bool content_shift(const Image *expected, const Image *actual, int64_t pixels, Motion *shift, Error *error) {
+bool content_shift(const Image *expected, const Image *actual, int columns, int64_t pixels, Motion *shift,
+                   Error *error) {
     Anchors from = {.every = 1}, to = {.every = 1};
     *shift = (Motion){0, 0, 0};
     while ((int64_t)from.every * VOTERS < pixels) from.every = to.every = 2 * from.every;
-    const bool ok = (find_anchors(&from, expected, actual) && find_anchors(&to, actual, expected)) ||
+    const bool ok = (find_anchors(&from, expected, actual, columns) && find_anchors(&to, actual, expected, columns)) ||
                     error_memory(error, "regions");
-    if (ok && from.count > 0) qsort(from.list, from.count, sizeof *from.list, by_hash);
-    if (ok) count_votes(&from, &to, shift);
+    if (ok) shift_count(&from, &to, shift);
     free(from.list);
     free(to.list);
     return ok;
 }
 
+bool shift_rows_add(Anchors rows[2], int y, const uint8_t *a, const uint8_t *b, int width, Error *error) {
+    enum { SAMPLES = 32 }; /* of the middle half: columns at the sides may stay */
+    const size_t first = (size_t)width / 4;
+    if (memcmp(a, b, 4 * (size_t)width) == 0) return true;
+    for (int i = 0; i < 2; i++) {
+        const uint32_t *pixels = (const uint32_t *)(i == 0 ? a : b) + first;
+        Anchor anchor = {1, 0, y};
+        bool even = true;
+        for (size_t k = 0; k < SAMPLES; k++) {
+            const uint32_t pixel = pixels[k * (size_t)width / (2 * SAMPLES)];
+            anchor.hash = (anchor.hash ^ pixel) * PRIME;
+            even &= pixel == pixels[0];
+        }
+        if (!even && !add_anchor(&rows[i], &anchor)) return error_memory(error, "regions");
+    }
+    return true;
+}
+
 static bool is_masked(const uint8_t *masked, size_t pixel) { return masked != NULL && masked[pixel] != IGNORED_NOT; }
 
-bool content_is_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift) {
-    const int right = (int)shift->right, down = (int)shift->down, width = expected->width, height = expected->height;
-    if (right == 0 && down == 0) return false;
-    for (int y = int_max(down, 0); y < int_min(height + down, height); y++)
-        for (int x = int_max(right, 0); x < int_min(width + right, width); x++) {
-            const size_t to = (size_t)y * (size_t)width + (size_t)x,
-                         from = (size_t)(y - down) * (size_t)width + (size_t)(x - right);
-            if (is_masked(masked, from) || is_masked(masked, to)) continue;
-            for (size_t c = 0; c < 4; c++)
-                if (image_channel_difference(expected, 4 * from + c, actual, 4 * to + c) > 0) return false;
-        }
+static bool is_equal(const Image *a, size_t i, const Image *b, size_t j) {
+    for (size_t c = 0; c < 4; c++)
+        if (image_channel_difference(a, 4 * i + c, b, 4 * j + c) > 0) return false;
     return true;
+}
+
+/* Whether the pixel at (x, y) of one picture is that of the other from which it came, or to which it went. Nothing
+   tells of what is masked or outside. */
+static bool is_at(const Image *a, int x, int y, const Image *b, int right, int down, const uint8_t *masked) {
+    const int u = x + right, v = y + down;
+    const size_t here = (size_t)y * (size_t)a->width + (size_t)x, there = (size_t)v * (size_t)a->width + (size_t)u;
+    return u < 0 || u >= a->width || v < 0 || v >= a->height || is_masked(masked, there) || is_equal(a, here, b, there);
+}
+
+ImageRegion content_mark_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift,
+                                 uint8_t *left, int64_t *missed) {
+    const int width = expected->width, height = expected->height, right = (int)shift->right, down = (int)shift->down;
+    const bool narrow[2] = {abs(right) <= SHIFT_STRIP, abs(down) <= SHIFT_STRIP};
+    ImageRegion region = {0, width, height, 0, 0};
+    *missed = 0;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t pixel = (size_t)y * (size_t)width + (size_t)x;
+            const bool beside = x < right || x >= width + right, beyond = y < down || y >= height + down;
+            if (left[pixel] != IGNORED_NOT || is_equal(expected, pixel, actual, pixel)) continue;
+            if ((beside && !narrow[0]) || (beyond && !narrow[1])) continue;
+            if (!is_at(actual, x, y, expected, -right, -down, masked) ||
+                !is_at(expected, x, y, actual, right, down, masked)) {
+                ++*missed;
+                continue;
+            }
+            left[pixel] = IGNORED_RULE;
+            region.pixels++;
+            region.left = int_min(region.left, x), region.right = int_max(region.right, x + 1);
+            region.top = int_min(region.top, y), region.bottom = y + 1;
+        }
+    return region;
 }

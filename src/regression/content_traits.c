@@ -46,15 +46,14 @@ bool traits_fill_areas(const ContentTraits *traits) { return traits->pairs > 1.7
 
 bool traits_are_noise(const ContentTraits *traits) {
     enum { SMALL = 8 };
-    static const double SHARED = 0.35, SCATTERED = 0.3, SPARSE = 0.05, FEW = 8;
+    static const double SHARED = 0.35, SCATTERED = 0.3, SPARSE = 0.05;
     double all = 0;
     for (int i = 0; i < 256; i++) all += (double)traits->levels[i];
     const double pixels = fmax(traits->pixels, 1), pairs = fmax(traits->pairs, 1);
-    const bool small = traits_are_small(traits, SMALL);
     double common = 0; /* the square of the mean difference */
     for (int c = 0; c < 3; c++) common += traits->sum[c] * traits->sum[c] / (pixels * pixels);
     const bool apart = traits->shared / pairs - common < SHARED * (traits->square / pixels - common);
-    return pixels < FEW ? small : (small && apart) || (pairs < SCATTERED * pixels && pixels < SPARSE * all);
+    return (traits_are_small(traits, SMALL) && apart) || (pairs < SCATTERED * pixels && pixels < SPARSE * all);
 }
 
 /* Solves from * x = to for a positive definite matrix, whose lower triangle is given, by Cholesky's decomposition. */

@@ -42,6 +42,7 @@ typedef struct RowJudge {
     RegionScan *scan;     /* from the first row that differs */
     ContentTraits traits; /* of some rows */
     ContentBand band;     /* the rows that differ, if they are few */
+    Anchors shift[SIDES]; /* rows that differ */
     uint8_t *rows[SIDES]; /* [4 * width]; behind them: */
     uint8_t *levels;      /* [width] */
     Error error;
@@ -72,6 +73,7 @@ static void judge_difference(RowJudge *judge, int y, const uint8_t *a, const uin
     if (judge->scan == NULL)
         judge->scan = region_scan_create(judge->width, judge->height, &judge->regions, &judge->error);
     if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
+    (void)shift_rows_add(judge->shift, y, a, b, judge->width, &judge->error);
     if (y % CONTENT_ROWS == 0) traits_add_row(&judge->traits, a, b, judge->levels, 0, judge->width);
 }
 
@@ -83,13 +85,13 @@ static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) 
 }
 
 /* The regions of a frame and their names. *named: false where only whole pictures can tell, and are small enough. */
-static bool name_rows(const RowJudge *judge, RegressionFrame *frame, bool *named, Error *error) {
+static bool name_rows(RowJudge *judge, RegressionFrame *frame, bool *named, Error *error) {
     const Image rows[2] = {content_band_rows(&judge->band, EXPECTED), content_band_rows(&judge->band, ACTUAL)};
     const bool ground = content_has_ground(&judge->traits, &judge->difference, judge->width, judge->height);
     const bool lost = ground && judge->band.lost;
     bool shifted = false;
     if (!ground && frame_failed(frame) &&
-        !content_may_be_shifted(rows, &judge->traits, judge->width, judge->height, &shifted, error))
+        !content_may_be_shifted(rows, judge->shift, &judge->traits, judge->width, judge->height, &shifted, error))
         return false;
     *named = !frame_failed(frame) || !(shifted || (lost && (int64_t)judge->width * judge->height <= CONTENT_WHOLE_MAX));
     if (judge->difference.equal || !*named) return true;
@@ -117,6 +119,7 @@ static bool judge_rows(const Regression *regression, RegressionFrame *frame, Png
     }
     region_scan_destroy(judge.scan);
     content_band_end(&judge.band);
+    free(judge.shift[EXPECTED].list), free(judge.shift[ACTUAL].list);
     free(judge.rows[EXPECTED]);
     if (judge.error.kind != ERROR_NONE) *error = judge.error;
     return ok;

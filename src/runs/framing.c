@@ -49,11 +49,12 @@ static double distance_down(const Trajectory *run, int frame, int body, double x
     return first <= last ? first : HUGE_VAL;
 }
 
-/* Widens it down to the first static body straight below the body's centre, if there is one. */
-static void extent_include_ground(Extent *extent, const Trajectory *run, int frame, int body) {
+/* Widens it down to the first static body straight below the body's centre, if there is one from number `first` on
+   before `end`. */
+static void extent_include_ground(Extent *extent, const Trajectory *run, int frame, int body, int first, int end) {
     const Vec2 at = run->position[trajectory_at(run, frame, body)];
     double down = HUGE_VAL;
-    for (int other = 0; other < run->bodies; other++)
+    for (int other = first; other < end; other++)
         if (run->fixed[other]) down = fmin(down, distance_down(run, frame, other, (double)at.x, (double)at.y));
     if (fabs((double)at.y - down) < EXTENT_FARTHEST) extent->bottom = fmin(extent->bottom, (double)at.y - down);
 }
@@ -92,8 +93,11 @@ static Extent standing_extent(const Trajectory *run, int frame, const Extent *re
     if (extent_is_empty(&all)) return all;
     const double largest = extent_side(&all);
     const Extent near = surroundings(&all, NEAR);
+    int first = 0, end = run->bodies; /* of the static ones: of many bodies, most have one ground */
+    while (first < end && !run->fixed[first]) first++;
+    while (first < end && !run->fixed[end - 1]) end--;
     for (int body = 0; body < run->bodies; body++) {
-        if (stands(run, frame, body, region)) extent_include_ground(&all, run, frame, body);
+        if (stands(run, frame, body, region)) extent_include_ground(&all, run, frame, body, first, end);
         if (run->fixed[body] && extent_holds(&near, run, frame, body) &&
             (double)fmaxf(run->size[body].x, run->size[body].y) <= largest)
             extent_include(&all, run, frame, body);

@@ -19,8 +19,8 @@ def scenes(folder):
     """Grey discs on a gradient with some texture, some of them moved; each pair of pictures in several encodings."""
     draw = random.Random(2)
     encodings = {"grey": (0, 8, 0), "rgb": (2, 8, 0), "rgba": (6, 8, 0), "deep": (2, 16, 0), "interlaced": (2, 8, 1), "grey-interlaced": (0, 8, 1)}
-    for number in range(32):
-        width, height = draw.randint(60, 400), draw.randint(40, 160)
+    for number in range(33):
+        width, height = (1100, 960) if number == 32 else (draw.randint(60, 400), draw.randint(40, 160))
         slope, texture = draw.choice((0, 0, 1, 2)), draw.choice((1, 1, 9))
         ground = [[60 + slope * y // 4 + draw.randrange(texture) for x in range(width)] for y in range(height)]
         discs = [[(draw.uniform(0, width), draw.uniform(0, height), draw.uniform(2, 14), draw.randrange(120, 256))] * 2 for _ in range(4)]
@@ -29,7 +29,11 @@ def scenes(folder):
             pair[1] = (x + draw.uniform(-6, 6), y + draw.uniform(-6, 6), radius, grey)
         for side in 0, 1:
             picture = [row[:] for row in ground]
-            if number >= 30: # all of it is shifted, and most of it differs
+            if number == 32: # below its first rows, a banner is inserted
+                discs, noise = [], random.Random(number)
+                picture = [list(noise.randbytes(width)) for y in range(height)]
+                picture = [*picture[:24], *[[90] * width] * 70 * side, *picture[24:]][:height]
+            elif number >= 30: # all of it is shifted, and most of it differs
                 discs = []
                 picture = [[(x - 2 * side) * (x - 2 * side) * (y + 70 - 3 * side) // 7 % 251 for x in range(width)] for y in range(height)]
             for pair in discs:
@@ -38,11 +42,11 @@ def scenes(folder):
                     for x in range(max(0, int(cx - radius) - 1), min(width, int(cx + radius) + 2)):
                         picture[y][x] += round((grey - picture[y][x]) * disc(x, y, cx, cy, radius))
             for name, (color, depth, interlaced) in encodings.items():
-                pixel = lambda grey: bytes([grey]) * ((1 if color == 0 else 3) * depth // 8) + (b"\xff" if color == 6 else b"")
+                pixel = [bytes([grey]) * ((1 if color == 0 else 3) * depth // 8) + (b"\xff" if color == 6 else b"") for grey in range(256)]
                 rows = []
                 for left, top, dx, dy in PASSES if interlaced else [(0, 0, 1, 1)]:
                     if left < width:
-                        rows += [b"\0" + b"".join(pixel(grey) for grey in picture[y][left::dx]) for y in range(top, height, dy)]
+                        rows += [b"\0" + b"".join(map(pixel.__getitem__, picture[y][left::dx])) for y in range(top, height, dy)]
                 to = os.path.join(folder, name, "ea"[side])
                 os.makedirs(to, exist_ok=True)
                 write(os.path.join(to, f"case-{number}x.png"), (width, height, depth, color, 0, 0, interlaced), zlib.compress(b"".join(rows), 1))
@@ -76,9 +80,10 @@ import glob, json
 KEYS = "differing", "beyond", "largest", "box", "region_count"
 found = {path: {frame["name"]: frame["regions"] for frame in json.load(open(path))["frames"]} for path in glob.glob("scenes/*.json")}
 first = found["scenes/rgb.json"]
-assert len(found) == 6 and len(first) == 32 and sum(region["kind"] == "moved" for regions in first.values() for region in regions) > 20, first
+assert len(found) == 6 and len(first) == 33 and sum(region["kind"] == "moved" for regions in first.values() for region in regions) > 20, first
 for name in "case-30x.png", "case-31x.png":
     assert [region["name"] for region in first[name]] == ["moved 2.0 px right and 3.0 px down"], first[name]
+assert first["case-32x.png"][0]["name"] == "moved 70 px down", first["case-32x.png"]
 counts = {path: [[frame[key] for key in KEYS] for frame in json.load(open(path))["frames"]] for path in found if "deep" not in path}
 for path, rows in counts.items(): # interlaced pictures are compared as a whole
     assert rows == counts["scenes/rgb.json"], path

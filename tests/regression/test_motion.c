@@ -122,4 +122,25 @@ TEST(a_shift_of_everything_is_one_region) {
         }
 }
 
+/* Most of a picture of more than a megapixel is shifted, and stays so small a part that no region has a ground. */
+TEST(what_follows_a_banner_moves_in_large_pictures) {
+    enum { ACROSS_ALL = 1100, DOWN_ALL = 1000, HEADER = 24, ROW = 4 * ACROSS_ALL };
+    for (int banner = 30; banner <= 150; banner += 60) {
+        Image *a = image_sized(ACROSS_ALL, DOWN_ALL), *b = image_sized(ACROSS_ALL, DOWN_ALL);
+        for (int i = 0; i < ACROSS_ALL * DOWN_ALL; i++) memset(a->pixels + 4 * i, noise(i, i / ACROSS_ALL), 4);
+        memcpy(b->pixels, a->pixels, (size_t)HEADER * ROW);
+        memset(b->pixels + HEADER * ROW, 200, (size_t)banner * ROW);
+        memcpy(b->pixels + (HEADER + banner) * ROW, a->pixels + HEADER * ROW,
+               (size_t)(DOWN_ALL - HEADER - banner) * ROW);
+        const FrameChanges changes = changes_of(a, b);
+        const Change *change = &changes.list[changes.region_change[0]];
+        if (change->kind != CHANGE_MOVED || fabs(change->up + banner) > 0.01 || fabs(change->right) > 0.01)
+            fail_msg("a banner of %d rows: kind %d, %g up", banner, (int)change->kind, change->up);
+        if (changes.regions.kept != 2 || changes.regions.list[0].top != HEADER + banner ||
+            changes.regions.list[1].top != HEADER)
+            fail_msg("a banner of %d rows: %d regions, the first from %d", banner, changes.regions.kept,
+                     changes.regions.list[0].top);
+    }
+}
+
 RUN_TESTS(NULL, NULL)
