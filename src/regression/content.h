@@ -17,9 +17,9 @@
    there; or it vanishes; or changes, if neither does. Where both do, an edge has moved. The first of these that holds
    is the name:
 
-   moved       an offset explains seven tenths of the squared difference: what appears came from it, what vanishes went
-               to it, and one of them is where the picture changed. Regions of one size are tried together, and each
-               with one that moved
+   moved       an offset explains seven tenths of the squared difference: what appears came from it, and what vanishes
+               went to it. Regions that something left are tried with those where something came, and each with one that
+               moved
    noise       small differences that neighbours do not share, or scattered pixels
    added       at least three quarters of the squared difference appear, and no more than a tenth vanishes
    removed     the same with vanish
