@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* For wait4(). */
+#define _DEFAULT_SOURCE
 /* What recording adds to the steps of a run: runs of the pyramid by the engine without a recorder, with one, with one
    that writes a .npz, and with one that writes it without contacts. Each run is a process of its own; the kinds take
    turns. Files are written to TMPDIR, or /tmp. */
