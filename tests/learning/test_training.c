@@ -267,7 +267,7 @@ TEST(training_continues_from_a_start_network) {
     double reached = last_score(&scores)->train;
     TrainingOptions options = small("lm", 5);
     options.start = start;
-    OWN(Network) *more = train(dataset, options, &scores);
+    network_destroy(train(dataset, options, &scores));
     assert_near(scores.items[0].train, reached, 1e-3 * reached);
     assert_true(last_score(&scores)->train < reached);
     OWN(Network) *elsewhere = train(wider, options, &scores);

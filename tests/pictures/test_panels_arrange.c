@@ -144,9 +144,8 @@ TEST(panels_that_need_their_room_keep_it) {
     const Picture overlay = plan(3, sizes[0], &(RenderLook){.compare = LOOK_OVERLAY});
     assert_int_equal(overlay.layout.panels[0].right, overlay.layout.right);
     for (int i = 0; i < 3; i++) runs[i]->bomb = BOMB_BODY;
-    const Picture moving = plan(1, sizes[0], &(RenderLook){.camera = LOOK_BOMB});
+    OWN(Picture) moving = plan(1, sizes[0], &(RenderLook){.camera = LOOK_BOMB});
     assert_int_equal(moving.layout.panels[0].right, moving.layout.right);
-    OWN(Picture) owned = moving;
     destroy();
 }
 
