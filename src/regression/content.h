@@ -172,8 +172,8 @@ typedef struct Anchors {
 /* Adds a row of both pictures, if it differs, by some of its pixels: for a shift up or down. ERROR_MEMORY. */
 bool shift_rows_add(Anchors rows[2], int y, const uint8_t *a, const uint8_t *b, int width, Error *error);
 
-/* The shift of at least half of what only one place of either picture shows; 0, 0: there is none. Sorts the lists, and
-   leaves shifts in the actual one. */
+/* The shift that at least half of the anchors agree on, of those that stand once in each picture; 0, 0: they do not
+   agree. Sorts the lists, and leaves shifts in the actual one. */
 void shift_count(Anchors *expected, Anchors *actual, Motion *shift);
 
 /* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its rows, or `first`,
