@@ -48,7 +48,7 @@ extern const char program_summary[], program_begin[];
 COMMANDS(COMMAND_DECLARED)
 #undef COMMAND_DECLARED
 
-/* The scenes of scenes/templates/, embedded in the binary (src/CMakeLists.txt lists them, too). */
+/* The scenes of scenes/templates/, embedded in the binary, in the order of the help. */
 
 #define TEMPLATES(TEMPLATE) \
     TEMPLATE(wall)          \

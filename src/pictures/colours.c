@@ -17,15 +17,15 @@
    so that any two of the eight differ in grey, too. They belong to the methods that are compared most. The others were
    found by search: the largest least distance in CIELAB between any two of all, and from the bomb, on both themes, to
    readers with normal sight and with each of the three kinds of colour blindness (Machado, Oliveira, Fernandes 2009).
-   tests/pictures/test_colours.c measures them. */
+   tests/pictures/test_theme.c measures them. */
 typedef struct MethodPaint {
-    const char *name; /* NULL: spare, for programs, own runs and all that is not in the table */
+    const char *name;
     MethodSymbol symbol;
-    BodyColors light, dark; /* fill, line, band; dark: the same hue, lighter, and lines exchange with bands */
+    BodyColors light, dark; /* fill, line, band; dark: the same hue, lighter, and lines exchange with bands. Of the
+                               others only the light fill: the rest follows from it (paint_with()) */
 } MethodPaint;
 
 static const MethodPaint paints[] = {
-    /* clang-format off */
     {"reference", METHOD_CIRCLE, {0x181D24, 0x000000, 0x8D99A8}, {0xCFD7E2, 0x232A33, 0xF2F5F8}},
     {"soft-step", METHOD_SQUARE, {0xD25A09, 0x6B2F00, 0xF7B07A}, {0xE6722E, 0x3A1600, 0xFFC9A0}},
     {"engine", METHOD_CIRCLE, {0x0072B2, 0x00395C, 0x4FA6D8}, {0x2A86C4, 0x061D2D, 0x8CCBF0}},
@@ -34,27 +34,22 @@ static const MethodPaint paints[] = {
     {"scene-net", METHOD_DIAMOND, {0x66C1F7, 0x1D5F87, 0xB5DFF7}, {0x7ECAF8, 0x0F3349, 0xD0ECFC}},
     {"pair-net", METHOD_DIAMOND, {0xE69F00, 0x7A4F00, 0xFFD47A}, {0xE9A92A, 0x3B2600, 0xFFE3A3}},
     {"contact-net", METHOD_CIRCLE, {0x882255, 0x3F0F27, 0xC98BA6}, {0xB0487D, 0x2A0818, 0xE8B4CE}},
-    {"avbd", METHOD_DIAMOND, {0x439100, 0x224800, 0x98C273}, {0x8BBB62, 0x1C2514, 0xC5DDB0}},
-    {"substepping", METHOD_SQUARE, {0x826BFB, 0x41367E, 0xBAAEFD}, {0xB2A4FD, 0x242133, 0xD8D2FE}},
-    {"nncg", METHOD_DIAMOND, {0x2A5900, 0x152C00, 0x8AA473}, {0x7D9A63, 0x191F14, 0xBECCB1}},
-    {"admm", METHOD_TRIANGLE, {0x7F8F3D, 0x40481E, 0xB9C194}, {0xB0BA87, 0x23251B, 0xD8DCC3}},
-    {"closed-form", METHOD_CIRCLE, {0x0C00AC, 0x060056, 0x7973D1}, {0x6B64CD, 0x151429, 0xB5B2E6}},
-    {"playback", METHOD_INVERTED_TRIANGLE, {0x3E2856, 0x1F142B, 0x9589A2}, {0x897C98, 0x1B191E, 0xC4BECC}},
-    {"sain", METHOD_TRIANGLE, {0xEAA7A4, 0x755452, 0xF3CFCD}, {0xF2C8C6, 0x302828, 0xF8E4E2}},
-    {"hybrid", METHOD_SQUARE, {0x42D322, 0x216A11, 0x97E785}, {0x89E475, 0x1B2E17, 0xC4F2BA}},
-    {"gns", METHOD_CIRCLE, {0x7131DC, 0x38186E, 0xB18EEC}, {0xA881EA, 0x221A2F, 0xD4C0F4}},
-    {"subspace", METHOD_CIRCLE, {0xCAB77F, 0x655C40, 0xE2D7B9}, {0xDED2AF, 0x2C2A23, 0xEEE8D7}},
-    {NULL, METHOD_PENTAGON, {0xFF4FD5, 0x80286A, 0xFF9EE8}, {0xFF93E5, 0x331D2E, 0xFFC9F2}},
-    {NULL, METHOD_PENTAGON, {0x7ACC53, 0x3D662A, 0xB6E3A0}, {0xACDF93, 0x222D1D, 0xD6EFC9}},
-    {NULL, METHOD_PENTAGON, {0xFF4072, 0x802039, 0xFF96B1}, {0xFF8AA8, 0x331C22, 0xFFC4D4}},
-    {NULL, METHOD_PENTAGON, {0x0000F9, 0x00007C, 0x7373FC}, {0x6464FB, 0x141432, 0xB2B2FD}},
-    {NULL, METHOD_PENTAGON, {0xAB3835, 0x561C1A, 0xD19290}, {0xCC8583, 0x291B1A, 0xE6C2C1}},
-    {NULL, METHOD_PENTAGON, {0x920AFF, 0x490580, 0xC378FF}, {0xBD6AFF, 0x261533, 0xDEB4FF}},
-    {NULL, METHOD_PENTAGON, {0x55016A, 0x2A0035, 0xA273AD}, {0x9864A4, 0x1E1421, 0xCCB2D2}},
-    /* clang-format on */
+    {"avbd", METHOD_DIAMOND, .light.fill = 0x439100},
+    {"substepping", METHOD_SQUARE, .light.fill = 0x826BFB},
+    {"nncg", METHOD_DIAMOND, .light.fill = 0x2A5900},
+    {"admm", METHOD_TRIANGLE, .light.fill = 0x7F8F3D},
+    {"closed-form", METHOD_CIRCLE, .light.fill = 0x0C00AC},
+    {"playback", METHOD_INVERTED_TRIANGLE, .light.fill = 0x3E2856},
+    {"sain", METHOD_TRIANGLE, .light.fill = 0xEAA7A4},
+    {"hybrid", METHOD_SQUARE, .light.fill = 0x42D322},
+    {"gns", METHOD_CIRCLE, .light.fill = 0x7131DC},
+    {"subspace", METHOD_CIRCLE, .light.fill = 0xCAB77F},
 };
 
-enum { PAINTS = sizeof paints / sizeof *paints, SPARES = 7, OWNED = PAINTS - SPARES, NAME_SIZE = METHOD_TEXT_SIZE };
+/* Fills for programs, own runs and all that is not in the table. */
+static const uint32_t spares[] = {0xFF4FD5, 0x7ACC53, 0xFF4072, 0x0000F9, 0xAB3835, 0x920AFF, 0x55016A};
+
+enum { OWNED = sizeof paints / sizeof *paints, SPARES = sizeof spares / sizeof *spares, PAINTS = OWNED + SPARES };
 
 /* 0 to 255, of the channels as they are: exact on every machine, and near enough to lightness. */
 static double luma(uint32_t colour) {
@@ -82,6 +77,16 @@ static BodyColors dark_box(uint32_t fill) {
     return (BodyColors){fill, theme_mix(fill, 0x000000, 0.8), theme_mix(fill, 0xFFFFFF, 0.5)};
 }
 
+static MethodPaint paint_with(MethodSymbol symbol, uint32_t fill) {
+    return (MethodPaint){NULL, symbol, light_box(fill), dark_box(with_luma(fill, dark_luma(luma(fill))))};
+}
+
+static MethodPaint paint_at(int place) {
+    if (place >= OWNED) return paint_with(METHOD_PENTAGON, spares[place - OWNED]);
+    const MethodPaint paint = paints[place];
+    return paint.dark.fill != 0 ? paint : paint_with(paint.symbol, paint.light.fill);
+}
+
 static bool is_near(uint32_t a, uint32_t b) {
     const double least = 50; /* of 255 in each channel */
     double sum = 0;
@@ -94,7 +99,7 @@ static bool is_near(uint32_t a, uint32_t b) {
 
 static bool is_like_another(uint32_t fill, bool dark) {
     for (int i = 0; i < PAINTS; i++)
-        if (is_near(fill, dark ? paints[i].dark.fill : paints[i].light.fill)) return true;
+        if (is_near(fill, dark ? paint_at(i).dark.fill : paint_at(i).light.fill)) return true;
     return false;
 }
 
@@ -132,14 +137,14 @@ static RunColours shade_of(const MethodPaint *paint, int shade, int levels) {
 /* Choices. */
 
 /* "Planck=#2a9d8f". */
-static bool read_choice(const char *text, char name[NAME_SIZE], uint32_t *colour, Error *error) {
+static bool read_choice(const char *text, char name[METHOD_TEXT_SIZE], uint32_t *colour, Error *error) {
     const char *equals = strrchr(text, '='), *digits = equals != NULL ? equals + 1 : text;
     digits += *digits == '#';
-    if (equals == NULL || equals == text || (size_t)(equals - text) >= NAME_SIZE || strlen(digits) != 6 ||
+    if (equals == NULL || equals == text || (size_t)(equals - text) >= METHOD_TEXT_SIZE || strlen(digits) != 6 ||
         strspn(digits, "0123456789abcdefABCDEF") != 6)
         return error_input(error, "--colour", "'%s' is not NAME=RRGGBB, with six hex digits, such as interior=cc79a7",
                            text);
-    snprintf(name, NAME_SIZE, "%.*s", (int)(equals - text), text);
+    snprintf(name, METHOD_TEXT_SIZE, "%.*s", (int)(equals - text), text);
     *colour = (uint32_t)strtoul(digits, NULL, 16);
     return luma(*colour) <= LIGHTEST ||
            error_input(error, "--colour",
@@ -148,7 +153,7 @@ static bool read_choice(const char *text, char name[NAME_SIZE], uint32_t *colour
 }
 
 bool colours_check(const ColourChoices *choices, Error *error) {
-    char name[NAME_SIZE], other[NAME_SIZE];
+    char name[METHOD_TEXT_SIZE], other[METHOD_TEXT_SIZE];
     uint32_t colour;
     for (int i = 0; i < choices->count; i++) {
         if (!read_choice(choices->texts[i], name, &colour, error)) return false;
@@ -162,17 +167,11 @@ bool colours_check(const ColourChoices *choices, Error *error) {
 
 /* The choice for exactly this name; false: none. */
 static bool find_choice(const ColourChoices *choices, const char *name, uint32_t *colour) {
-    char chosen[NAME_SIZE];
+    char chosen[METHOD_TEXT_SIZE];
     Error ignored = {0};
     for (int i = 0; choices != NULL && i < choices->count; i++)
         if (read_choice(choices->texts[i], chosen, colour, &ignored) && strcmp(chosen, name) == 0) return true;
     return false;
-}
-
-/* The paint of a method or of one run, as chosen. */
-static MethodPaint chosen_paint(const MethodPaint *paint, uint32_t colour) {
-    return (MethodPaint){paint->name, paint->symbol, light_box(colour),
-                         dark_box(with_luma(colour, dark_luma(luma(colour))))};
 }
 
 /* The place of a method in the table, or -1. */
@@ -190,7 +189,7 @@ RunColours colours_hue(int i) { return shade_of(&paints[i % COLOUR_HUES], 0, COL
 /* A picture while its colours are assigned. */
 typedef struct Assignment {
     int count;
-    char names[COLOURS_MAX][NAME_SIZE];
+    char names[COLOURS_MAX][METHOD_TEXT_SIZE];
     int order[COLOURS_MAX];  /* by name */
     int places[COLOURS_MAX]; /* in the table */
     int members[PAINTS];     /* runs of each place */
@@ -232,13 +231,14 @@ static void find_places(Assignment *all, const char *const *methods) {
 
 /* The paint of a name, and whether it is the one of a choice for just this run. */
 static bool paint_of(MethodPaint *paint, int place, const char *name, const ColourChoices *choices, bool *chosen) {
-    char method[NAME_SIZE];
+    char method[METHOD_TEXT_SIZE];
     const size_t head = method_name_head(name);
     uint32_t colour;
     snprintf(method, sizeof method, "%.*s", (int)head, name);
     const bool alone = name[head] != '\0' && find_choice(choices, name, &colour);
     *chosen = alone || find_choice(choices, method, &colour);
-    *paint = *chosen ? chosen_paint(&paints[place], colour) : paints[place];
+    *paint = paint_at(place);
+    if (*chosen) *paint = paint_with(paint->symbol, colour);
     return alone;
 }
 
@@ -249,7 +249,7 @@ static bool is_named(const char *chosen, const char *name) {
 
 ColourChoices colours_of_these(const ColourChoices *choices, const char *const *methods, int count) {
     ColourChoices these = {.count = 0};
-    char chosen[NAME_SIZE], name[NAME_SIZE];
+    char chosen[METHOD_TEXT_SIZE], name[METHOD_TEXT_SIZE];
     uint32_t colour;
     Error ignored = {0};
     for (int i = 0; choices != NULL && i < choices->count; i++)
@@ -270,7 +270,7 @@ static bool has_name(const Assignment *all, const char *chosen) {
 
 static bool check_names(const Assignment *all, const ColourChoices *choices, Error *error) {
     NameList known = {0};
-    char name[NAME_SIZE];
+    char name[METHOD_TEXT_SIZE];
     uint32_t colour;
     for (int i = 0; i < all->count; i++) name_list_add(&known, all->names[i]);
     for (int i = 0; i < choices->count; i++)
@@ -298,7 +298,7 @@ bool colours_assign(const char *const *methods, int count, const ColourChoices *
     Assignment all = {.count = count};
     bool taken[PAINTS][COLOURS_MAX + 1] = {{false}};
     assert(count <= COLOURS_MAX);
-    for (int i = 0; i < count; i++) method_name(all.names[i], NAME_SIZE, methods[i]);
+    for (int i = 0; i < count; i++) method_name(all.names[i], METHOD_TEXT_SIZE, methods[i]);
     sort_names(&all);
     find_places(&all, methods);
     for (int i = 0; i < count; i++) {

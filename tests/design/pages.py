@@ -7,7 +7,8 @@
 - Every page can be reached from README.md. Every relative link, picture and anchor exists in a fresh clone.
 - README.md keeps its limits.
 - Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it. NAME,
-  ROOM, COMMAND and WHAT stand for any text. So does every test that a page names.
+  ROOM, COMMAND and WHAT stand for any text. So does every test that a page names, every source that it names without
+  its folder, and every name of C, such as `scene_read`, that the pages of src and tests have.
 - Every option after `twinbox COMMAND` in a shell block or a sentence is one of that command. (Examples of --help: cli/examples.)
 - With `blocks`, marked blocks run instead, page by page from top to bottom, in a fresh copy of the sources with twinbox on
   PATH, as a user would type them. The marks are words after the language of a block and are invisible when rendered:
@@ -21,6 +22,7 @@
   README.md is typed in an empty folder instead, with twinbox installed: its marked blocks and every `twinbox ...` in its
   sentences and tables, but those with a word in capitals and those that its page follows by "(minutes)" or "(hours)".
 """
+import fnmatch
 import glob
 import os
 import re
@@ -100,12 +102,38 @@ def check_readme():
     check(words <= README_WORDS, "README.md", f"{words} words, at most {README_WORDS} are allowed")
 
 
+def read_sources():
+    """The names of all files, and the words with an underscore in them and in sources."""
+    names, words = set(), set()
+    for top in ("src", "tests", "golden", "scenes", "shaders"):
+        for folder, _, files in os.walk(os.path.join(root, top)):
+            names.update(files)
+            for file in files:
+                words.add(file.split(".")[0])
+                if file.endswith((".c", ".h", ".py", ".sh", ".cmake", ".txt")):
+                    with open(os.path.join(folder, file), encoding="utf-8") as source:
+                        words.update(re.findall(r"[a-z]+(?:_[a-z]+)+", source.read()))
+    return names, words
+
+
+file_names, words_of_code = read_sources()
+
+
+def check_names(page, number, line):
+    place = f"{page.path}:{number}"
+    for name in re.findall(r"`([\w*]+\.(?:c|h|py|sh|cmake))`", line):
+        check(fnmatch.filter(file_names, PLACEHOLDER.sub("*", name)), place, f"there is no {name}")
+    for word in re.findall(r"`([a-z]+(?:_[a-z]+)+)(?:\(\))?`", line) if page.path.startswith(("src/", "tests/")) else []:
+        check(word in words_of_code, place, f"no source has {word}")
+
+
 def check_paths(page):
     written = {block.value("file") for block in page.blocks}
     for number, line in enumerate(page.lines, 1):
         for path in re.findall(r"(?<![\w/.-])(?:src|tests|scenes|golden|shaders)/[\w./*-]*[\w*]", line):
             known = path in written or glob.glob(os.path.join(root, PLACEHOLDER.sub("*", path)))
             check(known, f"{page.path}:{number}", f"there is no {path}")
+        check_names(page, number, line)
         for folder, what in re.findall(r"`([a-z_]+)/([a-z_]+)`", line):
             if os.path.isdir(os.path.join(root, "tests", folder)) and not os.path.exists(os.path.join(root, folder)):
                 known = glob.glob(os.path.join(root, "tests", folder, f"test_{what}.*"))

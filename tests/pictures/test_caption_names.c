@@ -112,7 +112,8 @@ static int check_captions(int first, int count, const int size[2], LookCompare c
     }
     if (has_text(&drawing, &layout->title, "\xE2\x80\xA6") || has_text(&drawing, &layout->method, "\xE2\x80\xA6") ||
         has_text(&drawing, &layout->axis, "\xE2\x80\xA6"))
-        fail_msg("%d x %d, %d runs from %s: a caption is cut", size[0], size[1], count, runs[0]->method);
+        fail_msg("%d x %d, runs %s to %s: a caption is cut", size[0], size[1], runs[0]->method,
+                 runs[count - 1]->method);
     Part parts[PARTS_MAX];
     const int part_count = parts_find(&picture, parts);
     for (size_t i = 0; i < drawing.glyph_count; i++) {
@@ -122,7 +123,9 @@ static int check_captions(int first, int count, const int size[2], LookCompare c
             inside |= parts[k].kind == PART_CAPTION && box[0] >= parts[k].rect.left && box[1] >= parts[k].rect.top &&
                       box[0] + box[2] <= parts[k].rect.right + 1 && box[1] + box[3] <= parts[k].rect.bottom;
         if (!inside)
-            fail_msg("%d x %d, %d runs from %s: a letter is outside", size[0], size[1], count, runs[0]->method);
+            fail_msg("%d x %d, runs %s to %s (LookCompare %d): letter %zu is in no caption: x %d to %d, y %d to %d",
+                     size[0], size[1], runs[0]->method, runs[count - 1]->method, (int)compare, i, box[0],
+                     box[0] + box[2], box[1], box[1] + box[3]);
     }
     return left_out;
 }

@@ -48,11 +48,8 @@ typedef struct Colours {
     uint32_t fills[MOST];
 } Colours;
 
-static Colours colours_of(LookTheme theme) {
+static Colours colours_named(void) {
     Colours all = {0};
-    const char *names[COLOURS_MAX];
-    RunColours colours[COLOURS_MAX];
-    Error error = {0};
     for (int i = 0; i < COLOUR_HUES; i++) {
         for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
             RunColours family[COLOUR_SHADES];
@@ -70,30 +67,95 @@ static Colours colours_of(LookTheme theme) {
             strcpy(all.names[all.methods++], kind->description->name);
     }
     for (int i = 0; i < OTHERS; i++) snprintf(all.names[all.methods++], sizeof *all.names, "other %d", i);
-    for (int i = 0; i < all.methods; i++) names[i] = all.names[i];
-    assert_ok(colours_assign(names, all.methods, NULL, colours, &error), error);
-    for (int i = 0; i < all.methods; i++)
-        all.fills[i] = theme == LOOK_DARK ? colours[i].dark.fill : colours[i].light.fill;
     all.bomb = all.methods;
-    all.fills[all.bomb] = theme_get(theme)->bomb.fill;
-    all.fills[all.bomb + 1] = theme_get(theme)->impulse;
     return all;
 }
 
-/* 2.3 is what a trained eye just notices; boxes are small and apart. The bomb also has a sign on it. Those that are
-   compared most are further apart, and so are all for normal sight. */
+/* choices: instead of colours of the table; NULL: none. False if they are refused. */
+static bool fill_all(Colours *all, LookTheme theme, const ColourChoices *choices) {
+    const char *names[COLOURS_MAX];
+    RunColours colours[COLOURS_MAX];
+    Error error = {0};
+    for (int i = 0; i < all->methods; i++) names[i] = all->names[i];
+    if (!colours_assign(names, all->methods, choices, colours, &error)) return false;
+    for (int i = 0; i < all->methods; i++)
+        all->fills[i] = theme == LOOK_DARK ? colours[i].dark.fill : colours[i].light.fill;
+    all->fills[all->bomb] = theme_get(theme)->bomb.fill;
+    all->fills[all->bomb + 1] = theme_get(theme)->impulse;
+    return true;
+}
+
+static Colours colours_of(LookTheme theme) {
+    Colours all = colours_named();
+    assert_true(fill_all(&all, theme, NULL));
+    return all;
+}
+
+static const char *name_of(LookTheme theme) { return theme == LOOK_DARK ? "dark" : "light"; }
+
+/* How far two must be apart, i > k: 2.3 is what a trained eye just notices; boxes are small and apart. The bomb also
+   has a sign on it. Those that are compared most are further apart, and so are all for normal sight. */
+static double needed(const Colours *all, int i, int k, int sight) {
+    const bool most = k < COLOUR_HUES && (i < COLOUR_HUES || i == all->bomb);
+    return most ? 14.5 : sight == 0 ? 13 : 10;
+}
+
+static double apart(const Colours *all, int i, int k, int sight) {
+    return distance(seen(all->fills[i], sight), seen(all->fills[k], sight));
+}
+
+/* For all readers and in grey; least from the ground. */
+static bool stands_out(uint32_t fill, const Theme *theme) {
+    const uint32_t behind[] = {theme->panel, theme->page, theme->ground};
+    for (int k = 0; k < 3; k++) {
+        for (int sight = 0; sight < SIGHTS; sight++)
+            if (!(distance(seen(fill, sight), seen(behind[k], sight)) > (k < 2 ? 25 : 17))) return false;
+        if (!(fabs(seen(fill, 0).l - seen(behind[k], 0).l) > (k < 2 ? 20 : 11))) return false;
+    }
+    return true;
+}
+
+/* The least distance of a method from all others and the bomb, in what is needed, if it had this fill; 0: refused. */
+static double room_of(Colours *all, int own, uint32_t fill) {
+    const ColourChoices choices = {{printed("%s=%06X", all->names[own], fill)}, 1};
+    double least = 100;
+    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
+        if (!fill_all(all, (LookTheme)t, &choices) || !stands_out(all->fills[own], theme_get((LookTheme)t))) return 0;
+        for (int k = 0; k <= all->bomb; k++)
+            for (int sight = 0; sight < SIGHTS && k != own; sight++)
+                least =
+                    fmin(least, apart(all, own, k, sight) / needed(all, own > k ? own : k, own > k ? k : own, sight));
+    }
+    return least;
+}
+
+/* For those who add a method: a fill for its row in src/pictures/colours.c. */
+static const char *advice(int method) {
+    enum { STEP = 12 };
+    Colours all = colours_named();
+    double most = 0;
+    uint32_t best = 0;
+    for (uint32_t r = 0; r < 256; r += STEP)
+        for (uint32_t g = 0; g < 256; g += STEP)
+            for (uint32_t b = 0; b < 256; b += STEP) {
+                const double room = room_of(&all, method, r << 16 | g << 8 | b);
+                if (room > most) most = room, best = r << 16 | g << 8 | b;
+            }
+    return printed("%s has most room with 0x%06X, %.2f of what it needs", all.names[method], best, most);
+}
+
 TEST(colours_of_boxes_and_the_bomb_differ_for_all_readers) {
+    static const char *const sees[SIGHTS] = {"normal sight", "protanopia", "deuteranopia", "tritanopia"};
     for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++)
         for (int sight = 0; sight < SIGHTS; sight++) {
             const Colours all = colours_of((LookTheme)t);
             for (int i = 1; i <= all.bomb; i++)
-                for (int k = 0; k < i; k++) {
-                    const bool most = k < COLOUR_HUES && (i < COLOUR_HUES || i == all.bomb);
-                    const double d = distance(seen(all.fills[i], sight), seen(all.fills[k], sight));
-                    if (d < (most ? 14.5 : sight == 0 ? 13 : 10))
-                        fail_msg("theme %d, sight %d: %s and %s are %.1f apart", t, sight, all.names[k],
-                                 i < all.bomb ? all.names[i] : "the bomb", d);
-                }
+                for (int k = 0; k < i; k++)
+                    if (apart(&all, i, k, sight) < needed(&all, i, k, sight))
+                        fail_msg("%s theme, %s: %s and %s are %.1f apart, not %g (%s)", name_of((LookTheme)t),
+                                 sees[sight], all.names[k], i < all.bomb ? all.names[i] : "the bomb",
+                                 apart(&all, i, k, sight), needed(&all, i, k, sight),
+                                 advice(i < all.methods - OTHERS ? i : k));
         }
 }
 
@@ -106,24 +168,22 @@ TEST(grey_tells_methods_apart) {
                 const bool engine = strcmp(all.names[i], "engine") == 0 || strcmp(all.names[k], "engine") == 0;
                 const double d = fabs(seen(all.fills[i], 0).l - seen(all.fills[k], 0).l);
                 if (d < (engine ? 6 : 4))
-                    fail_msg("theme %d: %s and %s are %.1f apart in grey", t, all.names[k], all.names[i], d);
+                    fail_msg("%s theme: %s and %s are %.1f apart in grey", name_of((LookTheme)t), all.names[k],
+                             all.names[i], d);
             }
     }
 }
 
-/* Boxes, the bomb and contacts stand out from what is behind them, for all readers and in grey; least from the ground.
-   */
+/* Boxes, the bomb and contacts. */
 TEST(colours_differ_from_what_is_behind_them) {
     for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
-        const Theme *theme = theme_get((LookTheme)t);
-        const uint32_t behind[] = {theme->panel, theme->page, theme->ground};
         const Colours all = colours_of((LookTheme)t);
         for (int i = 0; i <= all.bomb + 1; i++)
-            for (int k = 0; k < 3; k++) {
-                for (int sight = 0; sight < SIGHTS; sight++)
-                    assert_true(distance(seen(all.fills[i], sight), seen(behind[k], sight)) > (k < 2 ? 25 : 17));
-                assert_true(fabs(seen(all.fills[i], 0).l - seen(behind[k], 0).l) > (k < 2 ? 20 : 11));
-            }
+            if (!stands_out(all.fills[i], theme_get((LookTheme)t)))
+                fail_msg("%s theme: %s is too near to panel, page or ground", name_of((LookTheme)t),
+                         i < all.bomb    ? all.names[i]
+                         : i == all.bomb ? "the bomb"
+                                         : "a contact");
     }
 }
 

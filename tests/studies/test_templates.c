@@ -5,6 +5,8 @@
 
 #include "runs/verdict.h"
 
+#include <dirent.h>
+
 enum { STEPS = 600 }; /* 10 s; the bomb comes after one */
 
 static const char *const methods[] = {"engine", "momentum", "interior"};
@@ -28,14 +30,13 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
         const Method method = method_named(methods[i]);
         assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
         if (!verdict_holds(reading.verdict))
-            fail_msg("%s with %s = %g: %s %s at body %d, frame %d", path, count > 0 ? settings->name : "",
-                     count > 0 ? settings->value : 0, methods[i], verdict_name(reading.verdict), reading.body,
-                     reading.frame);
+            fail_msg("%s%s: %s %s at body %d, frame %d", path,
+                     count > 0 ? printed(" with %s = %g", settings->name, settings->value) : "", methods[i],
+                     verdict_name(reading.verdict), reading.body, reading.frame);
     }
 }
 
-static void check_template(const char *name) {
-    const char *path = printed(SOURCE_DIR "/scenes/templates/%s.yaml", name);
+static void check_template(const char *path) {
     OWN(Scene) *scene = scene_from(path);
     assert_true(scene->bomb.present && scene_span_varies(&scene->bomb.x));
     assert_in_range(scene->parameter_count, 1, 2);
@@ -50,14 +51,22 @@ static void check_template(const char *name) {
     }
 }
 
-TEST(wall) { check_template("wall"); }
-TEST(stack) { check_template("stack"); }
-TEST(pyramid) { check_template("pyramid"); }
-TEST(arch) { check_template("arch"); }
-TEST(dominoes) { check_template("dominoes"); }
-TEST(towers) { check_template("towers"); }
-TEST(gate) { check_template("gate"); }
-TEST(cardhouse) { check_template("cardhouse"); }
+/* All but the pile, which falls into place. In the order of their names: sanitizers take a sample. */
+TEST(templates_stand) {
+    struct dirent **files;
+    const int count = scandir(SOURCE_DIR "/scenes/templates", &files, NULL, alphasort);
+    int templates = 0;
+    for (int i = 0; i < count; i++) {
+        const char *name = files[i]->d_name;
+        if (strstr(name, ".yaml") != NULL && strcmp(name, "pile.yaml") != 0) {
+            check_template(printed(SOURCE_DIR "/scenes/templates/%s", name));
+            templates++;
+        }
+        free(files[i]);
+    }
+    free(files);
+    assert_true(templates >= 8);
+}
 
 /* "At rest when the bomb comes." */
 TEST(the_pile_comes_to_rest) {
