@@ -276,11 +276,24 @@ static double common_value(const Scene *scene, int which) {
     case ITERATIONS: return scene->iterations;
     case DT: return (double)scene->dt;
     case FRICTION: return (double)scene->bodies[scene->body_count - 1].friction;
-    case BOMB_X: return (double)scene->bomb.body.position.x;
-    case BOMB_Y: return (double)scene->bomb.body.position.y;
-    case BOMB_MASS: return (double)scene->bomb.body.mass;
+    case BOMB_X: return (double)scene->bomb.x.value;
+    case BOMB_Y: return (double)scene->bomb.y;
+    case BOMB_MASS: return (double)scene->bomb.mass.value;
     default: return bomb_speed(scene);
     }
+}
+
+/* The parameter of the file with this name, or NULL. */
+static const SceneParameter *find_own(const Scene *scene, const char *name) {
+    for (int i = 0; i < scene->parameter_count; i++)
+        if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
+    return NULL;
+}
+
+const char *scene_parameter_unit(const Scene *scene, const char *name) {
+    const SceneParameter *own = find_own(scene, name);
+    const int which = find_common(name);
+    return own != NULL ? own->unit : which < COMMON ? common[which].unit : "";
 }
 
 /* The steps, when a step takes `ratio` times as long. */
@@ -301,7 +314,7 @@ static void change_dt(Scene *scene, double dt) {
 static void change_speed(Scene *scene, double speed) {
     const float ratio = (float)(speed / bomb_speed(scene));
     scene->bomb.velocity_factor *= ratio;
-    scene->bomb.body.velocity = vec2_scale(ratio, scene->bomb.body.velocity);
+    scene->bomb.velocity = vec2_scale(ratio, scene->bomb.velocity);
 }
 
 static void change(Scene *scene, int which, double value) {
@@ -310,11 +323,11 @@ static void change(Scene *scene, int which, double value) {
     case DT: change_dt(scene, value); break;
     case FRICTION:
         for (int i = 0; i < scene->body_count; i++) scene->bodies[i].friction = (float)value;
-        scene->bomb.body.friction = (float)value;
+        scene->bomb.friction = (float)value;
         break;
-    case BOMB_X: scene->bomb.body.position.x = (float)value; break;
-    case BOMB_Y: scene->bomb.body.position.y = (float)value; break;
-    case BOMB_MASS: scene->bomb.body.mass = (float)value; break;
+    case BOMB_X: scene->bomb.x.value = (float)value; break;
+    case BOMB_Y: scene->bomb.y = (float)value; break;
+    case BOMB_MASS: scene->bomb.mass.value = (float)value; break;
     default: change_speed(scene, value);
     }
 }
@@ -337,14 +350,16 @@ static bool set_common(Scene *scene, const char *path, int which, double value, 
 
 bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error) {
     for (int i = 0; i < count; i++) {
-        const int which = scene_parameter(scene, settings[i].name) == NULL ? find_common(settings[i].name) : COMMON;
+        const int which = find_own(scene, settings[i].name) == NULL ? find_common(settings[i].name) : COMMON;
         if (which < COMMON && !set_common(scene, path, which, settings[i].value, error)) return false;
     }
     return true;
 }
 
-void common_list(Scene *scene) {
+SceneParameters scene_parameters(const Scene *scene) {
     const SceneSpan *x = &scene->bomb.x;
+    SceneParameters all = {.count = scene->parameter_count};
+    memcpy(all.items, scene->parameters, sizeof scene->parameters);
     for (int which = 0; which < (scene->bomb.present ? COMMON : BOMB_X); which++) {
         const double value = common_value(scene, which);
         const double ranges[COMMON][2] = {[ITERATIONS] = {1, value < 20 ? 40 : 2 * value},
@@ -354,20 +369,22 @@ void common_list(Scene *scene) {
                                           [BOMB_Y] = {value - 5, value + 5},
                                           [BOMB_MASS] = {value / 10, value * 10},
                                           [BOMB_SPEED] = {0, 3 * value}};
-        SceneParameter *parameter = &scene->common[scene->common_count++];
-        *parameter = (SceneParameter){
-            .value = value, .from = ranges[which][0], .to = ranges[which][1], .whole = which == ITERATIONS};
+        SceneParameter *parameter = &all.items[all.count++];
+        *parameter = (SceneParameter){.value = value,
+                                      .from = ranges[which][0],
+                                      .to = ranges[which][1],
+                                      .whole = which == ITERATIONS,
+                                      .common = true};
         strcpy(parameter->name, common[which].name);
         strcpy(parameter->unit, common[which].unit);
         if (which == BOMB_X && scene_span_varies(x)) parameter->from = (double)x->from, parameter->to = (double)x->to;
     }
+    return all;
 }
 
-const SceneParameter *scene_parameter(const Scene *scene, const char *name) {
-    for (int i = 0; i < scene->parameter_count; i++)
-        if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
-    for (int i = 0; i < scene->common_count; i++)
-        if (strcmp(scene->common[i].name, name) == 0) return &scene->common[i];
+const SceneParameter *scene_parameter(const SceneParameters *all, const char *name) {
+    for (int i = 0; i < all->count; i++)
+        if (strcmp(all->items[i].name, name) == 0) return &all->items[i];
     return NULL;
 }
 

@@ -253,7 +253,7 @@ static bool field_bomb_velocity(const YamlTree *tree, int node, const Field *fie
     bomb->velocity_from_position = tree->nodes[node].kind == YAML_MAPPING;
     int nodes[FIELDS_MAX];
     if (bomb->velocity_from_position) return fields_read(tree, node, "a velocity law", law, bomb, nodes, error);
-    return field_vector(tree, node, field, &bomb->body.velocity, error);
+    return field_vector(tree, node, field, &bomb->velocity, error);
 }
 
 /* SceneSpan: a number, or the mapping {from: A, to: B, value: V}; the default of V is the middle. */
@@ -282,10 +282,10 @@ static bool field_span(const YamlTree *tree, int node, const Field *field, void 
 
 static const Field bomb_fields[] = {
     {"x", field_span, offsetof(SceneBomb, x), &range_position, true},
-    {"y", field_number, offsetof(SceneBomb, body.position.y), &range_position, true},
-    {"size", field_vector, offsetof(SceneBomb, body.size), &range_size, true},
+    {"y", field_number, offsetof(SceneBomb, y), &range_position, true},
+    {"size", field_vector, offsetof(SceneBomb, size), &range_size, true},
     {"mass", field_span, offsetof(SceneBomb, mass), &range_mass, true},
-    {"friction", field_number, offsetof(SceneBomb, body.friction), &range_friction, false},
+    {"friction", field_number, offsetof(SceneBomb, friction), &range_friction, false},
     {"rotation", field_span, offsetof(SceneBomb, rotation), &range_angle, false},
     {"spin", field_span, offsetof(SceneBomb, spin), &range_spin, false},
     {"frame", field_int, offsetof(SceneBomb, frame), &range_bomb_frame, false},
@@ -297,7 +297,7 @@ static const Field bomb_fields[] = {
 static bool check_velocity(const YamlTree *tree, int node, Scene scene, Error *error) {
     const float ends[] = {scene.bomb.x.value, scene.bomb.x.from, scene.bomb.x.to};
     for (int i = 0; i < 3; i++) {
-        scene.bomb.body.position.x = ends[i];
+        scene.bomb.x.value = ends[i];
         const Vec2 velocity = scene_bomb_body(&scene).velocity;
         if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) > range_speed.maximum)
             return yaml_error(tree, node, error,
@@ -311,13 +311,10 @@ bool field_bomb(const YamlTree *tree, int node, const Field *field, void *member
     (void)field;
     Scene *scene = member;
     SceneBomb *bomb = &scene->bomb;
-    *bomb = (SceneBomb){.present = true, .body.friction = DEFAULT_FRICTION, .impact_frames = SCENE_IMPACT_FRAMES};
+    *bomb = (SceneBomb){.present = true, .friction = DEFAULT_FRICTION, .impact_frames = SCENE_IMPACT_FRAMES};
     int nodes[FIELDS_MAX];
     if (!fields_read(tree, node, "a bomb", bomb_fields, bomb, nodes, error)) return false;
-    bomb->body.position.x = bomb->x.value;
-    bomb->body.angle = bomb->rotation.value;
-    bomb->body.angular_velocity = bomb->spin.value;
-    bomb->body.mass = bomb->mass.value;
+    bomb->own_mass = bomb->mass.value;
     return check_velocity(tree, fields_node(bomb_fields, nodes, "velocity"), *scene, error);
 }
 
@@ -414,7 +411,6 @@ static bool read_fields(const YamlTree *tree, Scene *scene, const SceneSetting *
     if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error) ||
         !common_set(scene, tree->source.path, settings, count, error))
         return false;
-    common_list(scene);
     const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
     if (scene->last_body_until > 0 && !bodies_check_until(tree, bodies, scene, error)) return false;
     if (scene->bomb.present && scene->bomb.frame > scene->frames)

@@ -95,9 +95,6 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
 bool parameters_set(Parameters *parameters, const char *path, const SceneSetting *settings, int count, Error *error);
 bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error);
 
-/* Fills `common` of the scene. */
-void common_list(Scene *scene);
-
 /* Refuses a parameter that no number uses, because setting it would have no effect. */
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error);
 
