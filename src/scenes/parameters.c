@@ -9,6 +9,45 @@
 #include <stdio.h>
 #include <string.h>
 
+/* What every scene has, and messages on names that are unknown. */
+
+enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_Y, BOMB_MASS, BOMB_SPEED, COMMON };
+
+static const struct {
+    const char *name, *unit;
+    double least, most;
+} common[COMMON] = {[ITERATIONS] = {"iterations", "", 1, SCENE_MAX_ITERATIONS},
+                    [DT] = {"dt", "s", (double)SCENE_MIN_DT, (double)SCENE_MAX_DT},
+                    [FRICTION] = {"friction", "", 0, 10},
+                    [BOMB_X] = {"bomb_x", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
+                    [BOMB_Y] = {"bomb_y", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
+                    [BOMB_MASS] = {"bomb_mass", "kg", 1e-6, 1e9},
+                    [BOMB_SPEED] = {"bomb_speed", "m/s", 0, 1e4}};
+
+/* The end of a message on an unknown name: "did you mean 'height'?", "known: height, rate" or "known: none". */
+typedef struct ParametersHint {
+    char text[SCENE_MAX_PARAMETERS * (SCENE_PARAMETER_SIZE + 2) + 96]; /* and of what every scene has */
+} ParametersHint;
+
+/* settable: the name is of a setting, which may also be one that every scene has. */
+static ParametersHint make_hint(const Parameters *parameters, const char *name, bool settable) {
+    ParametersHint hint;
+    NameList known = {0};
+    const char *names[SCENE_MAX_PARAMETERS + COMMON];
+    int count = 0;
+    for (int i = 0; i < parameters->count; i++) names[count++] = parameters->items[i].name;
+    for (int i = 0; settable && i < COMMON; i++) names[count++] = common[i].name;
+    const char *nearest = nearest_word(name, names, count);
+    if (nearest != NULL) {
+        snprintf(hint.text, sizeof hint.text, "did you mean '%s'?", nearest);
+        return hint;
+    }
+    for (int i = 0; i < count; i++) name_list_add(&known, names[i]);
+    snprintf(hint.text, sizeof hint.text, "known: %.*s", (int)sizeof hint.text - 8,
+             known.used > 0 ? known.text : "none");
+    return hint;
+}
+
 /* Expressions: numbers made of numbers and parameters. */
 
 /* What is read, and how far. */
@@ -86,7 +125,7 @@ static bool take_name(Expression *e, double *value) {
         char name[SCENE_PARAMETER_SIZE];
         snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name), e->at + 1);
         return yaml_error_at(e->tree, e->node, (size_t)(e->at - e->text), e->error, "%s: '$%s' is not a parameter; %s",
-                             e->what, name, parameters_hint(parameters, name).text);
+                             e->what, name, make_hint(parameters, name, false).text);
     }
     parameters->used[parameter - parameters->items] = true;
     *value = parameter->value;
@@ -247,21 +286,6 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
     return true;
 }
 
-/* What every scene has. */
-
-enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_Y, BOMB_MASS, BOMB_SPEED, COMMON };
-
-static const struct {
-    const char *name, *unit;
-    double least, most;
-} common[COMMON] = {[ITERATIONS] = {"iterations", "", 1, SCENE_MAX_ITERATIONS},
-                    [DT] = {"dt", "s", (double)SCENE_MIN_DT, (double)SCENE_MAX_DT},
-                    [FRICTION] = {"friction", "", 0, 10},
-                    [BOMB_X] = {"bomb_x", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
-                    [BOMB_Y] = {"bomb_y", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
-                    [BOMB_MASS] = {"bomb_mass", "kg", 1e-6, 1e9},
-                    [BOMB_SPEED] = {"bomb_speed", "m/s", 0, 1e4}};
-
 /* COMMON: none. */
 static int find_common(const char *name) {
     int which = 0;
@@ -386,29 +410,6 @@ const SceneParameter *scene_parameter(const SceneParameters *all, const char *na
     for (int i = 0; i < all->count; i++)
         if (strcmp(all->items[i].name, name) == 0) return &all->items[i];
     return NULL;
-}
-
-/* settable: the name is of a setting, which may also be one that every scene has. */
-static ParametersHint make_hint(const Parameters *parameters, const char *name, bool settable) {
-    ParametersHint hint;
-    NameList known = {0};
-    const char *names[SCENE_MAX_PARAMETERS + COMMON];
-    int count = 0;
-    for (int i = 0; i < parameters->count; i++) names[count++] = parameters->items[i].name;
-    for (int i = 0; settable && i < COMMON; i++) names[count++] = common[i].name;
-    const char *nearest = nearest_word(name, names, count);
-    if (nearest != NULL) {
-        snprintf(hint.text, sizeof hint.text, "did you mean '%s'?", nearest);
-        return hint;
-    }
-    for (int i = 0; i < count; i++) name_list_add(&known, names[i]);
-    snprintf(hint.text, sizeof hint.text, "known: %.*s", (int)sizeof hint.text - 8,
-             known.used > 0 ? known.text : "none");
-    return hint;
-}
-
-ParametersHint parameters_hint(const Parameters *parameters, const char *name) {
-    return make_hint(parameters, name, false);
 }
 
 static bool set_parameters(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
