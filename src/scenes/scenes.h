@@ -58,7 +58,7 @@ static inline float scene_span_at(const SceneSpan *span, double share) {
 }
 
 /* The bomb: a box that is added after step `frame` (so it is in that frame's state; 0: from the start). A number has
-   this place only: a setting, an option and launch_scene() write it here, and scene_bomb_body() makes the body of it. */
+   this place only: settings, options and launch_scene() write it here, and scene_bomb_body() makes the body of it. */
 typedef struct SceneBomb {
     bool present;
     int frame;
