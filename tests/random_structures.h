@@ -118,13 +118,14 @@ static inline void structure_strike(Structure *made) {
         if ((double)body->position.y > top) top = (double)body->position.y;
     }
     const double side = made->unit * structure_between(made, 0.2, 1), speed = structure_power(made, 1, 100);
-    scene->bomb = (SceneBomb){.present = true, .impact_frames = SCENE_IMPACT_FRAMES};
-    scene->bomb.body = (BodyDef){
-        .size = {(float)side, (float)side},
-        .mass = (float)(1000 / structure_power(made, 1, made->spread)),
-        .friction = (float)made->friction,
-        .position = {(float)(left - side - speed / 6), (float)(0.8 * side + structure_between(made, 0, 1) * top)},
-        .velocity = {(float)speed, 0}};
+    scene->bomb = (SceneBomb){.present = true,
+                              .size = {(float)side, (float)side},
+                              .mass.value = (float)(1000 / structure_power(made, 1, made->spread)),
+                              .friction = (float)made->friction,
+                              .x.value = (float)(left - side - speed / 6),
+                              .y = (float)(0.8 * side + structure_between(made, 0, 1) * top),
+                              .velocity = {(float)speed, 0},
+                              .impact_frames = SCENE_IMPACT_FRAMES};
 }
 
 /* Ends the program if memory is short; scene_destroy() frees it. */

@@ -145,11 +145,11 @@ static void offer_alternatives(const CompletionValue *value, const char *text) {
 static void offer_parameters(const CompletionValue *value) {
     if (value->scene == NULL || strchr(value->typed, '=') != NULL) return;
     Scene *scene = scene_read(installed_path(value->scene), &(Error){0});
-    for (int i = 0; scene != NULL && i < scene->parameter_count + scene->common_count; i++) {
-        const int k = i - scene->parameter_count;
-        const SceneParameter *parameter = k < 0 ? &scene->parameters[i] : &scene->common[k];
+    if (scene == NULL) return;
+    const SceneParameters all = scene_parameters(scene);
+    for (const SceneParameter *parameter = all.items; parameter < all.items + all.count; parameter++) {
         char range[128];
-        if (scene_parameter(scene, parameter->name) != parameter) continue;
+        if (scene_parameter(&all, parameter->name) != parameter) continue;
         snprintf(range, sizeof range, "%g to %g%s%s (the scene's: %g)", parameter->from, parameter->to,
                  parameter->unit[0] != '\0' ? " " : "", parameter->unit, parameter->value);
         completion_offer(value->begin, value->typed, parameter->name, value->option->read == option_set ? "=" : "",

@@ -252,7 +252,7 @@ static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error)
         return error_input(error, "--no-bomb", "cannot be combined with --bomb-x or --bomb-frame");
     if (!bomb->present && launched) return error_input(error, options->scene, "the scene has no bomb to launch");
     if (options->no_bomb) bomb->present = false;
-    if (!isnan(options->bomb_x)) bomb->body.position.x = options->bomb_x;
+    if (!isnan(options->bomb_x)) bomb->x.value = options->bomb_x;
     if (options->bomb_frame >= 0) bomb->frame = options->bomb_frame;
     return true;
 }

@@ -276,7 +276,7 @@ static bool run_scene(Scene *scene, const Options *options, Error *error) {
     Method method;
     if (!isnan(options->bomb_x) && !scene->bomb.present)
         return error_input(error, options->input, "the scene has no bomb to launch");
-    if (!isnan(options->bomb_x)) scene->bomb.body.position.x = options->bomb_x;
+    if (!isnan(options->bomb_x)) scene->bomb.x.value = options->bomb_x;
     scene->frames = options->frame;
     if (!method_parse(&method, options->run_by != NULL ? options->run_by : "engine", error)) return false;
     return simulate_observed(scene, &method, &(StepObserver){use_last, &(Recording){scene, options}}, error);

@@ -227,16 +227,10 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
     return true;
 }
 
-bool world_end_step(World *world, Error *error) {
-    for (int i = 0; i < world->body_count; i++) move_body(world, i);
-    if (!check_finite(world, error)) return false;
-    commit(world);
-    return true;
-}
-
 bool world_end_step_at(World *world, const BodyPose *poses, Error *error) {
     for (int i = 0; i < world->body_count; i++) {
         move_body(world, i);
+        if (poses == NULL) continue;
         world->moved[i].position = poses[i].position;
         world->moved[i].angle = poses[i].angle;
     }
@@ -244,6 +238,8 @@ bool world_end_step_at(World *world, const BodyPose *poses, Error *error) {
     commit(world);
     return true;
 }
+
+bool world_end_step(World *world, Error *error) { return world_end_step_at(world, NULL, error); }
 
 bool world_step(World *world, ContactSolve *solve, void *state, float dt, Error *error) {
     ContactProblem problem;

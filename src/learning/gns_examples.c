@@ -117,8 +117,10 @@ static float normal(uint64_t *random) {
 
 static bool is_bomb(const GnsRuns *runs, int body) { return body == runs->runs.bodies - 1; }
 
-static const BodyDef *definition(const GnsRuns *runs, int body) {
-    return is_bomb(runs, body) ? &runs->scene->bomb.body : &runs->scene->bodies[body];
+static BodyDef definition(const GnsRuns *runs, int launch, int body) {
+    if (!is_bomb(runs, body)) return runs->scene->bodies[body];
+    const Scene launched = launch_scene(runs->scene, &runs->runs.launches[launch]);
+    return scene_bomb_body(&launched);
 }
 
 /* Before it exists, a body flies with its start velocity. */
@@ -126,8 +128,7 @@ static BodyPose pose_at(const GnsRuns *runs, int launch, int body, int frame) {
     const int start = is_bomb(runs, body) ? runs->scene->bomb.frame : 0;
     if (frame >= start) return launch_runs_frame(&runs->runs, launch, frame)[body];
     BodyPose pose = launch_runs_frame(&runs->runs, launch, start)[body];
-    const Scene launched = launch_scene(runs->scene, &runs->runs.launches[launch]);
-    const BodyDef own = is_bomb(runs, body) ? scene_bomb_body(&launched) : *definition(runs, body);
+    const BodyDef own = definition(runs, launch, body);
     const float back = (float)(frame - start) * runs->scene->dt;
     pose.position = vec2_add(pose.position, vec2_scale(back, own.velocity));
     pose.angle += back * own.angular_velocity;
@@ -148,10 +149,9 @@ static void fill_particles(GnsExample *example, int i, const BodyPose poses[GNS_
 }
 
 static void fill_body(GnsExample *example, int i, const GnsRuns *runs, int launch, int body, int frame) {
-    const BodyDef *own = definition(runs, body);
-    const float mass = is_bomb(runs, body) ? runs->runs.launches[launch].mass : own->mass;
+    const BodyDef own = definition(runs, launch, body);
     BodyPose poses[GNS_HISTORY + 1];
-    example->particles.body[i] = (GnsBody){own->size, mass, is_bomb(runs, body)};
+    example->particles.body[i] = (GnsBody){own.size, own.mass, is_bomb(runs, body)};
     for (int k = 0; k <= GNS_HISTORY; k++) poses[k] = pose_at(runs, launch, body, frame - GNS_HISTORY + k);
     fill_particles(example, i, poses, runs->scene->dt);
 }
@@ -253,8 +253,8 @@ static float either_sign(uint64_t *random) { return gns_examples_below(random, 2
 static void fill_flight(GnsExample *example, int launch, float noise, uint64_t *random) {
     const GnsRuns *runs = example->from;
     const int body = body_of(runs, gns_examples_below(random, runs->moving_count + 1));
-    const BodyDef *own = definition(runs, body);
-    const float mass = is_bomb(runs, body) ? runs->runs.launches[launch].mass : own->mass, dt = runs->scene->dt;
+    const BodyDef own = definition(runs, launch, body);
+    const float dt = runs->scene->dt;
     const float x = either_sign(random) * flight_speed * often_small(random);
     const float y = either_sign(random) * flight_speed * often_small(random);
     const float spin = either_sign(random) * flight_spin * often_small(random);
@@ -267,7 +267,7 @@ static void fill_flight(GnsExample *example, int launch, float noise, uint64_t *
         poses[k].position = vec2_add(poses[k - 1].position, vec2_scale(dt, velocity));
         poses[k].angle = poses[k - 1].angle + dt * spin;
     }
-    example->particles.body[0] = (GnsBody){own->size, mass, is_bomb(runs, body)};
+    example->particles.body[0] = (GnsBody){own.size, own.mass, is_bomb(runs, body)};
     example->counts[0] = 1;
     fill_particles(example, 0, poses, dt);
     fill_target(example, 0, &poses[GNS_HISTORY + 1], noise, 0, random);
@@ -290,7 +290,7 @@ bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t
     int chosen[GNS_CROP];
     float distances[GNS_CROP];
     const int bodies = choose_bodies(runs, launch, frame, count, middle, chosen, distances);
-    const Vec2 size = definition(runs, middle)->size;
+    const Vec2 size = definition(runs, launch, middle).size;
     const float reach = counting * (size.x > size.y ? size.x : size.y);
     if (!gns_examples_reserve(example, bodies)) return false;
     const float whole = (float)gns_examples_below(&random, 2);

@@ -22,9 +22,6 @@
 
 enum { STORE_EVERY = 50 }; /* launches */
 
-/* Of turned launches, unless the scene has a family of them; rad, rad/s. As in training of scene-net. */
-static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
-
 typedef struct Trainer {
     const Scene *scene;
     const HybridTraining *training;
@@ -36,20 +33,17 @@ typedef struct Trainer {
     HybridMemory *memory;         /* NULL until the directions are fitted */
 } Trainer;
 
-static float hybrid_training_draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
-    const double share = random_unit(state);
-    return scene_span_at(scene_span_varies(span) ? span : otherwise, share);
-}
-
 /* Depends on the seed and i only. */
 Launch hybrid_launch(const Scene *scene, uint64_t seed, int i, bool turns) {
     const SceneBomb *bomb = &scene->bomb;
     uint64_t state = seed;
     state = split_mix(&state) + (uint64_t)i;
     Launch launch = launch_of(scene);
-    launch.x = hybrid_training_draw(&state, &bomb->x, &bomb->x);
-    launch.rotation = hybrid_training_draw(&state, &bomb->rotation, turns ? &turned : &bomb->rotation);
-    launch.spin = hybrid_training_draw(&state, &bomb->spin, turns ? &spinning : &bomb->spin);
+    launch.x = scene_span_at(&bomb->x, random_unit(&state));
+    const double rotation = random_unit(&state), spin = random_unit(&state);
+    launch.rotation = scene_span_at(&bomb->rotation, rotation);
+    launch.spin = scene_span_at(&bomb->spin, spin);
+    if (turns) launch_turn(&launch, scene, rotation, spin);
     return launch;
 }
 

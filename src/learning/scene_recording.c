@@ -54,26 +54,18 @@ bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from) {
 /* STEPS_AFTER: steps after the scene's impact frames that are samples too. */
 enum { STEPS_AFTER = 2, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
 
-/* Of turned launches, unless the scene has a family of them; rad, rad/s. */
-static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
 /* The setting `near` (residual) of scene-net in the runs that record training samples. */
 static const float rollout_near = 0.05f; /* m/s */
 
-static float scene_recording_draw(const SceneRecording *recording, const SceneSpan *span, const SceneSpan *otherwise) {
-    return scene_span_at(scene_span_varies(span) ? span : otherwise, gsl_rng_uniform(recording->generator));
-}
-
 /* Every second launch has a random rotation and spin. The mass is the scene's: a network is for one mass. */
 static void draw_launches(const SceneRecording *recording, Launch *launches, int count) {
-    const SceneBomb *bomb = &recording->scene->bomb;
+    const Scene *scene = recording->scene;
     for (int i = 0; i < count; i++) {
-        Launch launch = launch_of(recording->scene);
-        launch.x = scene_recording_draw(recording, &bomb->x, &bomb->x);
-        if (i % 2 == 1) {
-            launch.rotation = scene_recording_draw(recording, &bomb->rotation, &turned);
-            launch.spin = scene_recording_draw(recording, &bomb->spin, &spinning);
-        }
-        launches[i] = launch;
+        launches[i] = launch_of(scene);
+        launches[i].x = scene_span_at(&scene->bomb.x, gsl_rng_uniform(recording->generator));
+        if (i % 2 == 0) continue;
+        const double rotation = gsl_rng_uniform(recording->generator), spin = gsl_rng_uniform(recording->generator);
+        launch_turn(&launches[i], scene, rotation, spin);
     }
 }
 

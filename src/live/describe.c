@@ -77,8 +77,8 @@ static void write_methods(JsonWriter *json, const void *context) {
 
 const char *live_methods(void) { return describe_print(write_methods, NULL); }
 
-static void put_parameters(JsonWriter *json, const SceneParameter *parameters, int count, bool common) {
-    for (const SceneParameter *parameter = parameters; parameter < parameters + count; parameter++) {
+static void put_parameters(JsonWriter *json, const SceneParameters *all) {
+    for (const SceneParameter *parameter = all->items; parameter < all->items + all->count; parameter++) {
         json_begin_object(json, NULL, JSON_ONE_LINE);
         json_put_text(json, "name", parameter->name);
         json_put_text(json, "unit", parameter->unit);
@@ -86,7 +86,7 @@ static void put_parameters(JsonWriter *json, const SceneParameter *parameters, i
         json_put_number(json, "from", parameter->from);
         json_put_number(json, "to", parameter->to);
         json_put_bool(json, "whole", parameter->whole);
-        json_put_bool(json, "common", common);
+        json_put_bool(json, "common", parameter->common);
         json_end(json);
     }
 }
@@ -111,6 +111,7 @@ static void put_bomb(JsonWriter *json, const Scene *scene) {
 
 static void write_scene(JsonWriter *json, const void *context) {
     const Scene *scene = context;
+    const SceneParameters parameters = scene_parameters(scene);
     json_begin_object(json, NULL, JSON_LINES);
     json_put_text(json, "name", scene->name);
     json_put_number(json, "dt", (double)scene->dt);
@@ -125,8 +126,7 @@ static void write_scene(JsonWriter *json, const void *context) {
     json_end(json);
     put_bomb(json, scene);
     json_begin_array(json, "parameters", JSON_LINES);
-    put_parameters(json, scene->parameters, scene->parameter_count, false);
-    put_parameters(json, scene->common, scene->common_count, true);
+    put_parameters(json, &parameters);
     json_end(json);
     json_end(json);
 }

@@ -50,17 +50,14 @@ uint64_t subspace_physics(const Scene *scene) {
     Scene plain = *scene;
     plain.iterations = 1;
     plain.warm_starting = plain.accumulate_impulses = plain.position_correction = true;
-    BodyDef *bomb = &plain.bomb.body;
-    bomb->position.x = bomb->angle = bomb->angular_velocity = 0;
-    bomb->mass = plain.bomb.mass.value;
-    plain.bomb.frame = 0;
     plain.bomb.present = true; /* a launch may be run without its bomb, to check the scene */
+    plain = launch_scene(&plain, &(Launch){.mass = plain.bomb.own_mass});
     return scene_hash(&plain);
 }
 
 void subspace_launch(const Scene *launched, float launch[SUBSPACE_LAUNCH]) {
-    const BodyDef *bomb = &launched->bomb.body;
-    const float numbers[SUBSPACE_LAUNCH] = {bomb->position.x, bomb->angle, bomb->angular_velocity, bomb->mass};
+    const Launch own = launch_of(launched);
+    const float numbers[SUBSPACE_LAUNCH] = {own.x, own.rotation, own.spin, own.mass};
     memcpy(launch, numbers, sizeof numbers);
 }
 
@@ -185,8 +182,8 @@ static NetworkFallbacks subspace_predict(SubspaceStepper *method, const Body *bo
     subspace_launch(scene, launch);
     const SubspaceReport report = subspace_step(subspace, launch);
     subspace_reconstruct(subspace);
-    const bool other_mass =
-        scene->bomb.body.mass < scene->bomb.mass.from || scene->bomb.body.mass > scene->bomb.mass.to;
+    const SceneSpan *mass = &scene->bomb.mass;
+    const bool other_mass = mass->value < mass->from || mass->value > mass->to;
     return (NetworkFallbacks){.not_finite = report.not_finite + pose_bodies(method, bodies, problem->body_count),
                               .beyond_training = report.beyond > 0 || other_mass};
 }

@@ -119,7 +119,7 @@ static void draw_words(Sketch *sketch, const View *view, const char *title, cons
     sketch_text(sketch, (Point){view->low.x, height - 2.8}, &heading, "%s: %d %s", title, boxes,
                 boxes == 1 ? "box" : "boxes");
     sketch_text(sketch, (Point){view->low.x, height - 7}, &words, "Step %d: bomb of %g kg at %.1f m/s", run->frames - 1,
-                (double)scene->bomb.body.mass, bomb_speed(run));
+                (double)scene->bomb.mass.value, bomb_speed(run));
 }
 
 static bool draw_scene(Sketch *sketch, int i, const Scene *scene, int *step, Error *error) {

@@ -294,7 +294,7 @@ static bool write_caption(const Strips *strips, const char *stem, const char *na
     const int length = snprintf(
         line, sizeof line,
         "A held-out launch of %s.yaml with the bomb from x = %.2f m, at %d moments: the engine above, %s below.\n",
-        strips->name, (double)strips->launched.bomb.body.position.x, MOMENTS, name);
+        strips->name, (double)strips->launched.bomb.x.value, MOMENTS, name);
     return file_path(path, sizeof path, error, "%s.txt", stem) && file_write(path, line, (size_t)length, error);
 }
 

@@ -150,7 +150,7 @@ bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int 
     return ok;
 }
 
-bool contacts_differ(const ContactDifference *d) { return d->only_a + d->only_b + d->moved + d->changed > 0; }
+static bool contacts_differ(const ContactDifference *d) { return d->only_a + d->only_b + d->moved + d->changed > 0; }
 
 static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, const PoseTolerance *tolerance) {
     const double turn = 2 * acos(-1);

@@ -20,11 +20,11 @@ void chaos_free(Chaos *chaos) {
     *chaos = (Chaos){.frames = 0};
 }
 
-static double shift_x(BodyDef *body) {
-    float before = body->position.x;
-    body->position.x = before + CHAOS_SHIFT;
-    if (body->position.x == before) body->position.x = nextafterf(before, INFINITY);
-    return (double)body->position.x - before;
+static double shift_x(float *x) {
+    float before = *x;
+    *x = before + CHAOS_SHIFT;
+    if (*x == before) *x = nextafterf(before, INFINITY);
+    return (double)*x - before;
 }
 
 /* Whether the body has a contact in any step up to the frame. */
@@ -50,10 +50,10 @@ static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *c
     shifted->bodies = malloc(size + 1);
     if (shifted->bodies == NULL) return error_memory(error, scene->name);
     if (size > 0) memcpy(shifted->bodies, scene->bodies, size);
-    shifted->bomb.body = scene_bomb_body(scene);
+    shifted->bomb.velocity = scene_bomb_body(scene).velocity;
     shifted->bomb.velocity_from_position = false;
     chaos->body = body;
-    chaos->shift = shift_x(body == scene->body_count ? &shifted->bomb.body : &shifted->bodies[body]);
+    chaos->shift = shift_x(body == scene->body_count ? &shifted->bomb.x.value : &shifted->bodies[body].position.x);
     return true;
 }
 

@@ -32,8 +32,7 @@ static int by_frame(const void *a, const void *b) {
 static Box box_of(const Body *body) { return box_make(body->position, body->size, body->angle); }
 
 static Box bomb_box(const Scene *scene, const Launch *launch) {
-    const BodyDef *bomb = &scene->bomb.body;
-    return box_make(vec2(launch->x, bomb->position.y), bomb->size, launch->rotation);
+    return box_make(vec2(launch->x, scene->bomb.y), scene->bomb.size, launch->rotation);
 }
 
 static int by_start(const void *a, const void *b) {

@@ -38,7 +38,8 @@ Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int fr
         memcpy(trajectory->name, scene->names, (size_t)scene->body_count * sizeof *scene->names);
     }
     trajectory->bomb = bomb ? scene->body_count : -1;
-    if (bomb) describe_body(trajectory, trajectory->bomb, &scene->bomb.body);
+    const BodyDef body = scene_bomb_body(scene);
+    if (bomb) describe_body(trajectory, trajectory->bomb, &body);
     return trajectory;
 }
 

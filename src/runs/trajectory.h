@@ -221,7 +221,6 @@ typedef struct ContactDifference {
    is short. */
 bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int body, ContactDifference *difference,
                         Error *error);
-bool contacts_differ(const ContactDifference *difference);
 
 /* The cause of the first difference in any bit. */
 typedef enum PartCause {

@@ -111,7 +111,8 @@ static bool starts_at_rest(const Scene *scene) {
     return true;
 }
 
-const Scene *verdict_struck(const Scene *scene) {
+/* The scene if it has a bomb or bodies that move at the start, and dynamic ones that do not; else NULL. */
+static const Scene *verdict_struck(const Scene *scene) {
     if (!scene_has_launch(scene) && starts_at_rest(scene)) return NULL;
     for (int i = 0; i < scene->body_count; i++)
         if (!scene->bodies[i].fixed && starts_still(scene, i)) return scene;

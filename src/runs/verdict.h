@@ -226,9 +226,6 @@ void verdict_run_set_engine(VerdictRun *run, const Method *method);
    others. It outlives the run. */
 VerdictRun verdict_run_of(const Scene *scene);
 
-/* The scene if it has a bomb or bodies that move at the start, and dynamic ones that do not; else NULL. */
-const Scene *verdict_struck(const Scene *scene);
-
 /* A step, as given to the watch. */
 typedef struct VerdictStep {
     int frame; /* 1, 2, ... frames */

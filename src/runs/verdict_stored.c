@@ -67,8 +67,14 @@ Scene *trajectory_scene(const Trajectory *run, Error *error) {
     scene->bomb.present = run->bomb >= 0;
     for (int i = 0; i < run->bodies; i++) {
         const Vec2 size = run->size[i];
-        BodyDef *def = i == run->bomb && i == run->bodies - 1 ? &scene->bomb.body : &scene->bodies[scene->body_count++];
-        *def = (BodyDef){.size = size, .fixed = run->fixed[i], .mass = VERDICT_DENSITY * size.x * size.y};
+        const float mass = VERDICT_DENSITY * size.x * size.y;
+        if (i == run->bomb && i == run->bodies - 1 && !run->fixed[i]) {
+            scene->bomb.size = size;
+            scene->bomb.mass.value = mass;
+            break;
+        }
+        BodyDef *def = &scene->bodies[scene->body_count++];
+        *def = (BodyDef){.size = size, .fixed = run->fixed[i], .mass = mass};
         if (trajectory_has(run, 0, i) && !run->fixed[i] && !starts_at_rest(run, i, scene->gravity))
             def->velocity = vec2(1, 0);
     }

@@ -9,6 +9,45 @@
 #include <stdio.h>
 #include <string.h>
 
+/* What every scene has, and messages on names that are unknown. */
+
+enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_Y, BOMB_MASS, BOMB_SPEED, COMMON };
+
+static const struct {
+    const char *name, *unit;
+    double least, most;
+} common[COMMON] = {[ITERATIONS] = {"iterations", "", 1, SCENE_MAX_ITERATIONS},
+                    [DT] = {"dt", "s", (double)SCENE_MIN_DT, (double)SCENE_MAX_DT},
+                    [FRICTION] = {"friction", "", 0, 10},
+                    [BOMB_X] = {"bomb_x", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
+                    [BOMB_Y] = {"bomb_y", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
+                    [BOMB_MASS] = {"bomb_mass", "kg", 1e-6, 1e9},
+                    [BOMB_SPEED] = {"bomb_speed", "m/s", 0, 1e4}};
+
+/* The end of a message on an unknown name: "did you mean 'height'?", "known: height, rate" or "known: none". */
+typedef struct ParametersHint {
+    char text[SCENE_MAX_PARAMETERS * (SCENE_PARAMETER_SIZE + 2) + 96]; /* and of what every scene has */
+} ParametersHint;
+
+/* settable: the name is of a setting, which may also be one that every scene has. */
+static ParametersHint make_hint(const Parameters *parameters, const char *name, bool settable) {
+    ParametersHint hint;
+    NameList known = {0};
+    const char *names[SCENE_MAX_PARAMETERS + COMMON];
+    int count = 0;
+    for (int i = 0; i < parameters->count; i++) names[count++] = parameters->items[i].name;
+    for (int i = 0; settable && i < COMMON; i++) names[count++] = common[i].name;
+    const char *nearest = nearest_word(name, names, count);
+    if (nearest != NULL) {
+        snprintf(hint.text, sizeof hint.text, "did you mean '%s'?", nearest);
+        return hint;
+    }
+    for (int i = 0; i < count; i++) name_list_add(&known, names[i]);
+    snprintf(hint.text, sizeof hint.text, "known: %.*s", (int)sizeof hint.text - 8,
+             known.used > 0 ? known.text : "none");
+    return hint;
+}
+
 /* Expressions: numbers made of numbers and parameters. */
 
 /* What is read, and how far. */
@@ -86,7 +125,7 @@ static bool take_name(Expression *e, double *value) {
         char name[SCENE_PARAMETER_SIZE];
         snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name), e->at + 1);
         return yaml_error_at(e->tree, e->node, (size_t)(e->at - e->text), e->error, "%s: '$%s' is not a parameter; %s",
-                             e->what, name, parameters_hint(parameters, name).text);
+                             e->what, name, make_hint(parameters, name, false).text);
     }
     parameters->used[parameter - parameters->items] = true;
     *value = parameter->value;
@@ -247,21 +286,6 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
     return true;
 }
 
-/* What every scene has. */
-
-enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_Y, BOMB_MASS, BOMB_SPEED, COMMON };
-
-static const struct {
-    const char *name, *unit;
-    double least, most;
-} common[COMMON] = {[ITERATIONS] = {"iterations", "", 1, SCENE_MAX_ITERATIONS},
-                    [DT] = {"dt", "s", (double)SCENE_MIN_DT, (double)SCENE_MAX_DT},
-                    [FRICTION] = {"friction", "", 0, 10},
-                    [BOMB_X] = {"bomb_x", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
-                    [BOMB_Y] = {"bomb_y", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
-                    [BOMB_MASS] = {"bomb_mass", "kg", 1e-6, 1e9},
-                    [BOMB_SPEED] = {"bomb_speed", "m/s", 0, 1e4}};
-
 /* COMMON: none. */
 static int find_common(const char *name) {
     int which = 0;
@@ -276,11 +300,24 @@ static double common_value(const Scene *scene, int which) {
     case ITERATIONS: return scene->iterations;
     case DT: return (double)scene->dt;
     case FRICTION: return (double)scene->bodies[scene->body_count - 1].friction;
-    case BOMB_X: return (double)scene->bomb.body.position.x;
-    case BOMB_Y: return (double)scene->bomb.body.position.y;
-    case BOMB_MASS: return (double)scene->bomb.body.mass;
+    case BOMB_X: return (double)scene->bomb.x.value;
+    case BOMB_Y: return (double)scene->bomb.y;
+    case BOMB_MASS: return (double)scene->bomb.mass.value;
     default: return bomb_speed(scene);
     }
+}
+
+/* The parameter of the file with this name, or NULL. */
+static const SceneParameter *find_own(const Scene *scene, const char *name) {
+    for (int i = 0; i < scene->parameter_count; i++)
+        if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
+    return NULL;
+}
+
+const char *scene_parameter_unit(const Scene *scene, const char *name) {
+    const SceneParameter *own = find_own(scene, name);
+    const int which = find_common(name);
+    return own != NULL ? own->unit : which < COMMON ? common[which].unit : "";
 }
 
 /* The steps, when a step takes `ratio` times as long. */
@@ -301,7 +338,7 @@ static void change_dt(Scene *scene, double dt) {
 static void change_speed(Scene *scene, double speed) {
     const float ratio = (float)(speed / bomb_speed(scene));
     scene->bomb.velocity_factor *= ratio;
-    scene->bomb.body.velocity = vec2_scale(ratio, scene->bomb.body.velocity);
+    scene->bomb.velocity = vec2_scale(ratio, scene->bomb.velocity);
 }
 
 static void change(Scene *scene, int which, double value) {
@@ -310,11 +347,11 @@ static void change(Scene *scene, int which, double value) {
     case DT: change_dt(scene, value); break;
     case FRICTION:
         for (int i = 0; i < scene->body_count; i++) scene->bodies[i].friction = (float)value;
-        scene->bomb.body.friction = (float)value;
+        scene->bomb.friction = (float)value;
         break;
-    case BOMB_X: scene->bomb.body.position.x = (float)value; break;
-    case BOMB_Y: scene->bomb.body.position.y = (float)value; break;
-    case BOMB_MASS: scene->bomb.body.mass = (float)value; break;
+    case BOMB_X: scene->bomb.x.value = (float)value; break;
+    case BOMB_Y: scene->bomb.y = (float)value; break;
+    case BOMB_MASS: scene->bomb.mass.value = (float)value; break;
     default: change_speed(scene, value);
     }
 }
@@ -337,14 +374,16 @@ static bool set_common(Scene *scene, const char *path, int which, double value, 
 
 bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error) {
     for (int i = 0; i < count; i++) {
-        const int which = scene_parameter(scene, settings[i].name) == NULL ? find_common(settings[i].name) : COMMON;
+        const int which = find_own(scene, settings[i].name) == NULL ? find_common(settings[i].name) : COMMON;
         if (which < COMMON && !set_common(scene, path, which, settings[i].value, error)) return false;
     }
     return true;
 }
 
-void common_list(Scene *scene) {
+SceneParameters scene_parameters(const Scene *scene) {
     const SceneSpan *x = &scene->bomb.x;
+    SceneParameters all = {.count = scene->parameter_count};
+    memcpy(all.items, scene->parameters, sizeof scene->parameters);
     for (int which = 0; which < (scene->bomb.present ? COMMON : BOMB_X); which++) {
         const double value = common_value(scene, which);
         const double ranges[COMMON][2] = {[ITERATIONS] = {1, value < 20 ? 40 : 2 * value},
@@ -354,44 +393,23 @@ void common_list(Scene *scene) {
                                           [BOMB_Y] = {value - 5, value + 5},
                                           [BOMB_MASS] = {value / 10, value * 10},
                                           [BOMB_SPEED] = {0, 3 * value}};
-        SceneParameter *parameter = &scene->common[scene->common_count++];
-        *parameter = (SceneParameter){
-            .value = value, .from = ranges[which][0], .to = ranges[which][1], .whole = which == ITERATIONS};
+        SceneParameter *parameter = &all.items[all.count++];
+        *parameter = (SceneParameter){.value = value,
+                                      .from = ranges[which][0],
+                                      .to = ranges[which][1],
+                                      .whole = which == ITERATIONS,
+                                      .common = true};
         strcpy(parameter->name, common[which].name);
         strcpy(parameter->unit, common[which].unit);
         if (which == BOMB_X && scene_span_varies(x)) parameter->from = (double)x->from, parameter->to = (double)x->to;
     }
+    return all;
 }
 
-const SceneParameter *scene_parameter(const Scene *scene, const char *name) {
-    for (int i = 0; i < scene->parameter_count; i++)
-        if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
-    for (int i = 0; i < scene->common_count; i++)
-        if (strcmp(scene->common[i].name, name) == 0) return &scene->common[i];
+const SceneParameter *scene_parameter(const SceneParameters *all, const char *name) {
+    for (int i = 0; i < all->count; i++)
+        if (strcmp(all->items[i].name, name) == 0) return &all->items[i];
     return NULL;
-}
-
-/* settable: the name is of a setting, which may also be one that every scene has. */
-static ParametersHint make_hint(const Parameters *parameters, const char *name, bool settable) {
-    ParametersHint hint;
-    NameList known = {0};
-    const char *names[SCENE_MAX_PARAMETERS + COMMON];
-    int count = 0;
-    for (int i = 0; i < parameters->count; i++) names[count++] = parameters->items[i].name;
-    for (int i = 0; settable && i < COMMON; i++) names[count++] = common[i].name;
-    const char *nearest = nearest_word(name, names, count);
-    if (nearest != NULL) {
-        snprintf(hint.text, sizeof hint.text, "did you mean '%s'?", nearest);
-        return hint;
-    }
-    for (int i = 0; i < count; i++) name_list_add(&known, names[i]);
-    snprintf(hint.text, sizeof hint.text, "known: %.*s", (int)sizeof hint.text - 8,
-             known.used > 0 ? known.text : "none");
-    return hint;
-}
-
-ParametersHint parameters_hint(const Parameters *parameters, const char *name) {
-    return make_hint(parameters, name, false);
 }
 
 static bool set_parameters(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {

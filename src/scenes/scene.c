@@ -46,9 +46,9 @@ bool overlaps_check(const YamlTree *tree, int bodies, int bomb, const Scene *sce
     bool *fixed = malloc((size_t)count * sizeof *fixed);
     BodyPair pair = {-1, -1};
     for (int i = 0; boxes != NULL && fixed != NULL && i < count; i++) {
-        const BodyDef *body = i < scene->body_count ? &scene->bodies[i] : &scene->bomb.body;
-        boxes[i] = box_make(body->position, body->size, body->angle);
-        fixed[i] = body->fixed;
+        const BodyDef body = i < scene->body_count ? scene->bodies[i] : scene_bomb_body(scene);
+        boxes[i] = box_make(body.position, body.size, body.angle);
+        fixed[i] = body.fixed;
     }
     bool ok = boxes != NULL && fixed != NULL && overlap_find(boxes, fixed, count, SCENE_OVERLAP, &pair);
     if (!ok)
@@ -64,19 +64,26 @@ bool overlaps_check(const YamlTree *tree, int bodies, int bomb, const Scene *sce
 enum { X, ROTATION, SPIN, MASS, FRAME, LAUNCH_COLUMNS };
 
 Launch launch_of(const Scene *scene) {
-    const BodyDef *bomb = &scene->bomb.body;
-    return (Launch){bomb->position.x, bomb->angle, bomb->angular_velocity, bomb->mass, scene->bomb.frame};
+    const SceneBomb *bomb = &scene->bomb;
+    return (Launch){bomb->x.value, bomb->rotation.value, bomb->spin.value, bomb->mass.value, bomb->frame};
 }
 
 Scene launch_scene(const Scene *scene, const Launch *launch) {
     Scene launched = *scene;
-    BodyDef *bomb = &launched.bomb.body;
-    bomb->position.x = launch->x;
-    bomb->angle = launch->rotation;
-    bomb->angular_velocity = launch->spin;
-    bomb->mass = launch->mass;
-    launched.bomb.frame = launch->frame;
+    SceneBomb *bomb = &launched.bomb;
+    bomb->x.value = launch->x;
+    bomb->rotation.value = launch->rotation;
+    bomb->spin.value = launch->spin;
+    bomb->mass.value = launch->mass;
+    bomb->frame = launch->frame;
     return launched;
+}
+
+void launch_turn(Launch *launch, const Scene *scene, double rotation_share, double spin_share) {
+    static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
+    const SceneSpan *rotation = &scene->bomb.rotation, *spin = &scene->bomb.spin;
+    launch->rotation = scene_span_at(scene_span_varies(rotation) ? rotation : &turned, rotation_share);
+    launch->spin = scene_span_at(scene_span_varies(spin) ? spin : &spinning, spin_share);
 }
 
 static CsvColumn number(const char *name, size_t offset, const Range *range) {

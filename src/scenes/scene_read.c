@@ -14,25 +14,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fills the bomb of the Scene that member points to. */
-FieldParser field_bomb;
+#define DEFAULT_FRICTION 0.2f /* of Box2D-Lite */
 
 /* The types of values that the tables of a scene share. */
 
-const Range range_size = {1e-3f, 1e4f, " m"};
+static const Range range_size = {1e-3f, 1e4f, " m"};
 const Range range_mass = {1e-6f, 1e9f, " kg"};
 const Range range_position = {-SCENE_MAX_POSITION, SCENE_MAX_POSITION, " m"};
 const Range range_angle = {-1e4f, 1e4f, " rad"};
 const Range range_speed = {-1e4f, 1e4f, " m/s"};
 const Range range_spin = {-1e4f, 1e4f, " rad/s"};
-const Range range_friction = {0, 10, ""};
-const Range range_gravity = {-1e4f, 1e4f, " m/s^2"};
-const Range range_dt = {SCENE_MIN_DT, SCENE_MAX_DT, " s"};
-const Range range_rate = {-1e4f, 1e4f, " 1/s"};
+static const Range range_friction = {0, 10, ""};
+static const Range range_gravity = {-1e4f, 1e4f, " m/s^2"};
+static const Range range_dt = {SCENE_MIN_DT, SCENE_MAX_DT, " s"};
+static const Range range_rate = {-1e4f, 1e4f, " 1/s"};
 
 static bool is_scalar(const YamlTree *tree, int node) { return tree->nodes[node].kind == YAML_SCALAR; }
 
-bool field_number(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+/* float; float32 nearest to the decimal, a fraction such as 1/60, or an expression. */
+static bool field_number(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     float value;
     double full;
     const Range *range = field->range;
@@ -53,7 +53,8 @@ bool field_number(const YamlTree *tree, int node, const Field *field, void *memb
     return true;
 }
 
-bool field_vector(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+/* Vec2: a list of two numbers. */
+static bool field_vector(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     if (tree->nodes[node].kind != YAML_SEQUENCE)
         return yaml_error(tree, node, error, "%s must be a list of two numbers (got %s)", field->key,
                           yaml_show(tree, node).text);
@@ -70,7 +71,8 @@ static bool not_whole(const YamlTree *tree, int node, const Field *field, const 
                       (int)field->range->minimum, (int)field->range->maximum, got);
 }
 
-bool field_int(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+/* int; digits, or an expression whose value is whole. */
+static bool field_int(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     int64_t value, minimum = (int64_t)field->range->minimum, maximum = (int64_t)field->range->maximum;
     double full;
     if (is_scalar(tree, node) && parse_int(yaml_text(tree, node), minimum, maximum, &value)) {
@@ -86,6 +88,57 @@ bool field_int(const YamlTree *tree, int node, const Field *field, void *member,
 }
 
 /* Reads the list of bodies: single bodies and patterns. */
+
+/* A kind of pattern. Every position is computed in float32 from the first one and not from its neighbour, so that
+   rounding does not add up. */
+typedef struct PatternKind {
+    const char *name;
+    int64_t (*body_count)(int count);
+    Vec2 (*position)(Vec2 first, Vec2 spacing, int count, int64_t i); /* of body i */
+} PatternKind;
+
+/* One entry of a scene's bodies: a single body, or a pattern of equal bodies. */
+typedef struct Pattern {
+    const PatternKind *kind; /* NULL: one body */
+    int count;               /* bodies of a row or a stack, rows of a pyramid */
+    Vec2 spacing;            /* m */
+    int until;               /* the step after which a single body is removed; 0: never */
+    BodyDef first;           /* the first body; the others differ from it by their position only */
+    BodyName name;           /* of each; may be empty */
+} Pattern;
+
+static int64_t line_body_count(int count) { return count; }
+
+static Vec2 line_position(Vec2 first, Vec2 spacing, int count, int64_t i) {
+    (void)count;
+    return vec2(first.x + spacing.x * (float)i, first.y + spacing.y * (float)i);
+}
+
+static int64_t pyramid_body_count(int rows) { return (int64_t)rows * (rows + 1) / 2; }
+
+/* Row by row from below, each from left to right; a row has one body less than the row below it and begins half a
+   spacing further right. */
+static Vec2 pyramid_position(Vec2 first, Vec2 spacing, int rows, int64_t i) {
+    int row = 0;
+    for (; i >= rows - row; row++) i -= rows - row;
+    return vec2(first.x + 0.5f * spacing.x * (float)row + spacing.x * (float)i, first.y + spacing.y * (float)row);
+}
+
+static const PatternKind row = {"row", line_body_count, line_position};
+static const PatternKind stack = {"stack", line_body_count, line_position};
+static const PatternKind pyramid = {"pyramid", pyramid_body_count, pyramid_position};
+static const PatternKind *const pattern_kinds[] = {&row, &stack, &pyramid, NULL};
+
+static int64_t pattern_body_count(const Pattern *pattern) {
+    return pattern->kind == NULL ? 1 : pattern->kind->body_count(pattern->count);
+}
+
+static BodyDef pattern_body(const Pattern *pattern, int64_t i) {
+    BodyDef body = pattern->first;
+    if (pattern->kind != NULL)
+        body.position = pattern->kind->position(body.position, pattern->spacing, pattern->count, i);
+    return body;
+}
 
 static bool field_body_name(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     const char *text = is_scalar(tree, node) ? yaml_text(tree, node) : "";
@@ -189,7 +242,8 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
     return add_names(tree, pattern, scene, scene->body_count - (int)count, error);
 }
 
-bool field_bodies(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+/* Fills bodies and body_count of the Scene that member points to. */
+static bool field_bodies(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     const YamlNode *list = &tree->nodes[node];
     if (list->kind != YAML_SEQUENCE || list->count == 0)
         return yaml_error(tree, node, error, "%s must be a list of at least one body (got %s)", field->key,
@@ -253,7 +307,7 @@ static bool field_bomb_velocity(const YamlTree *tree, int node, const Field *fie
     bomb->velocity_from_position = tree->nodes[node].kind == YAML_MAPPING;
     int nodes[FIELDS_MAX];
     if (bomb->velocity_from_position) return fields_read(tree, node, "a velocity law", law, bomb, nodes, error);
-    return field_vector(tree, node, field, &bomb->body.velocity, error);
+    return field_vector(tree, node, field, &bomb->velocity, error);
 }
 
 /* SceneSpan: a number, or the mapping {from: A, to: B, value: V}; the default of V is the middle. */
@@ -282,10 +336,10 @@ static bool field_span(const YamlTree *tree, int node, const Field *field, void 
 
 static const Field bomb_fields[] = {
     {"x", field_span, offsetof(SceneBomb, x), &range_position, true},
-    {"y", field_number, offsetof(SceneBomb, body.position.y), &range_position, true},
-    {"size", field_vector, offsetof(SceneBomb, body.size), &range_size, true},
+    {"y", field_number, offsetof(SceneBomb, y), &range_position, true},
+    {"size", field_vector, offsetof(SceneBomb, size), &range_size, true},
     {"mass", field_span, offsetof(SceneBomb, mass), &range_mass, true},
-    {"friction", field_number, offsetof(SceneBomb, body.friction), &range_friction, false},
+    {"friction", field_number, offsetof(SceneBomb, friction), &range_friction, false},
     {"rotation", field_span, offsetof(SceneBomb, rotation), &range_angle, false},
     {"spin", field_span, offsetof(SceneBomb, spin), &range_spin, false},
     {"frame", field_int, offsetof(SceneBomb, frame), &range_bomb_frame, false},
@@ -297,7 +351,7 @@ static const Field bomb_fields[] = {
 static bool check_velocity(const YamlTree *tree, int node, Scene scene, Error *error) {
     const float ends[] = {scene.bomb.x.value, scene.bomb.x.from, scene.bomb.x.to};
     for (int i = 0; i < 3; i++) {
-        scene.bomb.body.position.x = ends[i];
+        scene.bomb.x.value = ends[i];
         const Vec2 velocity = scene_bomb_body(&scene).velocity;
         if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) > range_speed.maximum)
             return yaml_error(tree, node, error,
@@ -307,17 +361,15 @@ static bool check_velocity(const YamlTree *tree, int node, Scene scene, Error *e
     return true;
 }
 
-bool field_bomb(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+/* Fills the bomb of the Scene that member points to. */
+static bool field_bomb(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     (void)field;
     Scene *scene = member;
     SceneBomb *bomb = &scene->bomb;
-    *bomb = (SceneBomb){.present = true, .body.friction = DEFAULT_FRICTION, .impact_frames = SCENE_IMPACT_FRAMES};
+    *bomb = (SceneBomb){.present = true, .friction = DEFAULT_FRICTION, .impact_frames = SCENE_IMPACT_FRAMES};
     int nodes[FIELDS_MAX];
     if (!fields_read(tree, node, "a bomb", bomb_fields, bomb, nodes, error)) return false;
-    bomb->body.position.x = bomb->x.value;
-    bomb->body.angle = bomb->rotation.value;
-    bomb->body.angular_velocity = bomb->spin.value;
-    bomb->body.mass = bomb->mass.value;
+    bomb->own_mass = bomb->mass.value;
     return check_velocity(tree, fields_node(bomb_fields, nodes, "velocity"), *scene, error);
 }
 
@@ -414,7 +466,6 @@ static bool read_fields(const YamlTree *tree, Scene *scene, const SceneSetting *
     if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error) ||
         !common_set(scene, tree->source.path, settings, count, error))
         return false;
-    common_list(scene);
     const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
     if (scene->last_body_until > 0 && !bodies_check_until(tree, bodies, scene, error)) return false;
     if (scene->bomb.present && scene->bomb.frame > scene->frames)

@@ -9,7 +9,13 @@
 
 BodyDef scene_bomb_body(const Scene *scene) {
     const SceneBomb *bomb = &scene->bomb;
-    BodyDef body = bomb->body;
+    BodyDef body = {.size = bomb->size,
+                    .mass = bomb->mass.value,
+                    .friction = bomb->friction,
+                    .position = {bomb->x.value, bomb->y},
+                    .angle = bomb->rotation.value,
+                    .velocity = bomb->velocity,
+                    .angular_velocity = bomb->spin.value};
     if (bomb->velocity_from_position) body.velocity = vec2_scale(bomb->velocity_factor, body.position);
     return body;
 }

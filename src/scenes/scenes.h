@@ -44,8 +44,8 @@ enum {
 #define SCENE_MIN_DT 1e-5f      /* s */
 #define SCENE_MAX_DT 1.0f       /* s */
 
-/* A number of the bomb: what the scene runs with, and the ends of its launches; from = value = to if all
-   launches have the same. */
+/* A number of the bomb: what the scene runs with, and the ends of its family of launches, from which others draw a
+   value; from = to if all launches have the same. */
 typedef struct SceneSpan {
     float value, from, to;
 } SceneSpan;
@@ -57,15 +57,20 @@ static inline float scene_span_at(const SceneSpan *span, double share) {
     return (float)((double)span->from + share * ((double)span->to - (double)span->from));
 }
 
-/* The bomb: a box that is added after step `frame` (so it is in that frame's state; 0: from the start). */
+/* The bomb: a box that is added after step `frame` (so it is in that frame's state; 0: from the start). A number has
+   this place only: settings, options and launch_scene() write it here, and scene_bomb_body() makes the body of it. */
 typedef struct SceneBomb {
     bool present;
     int frame;
-    BodyDef body;                      /* velocity: only without the law below (scene_bomb_body) */
-    bool velocity_from_position;       /* velocity = velocity_factor * position */
-    float velocity_factor;             /* 1/s */
-    SceneSpan x, rotation, spin, mass; /* m, rad, rad/s, kg: the family of launches; their values are the body's */
-    int impact_frames;                 /* from its first touch on, in studies */
+    SceneSpan x, rotation, spin, mass; /* m, rad, rad/s, kg */
+    float y;                           /* m */
+    Vec2 size;                         /* m */
+    float friction;
+    Vec2 velocity;               /* m/s: only without the law below */
+    bool velocity_from_position; /* velocity = velocity_factor * position */
+    float velocity_factor;       /* 1/s */
+    float own_mass;              /* kg: the file's, by which networks know the scene whatever the launch's mass */
+    int impact_frames;           /* from its first touch on, in studies */
 } SceneBomb;
 
 /* The trained network of a method for this scene. */
@@ -79,6 +84,7 @@ typedef struct SceneParameter {
     char name[SCENE_PARAMETER_SIZE], unit[SCENE_PARAMETER_SIZE];
     double value, from, to; /* from <= value <= to; value is the setting's if there is one */
     bool whole;             /* whole numbers only */
+    bool common;            /* every scene has it: from and to are no bounds, but what studies vary by default */
 } SceneParameter;
 
 /* What every scene has, and settings and studies take beside its parameters: iterations, dt (the run and the time of
@@ -126,8 +132,6 @@ typedef struct Scene {
     SceneNetwork networks[SCENE_MAX_NETWORKS];
     int parameter_count;
     SceneParameter parameters[SCENE_MAX_PARAMETERS]; /* in the order of the file; the members above have their values */
-    int common_count;
-    SceneParameter common[SCENE_COMMON_MAX]; /* from and to are no bounds, but what studies vary by default */
 } Scene;
 
 /* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Takes at most 0.1 s and 20
@@ -145,8 +149,18 @@ Scene *scene_of_tree(struct YamlTree *tree, const SceneSetting *settings, int co
 
 void scene_destroy(Scene *scene);
 
-/* The parameter, or what every scene has, with this name; NULL: none. */
-const SceneParameter *scene_parameter(const Scene *scene, const char *name);
+/* What settings may change: the parameters of the file, then what every scene has, with the value of now. */
+typedef struct SceneParameters {
+    int count;
+    SceneParameter items[SCENE_MAX_PARAMETERS + SCENE_COMMON_MAX];
+} SceneParameters;
+SceneParameters scene_parameters(const Scene *scene);
+
+/* The first with this name, which settings change; NULL: none. */
+const SceneParameter *scene_parameter(const SceneParameters *all, const char *name);
+
+/* The unit of what settings change by this name; empty: it has none. */
+const char *scene_parameter_unit(const Scene *scene, const char *name);
 
 /* A world with the scene's bodies (and the bomb if its frame is 0). NULL with error set when memory is short.
  */
@@ -157,7 +171,7 @@ static inline bool scene_has_launch(const Scene *scene) {
     return scene->bomb.present && scene->bomb.frame <= scene->frames;
 }
 
-/* The bomb with its start velocity: the velocity law applied to its position. */
+/* The bomb as a body, with its start velocity: the velocity law applied to its position. */
 BodyDef scene_bomb_body(const Scene *scene);
 
 /* Adds the bomb to a world of this scene and marks it. */
@@ -175,6 +189,7 @@ const char *scene_network(const Scene *scene, const char *method);
 
 enum { LAUNCHES_MAX = 10000 };
 
+/* Values for those numbers of the bomb in which runs of a scene differ: drawn, or read from a table. */
 typedef struct Launch {
     float x, rotation, spin, mass; /* m, rad, rad/s, kg */
     int frame;                     /* step after which the bomb is added */
@@ -186,6 +201,10 @@ Launch launch_of(const Scene *scene);
 /* The scene with this launch: a shallow copy that shares the bodies with the scene; do not destroy it. A bomb with a
    velocity law (scene_bomb_body) gets its velocity from the new position. */
 Scene launch_scene(const Scene *scene, const Launch *launch);
+
+/* Turns a launch for training: rotation and spin at these shares of the scene's families; where it has none, of -1.5
+   to 1.5 rad and -20 to 20 rad/s. */
+void launch_turn(Launch *launch, const Scene *scene, double rotation_share, double spin_share);
 
 typedef struct LaunchTable {
     CsvTable csv; /* rows of Launch */

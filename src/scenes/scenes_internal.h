@@ -1,48 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reading of scene files: fields, patterns, expressions, bodies, overlaps. */
+/* The reading of scene files: expressions, parameters, overlaps. */
 #pragma once
 #include "base/base.h"
 #include "base/yaml.h"
 #include "engine/engine.h"
 #include "scenes/scenes.h"
 
-/* The types of values in scene files; base/yaml.h reads the mappings. */
-
 /* The ranges keep a scene within what float32 can compute: no product of them is infinite, and no inverse. */
-extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin, range_friction,
-    range_gravity, range_dt, range_rate;
-
-/* float; float32 nearest to the decimal, a fraction such as 1/60, or an expression. */
-FieldParser field_number;
-/* Vec2: a list of two numbers. */
-FieldParser field_vector;
-/* int; digits, or an expression whose value is whole. */
-FieldParser field_int;
-
-/* One entry of a scene's bodies: a single body, or a pattern of equal bodies. */
-
-/* A kind of pattern. */
-typedef struct PatternKind {
-    const char *name;
-    int64_t (*body_count)(int count);
-    Vec2 (*position)(Vec2 first, Vec2 spacing, int count, int64_t i); /* of body i */
-} PatternKind;
-
-typedef struct Pattern {
-    const PatternKind *kind; /* NULL: one body */
-    int count;               /* bodies of a row or a stack, rows of a pyramid */
-    Vec2 spacing;            /* m */
-    int until;               /* the step after which a single body is removed; 0: never */
-    BodyDef first;           /* the first body; the others differ from it by their position only */
-    BodyName name;           /* of each; may be empty */
-} Pattern;
-
-/* Ended by NULL. */
-extern const PatternKind *const pattern_kinds[];
-
-int64_t pattern_body_count(const Pattern *pattern);
-
-BodyDef pattern_body(const Pattern *pattern, int64_t i);
+extern const Range range_mass, range_position, range_angle, range_speed, range_spin;
 
 /* Expressions: numbers of a scene file made of decimals and $names of the scene's parameters by + - * / and
    parentheses, such as $height + 0.25, with blanks where one likes. Products go before sums, else from left to right.
@@ -67,12 +32,6 @@ ExpressionShown expression_show(const YamlTree *tree, int node, double value, co
 
 /* The key `bodies` of a scene. */
 
-/* Default of Box2D-Lite. */
-#define DEFAULT_FRICTION 0.2f
-
-/* Fills bodies and body_count of the Scene that member points to. */
-FieldParser field_bodies;
-
 /* The entry of the list `node` that body `index` of the scene comes from. The list must have been read. */
 int bodies_entry(const YamlTree *tree, int node, int index);
 
@@ -95,17 +54,8 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
 bool parameters_set(Parameters *parameters, const char *path, const SceneSetting *settings, int count, Error *error);
 bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error);
 
-/* Fills `common` of the scene. */
-void common_list(Scene *scene);
-
 /* Refuses a parameter that no number uses, because setting it would have no effect. */
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error);
-
-/* The end of a message on an unknown name: "did you mean 'height'?", "known: height, rate" or "known: none". */
-typedef struct ParametersHint {
-    char text[SCENE_MAX_PARAMETERS * (SCENE_PARAMETER_SIZE + 2) + 96]; /* and of what every scene has */
-} ParametersHint;
-ParametersHint parameters_hint(const Parameters *parameters, const char *name);
 
 /* Refuses bodies that start inside one another. */
 

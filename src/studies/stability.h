@@ -216,9 +216,6 @@ bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Con
    study shows the truth, or undecided if a step of it did not converge. */
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
 
-/* The unit of a parameter of the scene, or "". */
-const char *stability_unit(const Scene *scene, const char *parameter);
-
 /* Shifts the first dynamic body, or if there is none the bomb, along x: by 0 for seed 0, by +-1e-6 m for seeds 1 and
    2. */
 void stability_shift(Scene *scene, int seed);

@@ -48,21 +48,17 @@ VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene
     return run;
 }
 
-const char *stability_unit(const Scene *scene, const char *parameter) {
-    const SceneParameter *found = scene_parameter(scene, parameter);
-    return found != NULL ? found->unit : "";
-}
-
-static BodyDef *first_dynamic(Scene *scene) {
+/* The x of the first body that moves. */
+static float *first_x(Scene *scene) {
     for (int i = 0; i < scene->body_count; i++)
-        if (!scene->bodies[i].fixed) return &scene->bodies[i];
-    return scene->bomb.present ? &scene->bomb.body : NULL;
+        if (!scene->bodies[i].fixed) return &scene->bodies[i].position.x;
+    return scene->bomb.present ? &scene->bomb.x.value : NULL;
 }
 
 void stability_shift(Scene *scene, int seed) {
-    BodyDef *body = first_dynamic(scene);
-    if (body == NULL || seed == 0) return;
-    body->position.x += seed == 1 ? shift : -shift;
+    float *x = first_x(scene);
+    if (x == NULL || seed == 0) return;
+    *x += seed == 1 ? shift : -shift;
 }
 
 bool stability_applies(const Method *method, const Scene *scene, Error *error) {
@@ -105,19 +101,19 @@ Convergence convergence_of(const EnergyLog *log) {
 /* The scene is the same afterwards. */
 bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error) {
     Method reference;
-    BodyDef *first = first_dynamic(scene);
+    float *x = first_x(scene);
     const bool warm = scene->warm_starting;
     *truth = VERDICT_SETTLES;
     if (judged->struck == NULL) return true;
     if (!method_parse(&reference, "reference", error)) return false;
-    const Vec2 place = first->position;
+    const float place = *x;
     bool ok = true;
     scene->warm_starting = true;
     for (int seed = 0; ok && seed < BORDER_SEEDS; seed++) {
         VerdictReading reading;
         stability_shift(scene, seed);
         ok = verdict_run(&reading, scene, &reference, judged, error);
-        first->position = place;
+        *x = place;
         if (ok && seed == 0) *truth = reading.verdict;
         const bool known = verdict_sound(reading.verdict) && reading.fallbacks.not_converged == 0;
         if (ok && (reading.verdict != *truth || !known)) *truth = VERDICT_UNDECIDED;
@@ -260,10 +256,10 @@ static bool write_cell(const Run *run, int i, int m, FILE *results, Error *error
                    .method = method->name,
                    .setting = method->setting,
                    .x_parameter = map->x.parameter,
-                   .x_unit = stability_unit(context->typical, map->x.parameter),
+                   .x_unit = scene_parameter_unit(context->typical, map->x.parameter),
                    .x = context->x[cell % context->x_count],
                    .y_parameter = map->y.parameter,
-                   .y_unit = stability_unit(context->typical, map->y.parameter),
+                   .y_unit = scene_parameter_unit(context->typical, map->y.parameter),
                    .y = context->y[cell / context->x_count],
                    .verdict = (int)reading->verdict,
                    .frame = reading->frame,

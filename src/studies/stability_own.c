@@ -16,27 +16,21 @@ static const double linear_ratio = 20;
 
 enum { SCAN_POINTS = 13, SCAN_QUICK_POINTS = 5, MAP_POINTS = 10, MAP_QUICK_POINTS = 4 };
 
-static const SceneParameter *stability_own_find(const Scene *scene, const char *name, Error *error) {
-    const SceneParameter *found = scene_parameter(scene, name);
+static const SceneParameter *stability_own_find(const SceneParameters *all, const char *name, Error *error) {
+    const SceneParameter *found = scene_parameter(all, name);
     NameList known = {0};
-    for (int i = 0; i < scene->parameter_count; i++) name_list_add(&known, scene->parameters[i].name);
-    for (int i = 0; i < scene->common_count; i++) name_list_add(&known, scene->common[i].name);
+    for (int i = 0; i < all->count; i++) name_list_add(&known, all->items[i].name);
     if (found == NULL) error_unknown(error, "--vary", name, "a parameter of the scene", &known);
     return found;
 }
 
-/* What every scene has is checked when the scene is read. */
-static bool has_bounds(const Scene *scene, const SceneParameter *parameter) {
-    return parameter >= scene->parameters && parameter < scene->parameters + scene->parameter_count;
-}
-
 static bool is_whole(double value) { return value == floor(value); }
 
-static bool check_range(const Scene *scene, const SceneParameter *parameter, const char *text, double from, double to,
-                        Error *error) {
+/* What every scene has is checked when the scene is read. */
+static bool check_range(const SceneParameter *parameter, const char *text, double from, double to, Error *error) {
     const char *space = parameter->unit[0] != '\0' ? " " : "";
     if (!(from < to)) return error_input(error, "--vary", "'%s' is not NAME=FROM:TO with FROM less than TO", text);
-    if (has_bounds(scene, parameter) && (from < parameter->from || to > parameter->to))
+    if (!parameter->common && (from < parameter->from || to > parameter->to))
         return error_input(error, "--vary", "'%s' is not within the scene's bounds of %s: %.9g to %.9g%s%s", text,
                            parameter->name, parameter->from, parameter->to, space, parameter->unit);
     if (parameter->whole && (!is_whole(from) || !is_whole(to)))
@@ -80,7 +74,8 @@ static bool read_text(const Scene *scene, const char *text, char name[SCENE_PARA
                       Error *error) {
     const size_t length = strcspn(text, "=");
     snprintf(name, SCENE_PARAMETER_SIZE, "%.*s", (int)length, text);
-    const SceneParameter *parameter = stability_own_find(scene, name, error);
+    const SceneParameters all = scene_parameters(scene);
+    const SceneParameter *parameter = stability_own_find(&all, name, error);
     if (parameter == NULL) return false;
     double from = parameter->from, to = parameter->to, step = 0;
     const char *rest;
@@ -88,7 +83,7 @@ static bool read_text(const Scene *scene, const char *text, char name[SCENE_PARA
                                  parse_leading_double(rest + 1, &to, &rest) &&
                                  (*rest == '\0' || (*rest == ':' && parse_double(rest + 1, &step) && step > 0))))
         return error_input(error, "--vary", "'%s' is not NAME=FROM:TO or NAME=FROM:TO:STEP", text);
-    if (!check_range(scene, parameter, text, from, to, error)) return false;
+    if (!check_range(parameter, text, from, to, error)) return false;
     if (step > 0) return make_steps(parameter, text, from, to, step, scan, error);
     from = rounded_inward(from, 1);
     to = rounded_inward(to, -1);

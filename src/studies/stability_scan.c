@@ -195,7 +195,7 @@ static bool write_border(const Run *run, int i, const Border *border, FILE *line
                            .method = contender->name,
                            .setting = contender->setting,
                            .parameter = study->parameter,
-                           .unit = stability_unit(run->context->typical, study->parameter),
+                           .unit = scene_parameter_unit(run->context->typical, study->parameter),
                            .holds_at = border != NULL ? border->holds_at : NAN,
                            .fails_at = border != NULL ? border->fails_at : NAN,
                            .verdict = border != NULL ? (int)border->verdict : LOOK_NOT_APPLICABLE};
@@ -224,7 +224,7 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
                         .method = contender->name,
                         .setting = contender->setting,
                         .parameter = study->parameter,
-                        .unit = stability_unit(run->context->typical, study->parameter),
+                        .unit = scene_parameter_unit(run->context->typical, study->parameter),
                         .value = scan_run->value,
                         .steps = reading->steps,
                         .verdict = (int)reading->verdict,

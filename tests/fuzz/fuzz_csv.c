@@ -20,7 +20,7 @@ static void check_launches(const LaunchTable *table) {
                          .frames = 100,
                          .body_count = 1,
                          .bodies = &ground,
-                         .bomb = {.present = true, .frame = 2, .body = {.size = {1, 1}, .mass = 1}}};
+                         .bomb = {.present = true, .frame = 2, .size = {1, 1}, .mass.value = 1}};
     static Launch launches[LAUNCHES_MAX];
     Error error = {0};
     if (table->count < 1 || table->count > LAUNCHES_MAX) fuzz_fail("%d launches", table->count);

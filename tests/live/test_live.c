@@ -52,7 +52,7 @@ static void check_run(const char *name, const char *settings, const char *method
     LiveScene *live_scene = open_scene(name);
     LiveRun *live = begin(live_scene, settings, method);
     Scene *scene = scene_named(name);
-    if (settings[0] != '\0') scene->bomb.body.position.x = (float)atof(strchr(settings, '=') + 1);
+    if (settings[0] != '\0') scene->bomb.x.value = (float)atof(strchr(settings, '=') + 1);
     Trajectory *run = run_by(scene, method);
     const size_t states = (size_t)run->frames * (size_t)run->bodies;
     assert_int_equal(live_frames(live), run->frames);

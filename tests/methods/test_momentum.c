@@ -157,7 +157,7 @@ TEST(more_sweeps_never_have_a_larger_residual_than_the_best_so_far) {
         OWN(Scene) *scene = random_structure(seed);
         const float friction = 0.1f * (float)(seed % 31);
         for (int i = 0; i < scene->body_count; i++) scene->bodies[i].friction = friction;
-        scene->bomb.body.friction = friction;
+        scene->bomb.friction = friction;
         course.name = scene->name;
         assert_ok(simulate_observed(scene, &engine, &(StepObserver){check_step, &course}, &error), error);
     }

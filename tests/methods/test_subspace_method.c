@@ -58,7 +58,7 @@ static Watch run(const Scene *scene, const Method *method, NetworkFallbacks *fal
 /* The box stays, the bomb flies on a straight line: gravity is missing, and counted as momentum created. */
 TEST_WITH(boxes_go_on_as_they_move, make, destroy) {
     single->frames = 10;
-    single->bomb.body.angular_velocity = 3;
+    single->bomb.spin.value = 3;
     /* A network by hand is for any launch: the physics do not depend on it. */
     const Method method = method_of(net, single, "subspace");
     NetworkFallbacks fallbacks = {0};
@@ -75,8 +75,8 @@ TEST_WITH(boxes_go_on_as_they_move, make, destroy) {
 /* Sine and cosine go on in a straight line, so the angle does what they tell. */
 TEST_WITH(angles_follow_sine_and_cosine, make, destroy) {
     single->frames = 4;
-    single->bomb.body.angle = 9; /* more than a turn */
-    single->bomb.body.angular_velocity = 1.5f;
+    single->bomb.rotation.value = 9; /* more than a turn */
+    single->bomb.spin.value = 1.5f;
     const Method method = method_of(net, single, "subspace");
     const Watch watch = run(single, &method, NULL);
     const double before = 9 - (double)dt * 1.5, sine = sin(9) + 4 * (sin(9) - sin(before)),

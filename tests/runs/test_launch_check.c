@@ -56,7 +56,7 @@ TEST(a_scene_may_allow_it) {
 static Trajectory *run(const char *method_text, float x, Error *error) {
     OWN(Scene) *scene = read_scene(falling, "");
     Method method;
-    scene->bomb.body.position.x = x;
+    scene->bomb.x.value = x;
     assert_ok(method_parse(&method, method_text, error), *error);
     Trajectory *trajectory = simulate(scene, &method, NULL, error);
     return trajectory;
@@ -105,7 +105,7 @@ TEST(launches_that_strike_nothing_are_found) {
     LaunchMisses misses;
     Launch tried[LAUNCH_TRIES];
     int beside = 0, touch;
-    scene->bomb.body.position.y = 3;
+    scene->bomb.y = 3;
     assert_ok(launches_for_training(scene, LAUNCH_TRIES, tried, &error), error);
     for (int i = 0; i < LAUNCH_TRIES; i++) beside += fabsf(tried[i].x) > 1;
     assert_ok(launches_find_misses(scene, &misses, &error), error);

@@ -36,7 +36,7 @@ TEST(every_launch_has_the_bits_of_box2d_lite) {
         OWN(Scene) *scene = read_scene(name);
         scene->frames = 300;
         scene->bomb.frame = 0;
-        scene->bomb.body.position.x = strtof(x, NULL);
+        scene->bomb.x.value = strtof(x, NULL);
         OWN(Trajectory) *run = run_by(scene, "engine");
         for (int i = 0; i < 3; i++)
             if (trajectory_frame_hash(run, frames[i]) != hashes[i])
@@ -68,7 +68,7 @@ TEST(every_frame_of_the_long_runs_has_the_bits_of_box2d_lite) {
         scene->frames = frames;
         scene->bomb.present = bomb_frame >= 0; /* -1: a run without a bomb */
         scene->bomb.frame = bomb_frame;
-        scene->bomb.body.position.x = strtof(x, NULL);
+        scene->bomb.x.value = strtof(x, NULL);
         OWN(Trajectory) *run = run_by(scene, "engine");
         if (run_hash(run) != hash) fail_msg("%s: another state than Box2D-Lite's in some frame", name);
     }

@@ -23,7 +23,7 @@ static bool converge(void *context, int frame, const World *world, Error *error)
 static void run_scene(const char *name, const char *method_name, float bomb_x, Steps *steps) {
     Error error = {0};
     OWN(Scene) *scene = scene_named(name);
-    scene->bomb.body.position.x = bomb_x;
+    scene->bomb.x.value = bomb_x;
     if (scene->frames > 260) scene->frames = 260;
     Method method = method_named(method_name);
     assert_ok(simulate_observed(scene, &method, &(StepObserver){converge, steps}, &error), error);

@@ -26,7 +26,7 @@ static bool agree(void *context, int frame, const World *world, Error *error) {
 static void run_scene(const char *name, float bomb_x) {
     Error error = {0};
     OWN(Scene) *scene = scene_named(name);
-    scene->bomb.body.position.x = bomb_x;
+    scene->bomb.x.value = bomb_x;
     Method method = method_named("engine");
     KernelChoice kernels = {.reference = {.plain = {.scalar = true}}};
     assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, &kernels}, &error), error);

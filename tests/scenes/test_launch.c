@@ -39,6 +39,8 @@ TEST(launched_scene_has_the_bomb_of_the_launch) {
     /* The velocity is -1.5 times the new position, the height is the scene's. */
     assert_true(bomb.position.x == -4 && bomb.position.y == 15);
     assert_true(bomb.velocity.x == 6 && bomb.velocity.y == -22.5f);
+    const SceneParameters all = scene_parameters(&launched);
+    assert_near(scene_parameter(&all, "bomb_x")->value, -4, 0);
     assert_ptr_equal(launched.bodies, scene->bodies);
     assert_launch(launch_of(scene), (Launch){1, 0.5f, 2, 50, 9});
     /* The scene's own launch gives the scene's own run. */

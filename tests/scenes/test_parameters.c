@@ -134,16 +134,16 @@ TEST(what_every_scene_has_can_be_set) {
     assert_int_equal(scene->iterations, 7);
     scene_destroy(scene);
     scene = set_one(BOMBED("[3, -4]"), "friction", 0.75);
-    assert_true(scene->bodies[0].friction == 0.75F && scene->bomb.body.friction == 0.75F);
+    assert_true(scene->bodies[0].friction == 0.75F && scene->bomb.friction == 0.75F);
     scene_destroy(scene);
     scene = set_one(BOMBED("[3, -4]"), "bomb_x", -2.5);
-    assert_near(scene->bomb.body.position.x, -2.5, 0);
+    assert_near(scene->bomb.x.value, -2.5, 0);
     scene_destroy(scene);
     scene = set_one(BOMBED("[3, -4]"), "bomb_y", 8.25);
-    assert_near(scene->bomb.body.position.y, 8.25, 0);
+    assert_near(scene->bomb.y, 8.25, 0);
     scene_destroy(scene);
     scene = set_one(BOMBED("[3, -4]"), "bomb_mass", 40);
-    assert_near(scene->bomb.body.mass, 40, 0);
+    assert_near(scene->bomb.mass.value, 40, 0);
     scene_destroy(scene);
     scene = set_one(BOMBED("[3, -4]"), "bomb_speed", 10);
     assert_near(scene_bomb_body(scene).velocity.x, 6, 1e-6);
@@ -162,7 +162,7 @@ TEST(settings_are_read_from_text) {
     assert_int_equal(settings.count, 7);
     Scene *scene = read_with(BOMBED("[3, -4]"), settings.items, settings.count, &error);
     assert_ok(scene != NULL, error);
-    assert_near(scene->bomb.body.mass, 40, 0);
+    assert_near(scene->bomb.mass.value, 40, 0);
     scene_destroy(scene);
     static const char *const bad[] = {"", "x", "=1", "x=", "x=1e999", "x=NaN", "x= 1", "x=1,y=2", "x=0x1p3"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) assert_false(scene_settings_add(&settings, bad[i]));
@@ -182,7 +182,8 @@ TEST(a_parameter_of_that_name_goes_before) {
     OWN(Scene) *scene =
         set_one(MASS("$friction") "parameters: {friction: {value: 1, from: 0.5, to: 20}}\n", "friction", 20);
     assert_true(scene->bodies[0].mass == 20 && scene->bodies[0].friction < 1);
-    assert_ptr_equal(scene_parameter(scene, "friction"), &scene->parameters[0]);
+    const SceneParameters all = scene_parameters(scene);
+    assert_ptr_equal(scene_parameter(&all, "friction"), &all.items[0]);
 }
 
 TEST(what_no_scene_can_have_is_refused) {

@@ -200,15 +200,15 @@ TEST(world_has_the_bodies_in_order_and_the_bomb_last) {
     OWN(World) *world = world_of(scene);
     assert_int_equal(world_body_count(world), 68);
     for (int i = 0; i < 67; i++) assert_same_vector(world_bodies(world)[i].position, scene->bodies[i].position);
-    assert_same_vector(world_bodies(world)[67].position, vec2(scene->bomb.body.position.x, 15));
-    assert_same_vector(world_bodies(world)[67].velocity, vec2(-1.5f * scene->bomb.body.position.x, -22.5f));
+    assert_same_vector(world_bodies(world)[67].position, vec2(scene->bomb.x.value, 15));
+    assert_same_vector(world_bodies(world)[67].velocity, vec2(-1.5f * scene->bomb.x.value, -22.5f));
 }
 
 TEST(world_has_no_bomb_before_its_frame) {
     OWN(Scene) *scene = shipped("pyramid_settled");
     OWN(World) *world = world_of(scene);
     assert_int_equal(world_body_count(world), 67);
-    scene->bomb.body.position.x = -4;
+    scene->bomb.x.value = -4;
     assert_ok(scene_add_bomb(scene, world, &error), error);
     assert_int_equal(world_body_count(world), 68);
     assert_same_vector(world_bodies(world)[67].velocity, vec2(6, -22.5f));

@@ -50,7 +50,7 @@ TEST(energy_counts_from_the_bomb_on) {
 TEST(energy_before_the_bomb_does_not_count) {
     OWN(Scene) *scene = scene_named("single");
     scene->bomb.frame = 120;
-    scene->bomb.body.mass = 0.001f;
+    scene->bomb.mass.value = 0.001f;
     const ClosedLoop result = run("engine", scene);
     assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
 }

@@ -105,7 +105,7 @@ TEST(a_seed_shifts_the_first_dynamic_body) {
         assert_near(stack->bodies[1].position.x, by, 0);
         assert_near(stack->bodies[2].position.x, 0, 0);
         assert_near(shot->bodies[0].position.x, 0, 0);
-        assert_near(shot->bomb.body.position.x, by, 0);
+        assert_near(shot->bomb.x.value, by, 0);
     }
 }
 

@@ -14,7 +14,7 @@ static VerdictReading struck_row(int fall, bool slides, bool moves, char words[T
     Body bodies[ROW + 2] = {trial_ground};
     ContactPoint contacts[ROW];
     Scene scene = {.gravity = {0, -10}, .dt = 1.0f / 60, .frames = 200, .body_count = ROW + 1, .bodies = defs};
-    scene.bomb = (SceneBomb){.present = true, .frame = 10, .body = {.size = {1, 1}, .mass = 1}};
+    scene.bomb = (SceneBomb){.present = true, .frame = 10, .size = {1, 1}, .mass.value = 1};
     for (int i = 1; i <= ROW; i++) {
         defs[i] = (BodyDef){.size = {1, 1}, .mass = 1, .position = {(float)(2 * i), 0.5f}};
         bodies[i] = trial_box;
@@ -85,7 +85,7 @@ static Verdict truth_at(float past, int frames) {
     BodyDef bodies[] = {{.size = {10, 2}, .fixed = true, .friction = 0.5f, .position = {-5, -1}},
                         {.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {past, 0.5f}}};
     Scene scene = scene_of_bodies(bodies, 2, frames);
-    scene.bomb = (SceneBomb){.present = true, .frame = 1, .body = {.size = {1, 1}, .mass = 1, .position = {-8, 0.5f}}};
+    scene.bomb = (SceneBomb){.present = true, .frame = 1, .size = {1, 1}, .mass.value = 1, .x.value = -8, .y = 0.5f};
     const VerdictRun judged = verdict_run_of(&scene);
     Verdict truth;
     Convergence convergence = {0};

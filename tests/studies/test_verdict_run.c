@@ -99,10 +99,13 @@ TEST(a_stack_of_two_settles) {
 static Scene shot_at_slab(BodyDef *slab, float speed) {
     *slab = (BodyDef){.size = {20, 0.25f}, .fixed = true, .friction = 0.2f};
     Scene scene = scene_of_bodies(slab, 1, 100);
-    scene.bomb.present = true;
-    scene.bomb.frame = 5;
-    scene.bomb.body =
-        (BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 1.5f}, .velocity = {0, -speed}};
+    scene.bomb = (SceneBomb){.present = true,
+                             .frame = 5,
+                             .size = {1, 1},
+                             .mass.value = 1,
+                             .friction = 0.2f,
+                             .y = 1.5f,
+                             .velocity = {0, -speed}};
     return scene;
 }
 

@@ -63,7 +63,7 @@ static ImpactProblems record(const char *name) {
     Recording recording = {0};
     for (int i = 0; i < bomb_x.count; i++) {
         Scene launch = *scene;
-        launch.bomb.body.position.x = range_value(&bomb_x, i);
+        launch.bomb.x.value = range_value(&bomb_x, i);
         recording.tracker = (PhaseTracker){.impact_frames = scene->bomb.impact_frames};
         if (!simulate_observed(&launch, &engine, &(StepObserver){observe, &recording}, &error)) give_up(error.message);
     }

@@ -143,7 +143,7 @@ static double roll_out(const Scene *scene, int threads) {
     for (int i = 0; i < LAUNCHES; i++) {
         Error error = {0};
         Scene launch = *scene;
-        launch.bomb.body.position.x = -5.0f + 0.05f * (float)i;
+        launch.bomb.x.value = -5.0f + 0.05f * (float)i;
         Method method;
         const StepObserver observer = {ignore_step, NULL};
         if (!method_parse(&method, "engine", &error) || !simulate_observed(&launch, &method, &observer, &error))
