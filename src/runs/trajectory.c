@@ -162,6 +162,7 @@ static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     trajectory_judge(to, from->verdict, kept_frame(to, from->verdict_frame, step), from->verdict_body);
     to->no_velocities = from->no_velocities;
     to->no_contacts = from->no_contacts;
+    to->no_impulses = from->no_impulses;
     to->camera_center = from->camera_center;
     to->camera_size = from->camera_size;
     memcpy(to->size, from->size, (size_t)from->bodies * sizeof *to->size);
