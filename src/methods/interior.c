@@ -37,13 +37,10 @@
 
 enum {
     FIRST_SWEEPS = 2,
-    START_SWEEPS = 6,     /* with momentum */
-    MANY_SWEEPS = 12,     /* where an iteration takes as long as 10 or more; these save more than they cost */
-    LARGE_SWEEPS = 20,    /* with momentum, where iterations are too dear; then more while the residual is too large */
-    LAST_SWEEPS = 8,      /* with momentum, from the best answer of iterations; then more */
-    MORE_SWEEPS = 96,     /* at most, of those */
-    LEAST_ON_PATH = 8,    /* factorizations */
-    LEAST_ITERATIONS = 7, /* of a struck island of many: fewer seldom are as good as sweeps; */
+    START_SWEEPS = 6,      /* with momentum */
+    MANY_SWEEPS = 12,      /* where an iteration takes as long as 10 or more; these save more than they cost */
+    FALLBACK_SWEEPS = 128, /* at most, with momentum, after a plain one, where iterations are too dear or fail */
+    LEAST_ITERATIONS = 10, /* of a struck island of many, and factorizations on the path: fewer rarely beat sweeps; */
     LEAST_ITERATIONS_AT_REST = 3 /* and one more for each hundred bodies */
 };
 
@@ -55,7 +52,7 @@ static const double usual_products = 2;
 /* A factorization of the path, in iterations. */
 static const double path_work = 2;
 /* Kept for sweeps where iterations do not converge. */
-static const double last_work = 20, last_work_of_struck_many = 40;
+static const double last_work = 20;
 
 /* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which
    exceed the residual more than those of iterations. */
@@ -81,7 +78,7 @@ static const InteriorAttempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, 1e-
    contacts open. */
 static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
 /* Impacts of more than INTERIOR_MANY_BODIES seldom converge from near the bounds. */
-static const InteriorAttempt at_impact_of_many[ATTEMPTS] = {{&interior_far, 0.1, patient, 40}};
+static const InteriorAttempt at_impact_of_many[ATTEMPTS] = {{&interior_far, 0.3, patient, 40}};
 
 typedef struct State {
     float near; /* m/s */
@@ -98,8 +95,7 @@ typedef struct State {
     double best;            /* m/s, residual of the solution that is stored */
     ContactPoint *contacts; /* [contact_count] with the best answer as warm start */
     size_t contact_capacity;
-    float start_factors[START_SWEEPS], many_factors[MANY_SWEEPS], large_factors[LARGE_SWEEPS],
-        last_factors[LAST_SWEEPS], more_factors[MORE_SWEEPS];
+    float start_factors[START_SWEEPS], many_factors[MANY_SWEEPS], fallback_factors[FALLBACK_SWEEPS];
 } State;
 
 static const SettingSpec settings[] = {
@@ -129,9 +125,7 @@ static void *interior_create(const Settings *chosen, Error *error) {
     if (solver == NULL) return NULL;
     set_factors(solver->start_factors, START_SWEEPS);
     set_factors(solver->many_factors, MANY_SWEEPS);
-    set_factors(solver->large_factors, LARGE_SWEEPS);
-    set_factors(solver->last_factors, LAST_SWEEPS);
-    set_factors(solver->more_factors, MORE_SWEEPS);
+    set_factors(solver->fallback_factors, FALLBACK_SWEEPS);
     return solver;
 }
 
@@ -185,21 +179,29 @@ static bool load_interior(State *solver, const ContactProblem *problem, const In
 }
 
 /* Iterations of that work that the island's has room for, after a step that takes `before` of it. */
-static int affordable(const State *solver, const InteriorLook *step, double before, double iteration_work) {
-    const double kept = step->many && !step->calm ? last_work_of_struck_many : last_work;
-    return (int)fmax((solver->left - before - kept) / iteration_work, 0);
+static int affordable(const State *solver, double before, double iteration_work) {
+    return (int)fmax((solver->left - before - last_work) / iteration_work, 0);
 }
 
-/* Loads the island, unless its iterations are too dear: by what its loops tell, so that its matrix is not analysed in
-   vain; then by the analysis. Sets *cheap. False when memory is short. */
-static bool load_if_cheap(State *solver, const ContactProblem *problem, const InteriorLook *step, bool *cheap) {
+static int least_iterations(const InteriorLook *step) {
+    if (!step->many) return 0;
+    return step->calm ? LEAST_ITERATIONS_AT_REST + step->bodies / 100 : LEAST_ITERATIONS;
+}
+
+/* Whether there is room for enough iterations by what the island's loops tell, so that its matrix is not analysed in
+   vain. */
+static bool seems_cheap(const State *solver, const InteriorLook *step) {
     const double usual =
         interior_work(usual_products * step->loops * sqrt(step->loops), solver->momentum.sweeps.pair_count);
-    const int least = !step->many ? 0 : step->calm ? LEAST_ITERATIONS_AT_REST + step->bodies / 100 : LEAST_ITERATIONS;
-    *cheap = affordable(solver, step, load_work + analysis_work(step), usual) >= least;
+    return affordable(solver, load_work + analysis_work(step), usual) >= least_iterations(step);
+}
+
+/* Loads the island, unless its iterations are too dear. Sets *cheap. False when memory is short. */
+static bool load_if_cheap(State *solver, const ContactProblem *problem, const InteriorLook *step, bool *cheap) {
+    *cheap = seems_cheap(solver, step);
     if (!*cheap) return true;
     if (!load_interior(solver, problem, step)) return false;
-    *cheap = affordable(solver, step, 0, solver->interior.iteration_work) >= least;
+    *cheap = affordable(solver, 0, solver->interior.iteration_work) >= least_iterations(step);
     return true;
 }
 
@@ -216,7 +218,7 @@ static bool attempt(State *solver, const ContactProblem *problem, const Interior
     Interior *interior = &solver->interior;
     for (int i = 0; i < ATTEMPTS && attempts[i].rule != NULL && solver->best > (double)near; i++) {
         const double again = solver->loaded ? 0 : begin_work + FIRST_SWEEPS + load_work;
-        const int most = affordable(solver, step, again, interior->iteration_work);
+        const int most = affordable(solver, again, interior->iteration_work);
         if (most == 0) return true;
         if (!solver->loaded && !(interior_start(solver, problem, step->calm) && load_interior(solver, problem, step)))
             return false;
@@ -250,8 +252,8 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Inte
                         ContactSolution *solution, Error *error) {
     InteriorPath *path = &solver->path;
     const double each = path_work * solver->interior.iteration_work;
-    const int most = (int)fmax((solver->left - last_work) / each, 0);
-    if (most < LEAST_ON_PATH) return true;
+    const int most = affordable(solver, 0, each);
+    if (most < LEAST_ITERATIONS) return true;
     if (!interior_path_follow(path, problem, interior_look_speed(step), (double)solver->near, most, error))
         return false;
     solver->left -= path->reference.factorizations * each;
@@ -261,23 +263,21 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Inte
     return true;
 }
 
-/* Begins, and sweeps with momentum until the residual (methods/residual.h) is below `near`, or the work is done. False
-   when memory is short. */
-static bool interior_sweep(State *solver, const ContactProblem *problem, float near, const float *factors, int count) {
-    if (!interior_start(solver, problem, false)) return false;
-    const int more = (int)fmin(fmax(solver->left - count, 0), MORE_SWEEPS) / STOPPING_BLOCK * STOPPING_BLOCK;
+/* After interior_start(): as momentum:k=1,near=NEAR,more=128 (residual: methods/residual.h), or until the work is done.
+   False when memory is short. */
+static bool interior_sweep(State *solver, const ContactProblem *problem, float near) {
+    const int more = (int)fmin(fmax(solver->left - 1, 0), FALLBACK_SWEEPS) / STOPPING_BLOCK * STOPPING_BLOCK;
     const StoppingRule rule = {.near = near, .more = more};
-    solver->left -= count + more;
-    return momentum_begin(&solver->momentum, problem) && momentum_run(&solver->momentum, factors, count) &&
-           momentum_run_more(&solver->momentum, &rule, solver->more_factors);
+    solver->left -= 1 + more;
+    return momentum_begin(&solver->momentum, problem) && momentum_run(&solver->momentum, solver->fallback_factors, 1) &&
+           momentum_run_more(&solver->momentum, &rule, solver->fallback_factors);
 }
 
-/* All by sweeps with momentum. */
+/* After interior_start(): all by sweeps with momentum. */
 static bool solve_by_sweeps(State *solver, const ContactProblem *problem, float near, ContactSolution *solution,
                             Error *error) {
     solution->fallbacks.by_sweeps = 1;
-    return (interior_sweep(solver, problem, near, solver->large_factors, LARGE_SWEEPS) &&
-            momentum_end(&solver->momentum, solution)) ||
+    return (interior_sweep(solver, problem, near) && momentum_end(&solver->momentum, solution)) ||
            error_memory(error, "interior");
 }
 
@@ -310,8 +310,8 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
                       Error *error) {
     const bool finite = solver->best < INFINITY;
     ContactProblem from = *problem;
-    if ((finite && !begin_from(solver, problem, solution, &from)) ||
-        !interior_sweep(solver, &from, near, solver->last_factors, LAST_SWEEPS))
+    if ((finite && !begin_from(solver, problem, solution, &from)) || !interior_start(solver, &from, false) ||
+        !interior_sweep(solver, &from, near))
         return error_memory(error, "interior");
     const double after = residual_of(&solver->momentum.sweeps, problem->contact_count);
     solution->fallbacks.by_sweeps = 1;
@@ -326,7 +326,9 @@ static bool solve_further(State *solver, const ContactProblem *problem, const In
     solver->best = INFINITY;
     bool cheap;
     if (!load_if_cheap(solver, problem, step, &cheap)) return error_memory(error, "interior");
-    if (!cheap) return solve_by_sweeps(solver, problem, near, solution, error);
+    if (!cheap)
+        return interior_start(solver, problem, false) ? solve_by_sweeps(solver, problem, near, solution, error)
+                                                      : error_memory(error, "interior");
     if (!interior_path_reserve(&solver->path, problem) || !iterate_interior(solver, problem, step, solution))
         return error_memory(error, "interior");
     if (solver->best > (double)step->enough && !(step->calm && step->many) &&
@@ -354,6 +356,8 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Int
             return true;
         interior_look_again(step, solver->near, problem->contact_count);
     }
+    if (step->many && !step->calm && !seems_cheap(solver, step))
+        return solve_by_sweeps(solver, problem, solver->near, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
     return done || solve_further(solver, problem, step, solution, error);
 }

@@ -365,7 +365,7 @@ TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
         const ContactProblem *problem = next_problem(world);
         OWN(ContactSolution) found = make_solution(problem), swept = make_solution(problem);
         solve_with(&solver_interior, "near=0.001", problem, &found);
-        solve_with(&solver_momentum, "k=20,near=0.001,more=96", problem, &swept);
+        solve_with(&solver_momentum, "k=1,near=0.001,more=128", problem, &swept);
         assert_int_equal(found.fallbacks.by_sweeps, !stacks);
         const size_t size = (size_t)problem->body_count * sizeof *found.velocities;
         assert_int_equal(memcmp(found.velocities, swept.velocities, size) == 0, !stacks);
