@@ -40,8 +40,8 @@ enum {
     START_SWEEPS = 6,      /* with momentum */
     MANY_SWEEPS = 12,      /* where an iteration takes as long as 10 or more; these save more than they cost */
     FALLBACK_SWEEPS = 128, /* at most, with momentum, after a plain one, where iterations are too dear or fail */
-    LEAST_ITERATIONS = 10, /* of a struck island of many, and factorizations on the path: fewer rarely beat sweeps; */
-    LEAST_ITERATIONS_AT_REST = 3 /* and one more for each hundred bodies */
+    LEAST_ITERATIONS = 10, /* in a struck island of many bodies, and on the path: fewer rarely beat sweeps */
+    LEAST_ITERATIONS_AT_REST = 3 /* of many bodies; one more for each hundred of them */
 };
 
 /* Work is counted, not timed, in sweeps over the island's contacts; its bound is in methods/interior.h. */

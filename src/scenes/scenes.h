@@ -156,10 +156,10 @@ typedef struct SceneParameters {
 } SceneParameters;
 SceneParameters scene_parameters(const Scene *scene);
 
-/* The first with this name, which settings change; NULL: none. */
+/* The first with this name, the one that a setting changes; NULL: none. */
 const SceneParameter *scene_parameter(const SceneParameters *all, const char *name);
 
-/* The unit of what settings change by this name; empty: it has none. */
+/* The unit of scene_parameter(); empty if it has none, or no parameter has this name. */
 const char *scene_parameter_unit(const Scene *scene, const char *name);
 
 /* A world with the scene's bodies (and the bomb if its frame is 0). NULL with error set when memory is short.
