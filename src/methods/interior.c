@@ -37,10 +37,10 @@
 
 enum {
     FIRST_SWEEPS = 2,
-    START_SWEEPS = 6,      /* with momentum */
-    MANY_SWEEPS = 12,      /* where an iteration takes as long as 10 or more; these save more than they cost */
-    FALLBACK_SWEEPS = 128, /* at most, with momentum, after a plain one, where iterations are too dear or fail */
-    LEAST_ITERATIONS = 10, /* in a struck island of many bodies, and on the path: fewer rarely beat sweeps */
+    START_SWEEPS = 6,            /* with momentum */
+    MANY_SWEEPS = 12,            /* where an iteration takes as long as 10 or more; these save more than they cost */
+    FALLBACK_SWEEPS = 128,       /* at most, with momentum, after a plain one, where iterations are too dear or fail */
+    LEAST_ITERATIONS = 10,       /* in a struck island of many bodies, and on the path: fewer rarely beat sweeps */
     LEAST_ITERATIONS_AT_REST = 3 /* of many bodies; one more for each hundred of them */
 };
 
