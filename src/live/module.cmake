@@ -50,7 +50,7 @@ set(module_sources
     live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
     methods/admm methods/admm_scalar methods/avbd methods/block_lu methods/block_order methods/closed_form methods/engine
     methods/gns methods/gns_graph methods/hybrid methods/hybrid_memory methods/hybrid_memory_file methods/interior
-    methods/interior_look methods/interior_path methods/interior_point methods/interior_scalar methods/islands methods/method
+    methods/interior_look methods/interior_point methods/interior_scalar methods/islands methods/method
     methods/momentum methods/nncg methods/order methods/pair methods/pair_net methods/reference_point methods/reference_scalar
     methods/residual methods/sain methods/sain_view methods/scene_net methods/soft_step methods/steppers methods/stopping
     methods/subspace methods/substepping methods/sweeps methods/sweeps_lanes methods/sweeps_scalar

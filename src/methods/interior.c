@@ -6,23 +6,21 @@
    1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at
       rest.
    2. A few sweeps with momentum, where they save more than they cost.
-   3. Iterations until the residual is at most `near`: from near the bounds, and if these break down, from far inside
-      them.
-   4. At impacts the reference's path from its beginning, also where it turns back (methods/interior_path.h).
-   5. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
+   3. Iterations until the residual is at most `near`: at rest from near the bounds, and if these break down, from
+      further inside; at impacts from far inside, but for stacks.
+   4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
-   The work of all this is counted in sweeps, and has a bound. Iterations end when it is reached; the best answer so far
-   is the solution. The analysis of the matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13
-   in a pile or a pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is
-   left to sweeps.
+   The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. Iterations end when it is
+   reached; the best answer so far is the solution. The analysis of the matrix tells what an iteration costs: 5 to 10
+   sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all
+   sides. Where too few fit in, all is left to sweeps.
 
-   Fails at impacts on more than 128 bodies whose central path turns back, as the bound leaves no room to follow it. The
-   difficulty there, for all methods, is to find which contacts open, stick and slide. */
+   Fails at impacts whose central path turns back, as the bound leaves no room to follow it. The difficulty there, for
+   all methods, is to find which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior.h"
 #include "methods/interior_look.h"
-#include "methods/interior_path.h"
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
@@ -37,11 +35,9 @@
 
 enum {
     FIRST_SWEEPS = 2,
-    START_SWEEPS = 6,            /* with momentum */
-    MANY_SWEEPS = 12,            /* where an iteration takes as long as 10 or more; these save more than they cost */
-    FALLBACK_SWEEPS = 128,       /* at most, with momentum, after a plain one, where iterations are too dear or fail */
-    LEAST_ITERATIONS = 10,       /* in a struck island of many bodies, and on the path: fewer rarely beat sweeps */
-    LEAST_ITERATIONS_AT_REST = 3 /* of many bodies; one more for each hundred of them */
+    START_SWEEPS = 6,      /* with momentum */
+    FALLBACK_SWEEPS = 128, /* at most, with momentum, after a plain one, where iterations are too dear or fail */
+    LEAST_OF_MANY = 11     /* iterations: fewer are rarely as good as sweeps; with 12 a pyramid of 20 rows creeps */
 };
 
 /* Work is counted, not timed, in sweeps over the island's contacts; its bound is in methods/interior.h. */
@@ -49,36 +45,28 @@ static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and
    walls, 1.4 in piles. */
 static const double usual_products = 2;
-/* A factorization of the path, in iterations. */
-static const double path_work = 2;
 /* Kept for sweeps where iterations do not converge. */
 static const double last_work = 20;
 
 /* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which
    exceed the residual more than those of iterations. */
 static const float trusted = 0.3f;
-/* And at rest no more of them follow if it is above this multiple: they rarely make up for it. */
-static const float hopeless = 10;
 
-/* Iterations from the start of the sweeps, near the bounds first. If these break down or cycle, it is better to start
-   from there again, further inside, than from where they are. */
+/* Iterations from the start of the sweeps. If these break down or cycle, it is better to start from there again, further
+   inside, than from where they are. */
 enum { ATTEMPTS = 3 };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
 static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
-                                                  {&interior_gentle, 0.01, hasty, 40},
+                                                  {&interior_gentle, 0.01, patient, 40},
                                                   {&interior_far, 0.01, patient, 40}},
                              at_rest_uneven[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
-                                                         {&interior_far, 0.01, patient, 40}},
-                             at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 20},
-                                                    {&interior_far, 0.3, patient, 40},
-                                                    {&interior_gentle, 1, patient, 25}};
-/* Those of stacks find back after many jumps. */
-static const InteriorAttempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}};
-/* Beyond INTERIOR_MANY_BODIES iterations that do not converge at once rarely do, and impacts' tolerance would let
-   contacts open. */
+                                                         {&interior_far, 0.01, patient, 40}};
+/* Among many bodies iterations that do not converge at once rarely do. */
 static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
-/* Impacts of more than INTERIOR_MANY_BODIES seldom converge from near the bounds. */
-static const InteriorAttempt at_impact_of_many[ATTEMPTS] = {{&interior_far, 0.3, patient, 40}};
+/* Struck stacks, and restless islands, converge from near the bounds, some after many jumps; where struck bodies have
+   loops, that is rare. */
+static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}},
+                             at_impact[ATTEMPTS] = {{&interior_far, 0.3, patient, 40}};
 
 typedef struct State {
     float near; /* m/s */
@@ -87,7 +75,6 @@ typedef struct State {
     InteriorLook *looks; /* [islands.count] */
     ArrayBlock look_block;
     Momentum momentum;
-    InteriorPath path;
     double left;            /* of the island's work, in sweeps */
     double work;            /* the most of an island in the last step */
     bool analysed;          /* the island's matrix is, */
@@ -95,7 +82,7 @@ typedef struct State {
     double best;            /* m/s, residual of the solution that is stored */
     ContactPoint *contacts; /* [contact_count] with the best answer as warm start */
     size_t contact_capacity;
-    float start_factors[START_SWEEPS], many_factors[MANY_SWEEPS], fallback_factors[FALLBACK_SWEEPS];
+    float start_factors[START_SWEEPS], fallback_factors[FALLBACK_SWEEPS];
 } State;
 
 static const SettingSpec settings[] = {
@@ -110,7 +97,6 @@ static void interior_destroy(void *state) {
     islands_free(&solver->islands);
     free(solver->look_block.memory);
     momentum_free(&solver->momentum);
-    interior_path_free(&solver->path);
     free(solver->contacts);
     free(solver);
 }
@@ -124,7 +110,6 @@ static void *interior_create(const Settings *chosen, Error *error) {
     State *solver = settings_make(chosen, settings, &standard, sizeof standard, "interior", error);
     if (solver == NULL) return NULL;
     set_factors(solver->start_factors, START_SWEEPS);
-    set_factors(solver->many_factors, MANY_SWEEPS);
     set_factors(solver->fallback_factors, FALLBACK_SWEEPS);
     return solver;
 }
@@ -136,36 +121,22 @@ static bool interior_start(State *solver, const ContactProblem *problem, bool ca
     return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) && (!calm || sweeps_run(sweeps, FIRST_SWEEPS));
 }
 
-/* Sweeps with momentum after the first ones. Sets *done if they are enough: the solution is stored. False when memory
-   is short. */
-static bool continue_sweeps(State *solver, const ContactProblem *problem, const InteriorLook *step,
-                            const float *factors, int count, ContactSolution *solution, bool *done) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
-    const float enough = step->calm ? step->near : trusted * solver->near;
-    solver->left -= count;
-    if (!sweeps_run_momentum(sweeps, factors, count)) return false;
-    *done = !residual_of_visits_reaches(sweeps, problem->contact_count, enough) && sweeps_end(sweeps, solution);
-    return true;
-}
-
-/* Where sweeps with momentum save as much of an iteration as they cost. At rest iterations converge at once from the
-   first sweeps, or not at all; impacts of many bodies that are not solved by these are hard, and iterations then
-   converge sooner from the plain start. Sweeps carry little where light bodies hold heavy ones, or where there is no
-   friction. In other calm islands of many bodies, some nearly always slide for long after an impact, and iterations
-   towards the small tolerance cycle; sweeps with momentum then reach it in less time. */
+/* Sweeps with momentum after the first ones, where they save as much of an iteration as they cost. At rest iterations
+   converge at once from the first sweeps, or not at all; but in calm islands of many bodies some nearly always slide
+   for long after an impact, iterations towards the small tolerance cycle, and sweeps reach it in less time. Sweeps
+   carry little where light bodies hold heavy ones, or where there is no friction. Impacts of many bodies that are not
+   solved by these sweeps are hard: iterations then converge sooner from the plain start. Sets *done if the sweeps are
+   enough: the solution is stored. False when memory is short. */
 static bool try_sweeps(State *solver, const ContactProblem *problem, const InteriorLook *step,
                        ContactSolution *solution, bool *done) {
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    const float enough = step->calm ? step->near : trusted * solver->near;
     *done = false;
     if (step->calm && (!step->many || interior_look_jams(step))) return true;
-    if ((step->calm || !step->many) &&
-        !continue_sweeps(solver, problem, step, solver->start_factors, START_SWEEPS, solution, done))
-        return false;
-    if (*done || !step->many) return true;
-    if (step->calm &&
-        residual_of_visits_reaches(&solver->momentum.sweeps, problem->contact_count, hopeless * step->near))
-        return interior_start(solver, problem, true);
-    return continue_sweeps(solver, problem, step, solver->many_factors, MANY_SWEEPS, solution, done) &&
-           (*done || interior_start(solver, problem, step->calm));
+    solver->left -= START_SWEEPS;
+    if (!sweeps_run_momentum(sweeps, solver->start_factors, START_SWEEPS)) return false;
+    *done = !residual_of_visits_reaches(sweeps, problem->contact_count, enough) && sweeps_end(sweeps, solution);
+    return *done || !step->many || interior_start(solver, problem, step->calm);
 }
 
 /* Of the matrix of an island. */
@@ -183,17 +154,12 @@ static int affordable(const State *solver, double before, double iteration_work)
     return (int)fmax((solver->left - before - last_work) / iteration_work, 0);
 }
 
-static int least_iterations(const InteriorLook *step) {
-    if (!step->many) return 0;
-    return step->calm ? LEAST_ITERATIONS_AT_REST + step->bodies / 100 : LEAST_ITERATIONS;
-}
-
 /* Whether there is room for enough iterations by what the island's loops tell, so that its matrix is not analysed in
    vain. */
 static bool seems_cheap(const State *solver, const InteriorLook *step) {
     const double usual =
         interior_work(usual_products * step->loops * sqrt(step->loops), solver->momentum.sweeps.pair_count);
-    return affordable(solver, load_work + analysis_work(step), usual) >= least_iterations(step);
+    return affordable(solver, load_work + analysis_work(step), usual) >= (step->many ? LEAST_OF_MANY : 0);
 }
 
 /* Loads the island, unless its iterations are too dear. Sets *cheap. False when memory is short. */
@@ -201,7 +167,7 @@ static bool load_if_cheap(State *solver, const ContactProblem *problem, const In
     *cheap = seems_cheap(solver, step);
     if (!*cheap) return true;
     if (!load_interior(solver, problem, step)) return false;
-    *cheap = affordable(solver, 0, solver->interior.iteration_work) >= least_iterations(step);
+    *cheap = affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_OF_MANY : 0);
     return true;
 }
 
@@ -212,11 +178,22 @@ static void interior_offer(State *solver, const ContactProblem *problem, Contact
         solver->best = interior->residual;
 }
 
-/* Some attempts, until the residual is at most `near` or the work is done. False when memory is short. */
-static bool attempt(State *solver, const ContactProblem *problem, const InteriorLook *step,
-                    const InteriorAttempt *attempts, bool close, float near, ContactSolution *solution) {
+/* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let
+   them open: a wall that creeps once goes on. */
+static const InteriorAttempt *attempts_of(const InteriorLook *step) {
+    if (!step->calm) return step->bodies <= INTERIOR_FEW_BODIES ? near_bounds : at_impact;
+    const bool many = step->many && !interior_look_jams(step);
+    if (step->restless && !many) return near_bounds;
+    return many ? at_rest_of_many : step->uneven ? at_rest_uneven : at_rest;
+}
+
+/* The attempts, until the residual is at most `near` or the work is done. False when memory is short. */
+static bool iterate_interior(State *solver, const ContactProblem *problem, const InteriorLook *step,
+                             ContactSolution *solution) {
     Interior *interior = &solver->interior;
-    for (int i = 0; i < ATTEMPTS && attempts[i].rule != NULL && solver->best > (double)near; i++) {
+    const InteriorAttempt *attempt = attempts_of(step), *const end = attempt + ATTEMPTS;
+    const double near = (double)step->near;
+    for (; attempt < end && attempt->rule != NULL && solver->best > near; attempt++) {
         const double again = solver->loaded ? 0 : begin_work + FIRST_SWEEPS + load_work;
         const int most = affordable(solver, again, interior->iteration_work);
         if (most == 0) return true;
@@ -224,42 +201,11 @@ static bool attempt(State *solver, const ContactProblem *problem, const Interior
             return false;
         solver->loaded = false;
         /* What opens is not found in the next step, falls, and lands on what lies below. */
-        if (close) interior_close(interior, interior_look_closing(step, solver->near), (double)problem->dt);
-        interior_iterate(interior, interior_best(), &attempts[i], interior_look_speed(step), (double)near, most);
+        if (step->calm) interior_close(interior, interior_look_closing(step, solver->near), (double)problem->dt);
+        interior_iterate(interior, interior_best(), attempt, interior_look_speed(step), near, most);
         solver->left -= interior->iterations * interior->iteration_work;
         interior_offer(solver, problem, solution);
     }
-    return true;
-}
-
-/* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let
-   them open: a wall that creeps once goes on. False when memory is short. */
-static bool iterate_interior(State *solver, const ContactProblem *problem, const InteriorLook *step,
-                             ContactSolution *solution) {
-    const InteriorAttempt *as_impact = step->many                           ? at_impact_of_many
-                                       : step->bodies > INTERIOR_FEW_BODIES ? at_impact
-                                                                            : at_impact_of_few;
-    const bool close = step->calm;
-    if (!step->calm || (step->restless && (!step->many || interior_look_jams(step))))
-        return attempt(solver, problem, step, as_impact, close, step->near, solution);
-    if (step->many && !interior_look_jams(step))
-        return attempt(solver, problem, step, at_rest_of_many, close, step->near, solution);
-    return attempt(solver, problem, step, step->uneven ? at_rest_uneven : at_rest, close, step->near, solution);
-}
-
-/* Stores the path's solution if its residual is the least so far. */
-static bool follow_path(State *solver, const ContactProblem *problem, const InteriorLook *step,
-                        ContactSolution *solution, Error *error) {
-    InteriorPath *path = &solver->path;
-    const double each = path_work * solver->interior.iteration_work;
-    const int most = affordable(solver, 0, each);
-    if (most < LEAST_ITERATIONS) return true;
-    if (!interior_path_follow(path, problem, interior_look_speed(step), (double)solver->near, most, error))
-        return false;
-    solver->left -= path->reference.factorizations * each;
-    if (!(path->residual < solver->best)) return true;
-    solver->best = path->residual;
-    interior_path_take(path, problem, solution);
     return true;
 }
 
@@ -322,23 +268,14 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
 /* Iterations, then sweeps. */
 static bool solve_further(State *solver, const ContactProblem *problem, const InteriorLook *step,
                           ContactSolution *solution, Error *error) {
-    const float near = step->calm && step->many ? step->near : solver->near;
     solver->best = INFINITY;
     bool cheap;
     if (!load_if_cheap(solver, problem, step, &cheap)) return error_memory(error, "interior");
     if (!cheap)
-        return interior_start(solver, problem, false) ? solve_by_sweeps(solver, problem, near, solution, error)
+        return interior_start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->enough, solution, error)
                                                       : error_memory(error, "interior");
-    if (!interior_path_reserve(&solver->path, problem) || !iterate_interior(solver, problem, step, solution))
-        return error_memory(error, "interior");
-    if (solver->best > (double)step->enough && !(step->calm && step->many) &&
-        !follow_path(solver, problem, step, solution, error))
-        return false;
-    return solver->best <= (double)step->enough || fall_back(solver, problem, near, solution, error);
-}
-
-static double most_work(const InteriorLook *step) {
-    return step->many ? INTERIOR_MOST_WORK_OF_MANY : INTERIOR_MOST_WORK;
+    if (!iterate_interior(solver, problem, step, solution)) return error_memory(error, "interior");
+    return solver->best <= (double)step->enough || fall_back(solver, problem, step->enough, solution, error);
 }
 
 /* A problem that is a single island. */
@@ -347,7 +284,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Int
     InteriorLook look = *seen, *step = &look;
     bool done = false;
     step->left = (PairResidual){0};
-    solver->left = most_work(step);
+    solver->left = INTERIOR_MOST_WORK;
     solver->analysed = solver->loaded = false;
     if (!interior_start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
@@ -392,7 +329,7 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
         ContactSolution of_part;
         const ContactProblem part = islands_take(islands, problem, k, &of_part);
         if (!solve_island(solver, &part, step, &of_part, error)) return false;
-        solver->work = fmax(solver->work, most_work(step) - solver->left);
+        solver->work = fmax(solver->work, INTERIOR_MOST_WORK - solver->left);
         islands_put(islands, k, &part, &of_part, solution);
     }
     solution->fallbacks.by_sweeps = solution->fallbacks.by_sweeps > 0;
@@ -412,7 +349,7 @@ static bool interior_solve(void *state, const ContactProblem *problem, ContactSo
     solver->work = 0;
     if (!single) return solve_islands(solver, problem, solution, error);
     const bool done = solve_island(solver, problem, &solver->looks[0], solution, error);
-    solver->work = most_work(&solver->looks[0]) - solver->left;
+    solver->work = INTERIOR_MOST_WORK - solver->left;
     return done;
 }
 

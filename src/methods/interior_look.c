@@ -10,23 +10,20 @@
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
    An island is calm if bodies that touch move there, relative to each other, by less than `calm_below` and what gravity
    adds in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance
-   of calm islands is at most `calm_near`, or `many_near` among many bodies; `slippery_near` without friction, where
-   nothing holds what an error moves; and `slender_near` in towers. At 1e-4 a stack of 40 falls, and at 3e-5 some stacks
-   of 41 to 60 boxes sway for seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack
-   of 20 by 15 um in 10 s. */
+   of calm islands is at most `calm_near`, or `many_near` among many bodies, where smaller ones take a tenth more time;
+   `slippery_near` without friction, where nothing holds what an error moves: a stack of 12 stands 380 s, and 160 s at
+   2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks of 41 to 60 boxes sway for
+   seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack of 20 by 15 um in 10 s. */
 static const float calm_below = 1.03f, calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f,
                    slender_near = 2e-5f;
-/* The pace of long steps (InteriorLook.brief) moves bodies by so many slops in a step, at most. */
-static const float longest_way = 1.67f;
 /* In calm islands plain sweeps are enough below this, or below so many roundings of what the impulses hold; without
    friction, and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3 roundings. */
-static const float still = 2e-5f, roundings = 3, slender_roundings = 0.3f;
+static const float still = 2e-5f, roundings = 0.3f;
 /* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is
    restless. */
 static const float restless_from = 2;
-/* Sweeps carry little between bodies that touch if one has more than this multiple of the other's mass. There, a
-   multiple of the tolerance has to do among many bodies. */
-static const float uneven_from = 10, jammed_near = 10;
+/* Sweeps carry little between bodies that touch if one has more than this multiple of the other's mass. */
+static const float uneven_from = 10;
 /* Of the pace. */
 static const float closing = 1e-3f, calm_speed = 10;
 
@@ -52,14 +49,14 @@ static float tolerance(const InteriorLook *look, float near) {
     if (!look->calm) return near;
     if (look->slippery) return smaller(near, slippery_near * look->pace);
     if (look->slender) return smaller(near, slender_near * look->pace);
-    return smaller(near, look->many && !look->uneven ? many_near * look->brief : calm_near * look->pace);
+    return smaller(near, look->many && !look->uneven ? many_near * look->pace : calm_near * look->pace);
 }
 
 static void interior_look_decide(InteriorLook *look, float near) {
     const float limit = look->fall + calm_below * look->pace;
     look->calm = look->fastest < limit * limit;
     look->near = tolerance(look, near);
-    look->enough = !look->calm || !look->many ? near : interior_look_jams(look) ? jammed_near * look->near : look->near;
+    look->enough = look->calm && look->many ? look->near : near;
 }
 
 void interior_look(InteriorLook *looks, const Islands *islands, const ContactProblem *problem, float near) {
@@ -69,7 +66,6 @@ void interior_look(InteriorLook *looks, const Islands *islands, const ContactPro
                                   .loops = islands->islands[k].loops,
                                   .fall = problem->fall,
                                   .pace = pace,
-                                  .brief = smaller(pace, longest_way * CONTACT_SLOP / problem->dt),
                                   .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
                                   .many = islands->islands[k].bodies > INTERIOR_MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++)
@@ -93,8 +89,8 @@ double interior_look_residual(const InteriorLook *look, int contacts) {
 
 bool interior_look_is_still(const InteriorLook *look, int contacts) {
     const float held = sqrtf(look->left.held / (float)contacts);
-    const float least = look->slippery || look->slender ? 0 : still * look->brief;
-    const float limit = larger((look->slender ? slender_roundings : roundings) * 0x1p-24f * (look->pace + held), least);
+    const float least = look->slippery || look->slender ? 0 : still * look->pace;
+    const float limit = larger(roundings * 0x1p-24f * (look->pace + held), least);
     return look->calm && look->left.visit < limit * limit * (float)contacts;
 }
 

@@ -22,7 +22,7 @@ typedef struct InteriorLook {
     int bodies, loops; /* bodies: that move */
     float fastest;     /* (m/s)^2, relative to each other where they touch */
     float fall;        /* m/s, that gravity adds in a step */
-    float pace, brief; /* m/s, units of speeds at rest; brief: the one that gets shorter in long steps */
+    float pace;        /* m/s, the unit of speeds at rest */
     bool calm, many, slippery, uneven;
     bool restless;
     bool slender;       /* towers: errors below are larger above */

@@ -50,10 +50,10 @@ static double interior_point_begin(Interior *s, const InteriorRule *rule, double
     return rule->first * scale * scale;
 }
 
-double interior_most_held(double speed) { return 0x1p22 * speed; }
-
+/* Between jammed bodies impulses can grow without an effect on velocities, until their rounding in float makes
+   velocities of a quarter of the problem's. */
 static bool is_jammed(const Interior *s, double speed) {
-    const double largest = interior_most_held(speed);
+    const double largest = 0x1p22 * speed;
     bool jammed = false;
     for (int i = 0; i < s->group_count; i++) {
         const Vec4 held = s->groups[i].answer_normal * s->groups[i].inverse_normal;

@@ -144,10 +144,6 @@ typedef struct InteriorAttempt {
 void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorAttempt *attempt, double speed,
                       double near, int most);
 
-/* m/s: the most that an impulse over its contact's mass may be. Between jammed bodies impulses can grow without an
-   effect on velocities, until their rounding in float makes velocities of a quarter of the problem's. */
-double interior_most_held(double speed);
-
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */
 bool interior_end(const Interior *interior, const Sweeps *sweeps, const ContactProblem *problem,
