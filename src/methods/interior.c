@@ -6,8 +6,8 @@
    1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at
       rest.
    2. A few sweeps with momentum, where they save more than they cost.
-   3. Iterations until the residual is at most `near`: at rest from near the bounds, and if these break down, from
-      further inside; at impacts from far inside, but for stacks.
+   3. Iterations until the residual is at most `near`: from near the bounds, and if these break down, from further
+      inside.
    4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
    The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. Iterations end when it is
@@ -63,10 +63,12 @@ static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty
                                                          {&interior_far, 0.01, patient, 40}};
 /* Among many bodies iterations that do not converge at once rarely do. */
 static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
-/* Struck stacks, and restless islands, converge from near the bounds, some after many jumps; where struck bodies have
-   loops, that is rare. */
+/* Struck stacks, and restless islands, converge from near the bounds, some after many jumps; other struck islands at
+   once, or from further inside, where those of many bodies and under heavy ones begin. */
 static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}},
-                             at_impact[ATTEMPTS] = {{&interior_far, 0.3, patient, 40}};
+                             at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 20},
+                                                    {&interior_far, 0.3, patient, 40}},
+                             at_hard_impact[ATTEMPTS] = {{&interior_far, 0.3, patient, 40}};
 
 typedef struct State {
     float near; /* m/s */
@@ -181,7 +183,8 @@ static void interior_offer(State *solver, const ContactProblem *problem, Contact
 /* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let
    them open: a wall that creeps once goes on. */
 static const InteriorAttempt *attempts_of(const InteriorLook *step) {
-    if (!step->calm) return step->bodies <= INTERIOR_FEW_BODIES ? near_bounds : at_impact;
+    if (!step->calm && step->bodies <= INTERIOR_FEW_BODIES) return near_bounds;
+    if (!step->calm) return step->many || step->heavy ? at_hard_impact : at_impact;
     const bool many = step->many && !interior_look_jams(step);
     if (step->restless && !many) return near_bounds;
     return many ? at_rest_of_many : step->uneven ? at_rest_uneven : at_rest;

@@ -22,17 +22,18 @@ static const float still = 2e-5f, roundings = 0.3f;
 /* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is
    restless. */
 static const float restless_from = 2;
-/* Sweeps carry little between bodies that touch if one has more than this multiple of the other's mass. */
-static const float uneven_from = 10;
+/* Multiples of the other's mass, of two bodies that touch. Sweeps carry little between them from the first. From the
+   second, attempts at an impact from near the bounds are in vain: with one, a bomb of 1e5 times the mass of 36 boxes
+   has a third of the error of sweeps of the same work, and a tenth without. */
+static const float uneven_from = 10, heavy_from = 100;
 /* Of the pace. */
 static const float closing = 1e-3f, calm_speed = 10;
 
 static float smaller(float x, float y) { return x < y ? x : y; }
 static float larger(float x, float y) { return x > y ? x : y; }
 
-static bool is_uneven(float inv_mass_a, float inv_mass_b) {
-    return inv_mass_a > 0 && inv_mass_b > 0 &&
-           (inv_mass_a > uneven_from * inv_mass_b || inv_mass_b > uneven_from * inv_mass_a);
+static bool is_uneven(float inv_mass_a, float inv_mass_b, float from) {
+    return inv_mass_a > 0 && inv_mass_b > 0 && (inv_mass_a > from * inv_mass_b || inv_mass_b > from * inv_mass_a);
 }
 
 static void look_at_contact(InteriorLook *look, const ContactProblem *problem, int i) {
@@ -40,7 +41,9 @@ static void look_at_contact(InteriorLook *look, const ContactProblem *problem, i
     const float motion = residual_of_motion(problem, i);
     if (!(motion <= look->fastest)) look->fastest = motion; /* NaN, too */
     look->slippery |= contact->friction < INTERIOR_SLIPPERY;
-    look->uneven |= is_uneven(problem->bodies[contact->a].inv_mass, problem->bodies[contact->b].inv_mass);
+    const float inv_mass_a = problem->bodies[contact->a].inv_mass, inv_mass_b = problem->bodies[contact->b].inv_mass;
+    look->uneven |= is_uneven(inv_mass_a, inv_mass_b, uneven_from);
+    look->heavy |= is_uneven(inv_mass_a, inv_mass_b, heavy_from);
 }
 
 bool interior_look_jams(const InteriorLook *look) { return look->slippery || look->uneven; }

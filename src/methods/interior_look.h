@@ -23,7 +23,8 @@ typedef struct InteriorLook {
     float fastest;     /* (m/s)^2, relative to each other where they touch */
     float fall;        /* m/s, that gravity adds in a step */
     float pace;        /* m/s, the unit of speeds at rest */
-    bool calm, many, slippery, uneven;
+    bool calm, many, slippery;
+    bool uneven, heavy; /* bodies of unlike masses touch */
     bool restless;
     bool slender;       /* towers: errors below are larger above */
     float near, enough; /* m/s: residuals at which iterations stop, and that are taken */
