@@ -43,6 +43,7 @@ for name in $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'); do
     while read -r line; do
         checks=$((checks + 1))
         paste "$line"
+        grep -q "this build has no module for live pages" "$folder/errors" && continue
         [[ " $(expected "$line") " == *" $status "* ]] || fail "$name: $line: exit status $status: $(head -c 300 "$folder/errors")"
     done <examples
     cd ..
