@@ -10,8 +10,8 @@
       inside.
    4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
-   The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. Iterations end when it is
-   reached; the best answer so far is the solution. The analysis of the matrix tells what an iteration costs: 5 to 10
+   The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. Iterations end when it
+   is reached; the best answer so far is the solution. The analysis of the matrix tells what an iteration costs: 5 to 10
    sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all
    sides. Where too few fit in, all is left to sweeps.
 
@@ -52,8 +52,8 @@ static const double last_work = 20;
    exceed the residual more than those of iterations. */
 static const float trusted = 0.3f;
 
-/* Iterations from the start of the sweeps. If these break down or cycle, it is better to start from there again, further
-   inside, than from where they are. */
+/* Iterations from the start of the sweeps. If these break down or cycle, it is better to start from there again,
+   further inside, than from where they are. */
 enum { ATTEMPTS = 3 };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
 static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
