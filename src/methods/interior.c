@@ -54,7 +54,7 @@ static const float trusted = 0.3f;
 
 /* Iterations from the start of the sweeps. If these break down or cycle, it is better to start from there again,
    further inside, than from where they are. */
-enum { ATTEMPTS = 3 };
+enum { ATTEMPTS = 4 /* the last is empty */ };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
 static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
                                                   {&interior_gentle, 0.01, patient, 40},
@@ -63,12 +63,12 @@ static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty
                                                          {&interior_far, 0.01, patient, 40}};
 /* Among many bodies iterations that do not converge at once rarely do. */
 static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
-/* Struck stacks, and restless islands, converge from near the bounds, some after many jumps; other struck islands at
-   once, or from further inside, where those of many bodies and under heavy ones begin. */
+/* Struck stacks, and restless islands, converge from near the bounds, some after many jumps. Other struck islands do so
+   at once or not at all. If not, they begin again further inside. Those with many bodies, or with a heavy one, begin
+   there. */
 static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}},
                              at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 20},
-                                                    {&interior_far, 0.3, patient, 40}},
-                             at_hard_impact[ATTEMPTS] = {{&interior_far, 0.3, patient, 40}};
+                                                    {&interior_far, 0.3, patient, 40}};
 
 typedef struct State {
     float near; /* m/s */
@@ -184,7 +184,7 @@ static void interior_offer(State *solver, const ContactProblem *problem, Contact
    them open: a wall that creeps once goes on. */
 static const InteriorAttempt *attempts_of(const InteriorLook *step) {
     if (!step->calm && step->bodies <= INTERIOR_FEW_BODIES) return near_bounds;
-    if (!step->calm) return step->many || step->heavy ? at_hard_impact : at_impact;
+    if (!step->calm) return step->many || step->heavy ? at_impact + 1 : at_impact;
     const bool many = step->many && !interior_look_jams(step);
     if (step->restless && !many) return near_bounds;
     return many ? at_rest_of_many : step->uneven ? at_rest_uneven : at_rest;
@@ -194,9 +194,8 @@ static const InteriorAttempt *attempts_of(const InteriorLook *step) {
 static bool iterate_interior(State *solver, const ContactProblem *problem, const InteriorLook *step,
                              ContactSolution *solution) {
     Interior *interior = &solver->interior;
-    const InteriorAttempt *attempt = attempts_of(step), *const end = attempt + ATTEMPTS;
     const double near = (double)step->near;
-    for (; attempt < end && attempt->rule != NULL && solver->best > near; attempt++) {
+    for (const InteriorAttempt *attempt = attempts_of(step); attempt->rule != NULL && solver->best > near; attempt++) {
         const double again = solver->loaded ? 0 : begin_work + FIRST_SWEEPS + load_work;
         const int most = affordable(solver, again, interior->iteration_work);
         if (most == 0) return true;

@@ -75,9 +75,6 @@ static inline bool reference_converged(const Reference *reference) {
 
 void reference_free(Reference *reference);
 
-/* Allocates what a solve of this problem needs. False when memory is short. */
-bool reference_reserve(Reference *reference, const ContactProblem *problem);
-
 /* Solves until the residual is at most REFERENCE_TOLERANCE. start: initial impulses [contact_count]; NULL: the
    problem's warm start. Not to reach the tolerance is not an error; see `residual`. False only when memory is short.
 

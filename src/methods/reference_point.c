@@ -85,15 +85,11 @@ static void load_pair(Reference *r, int i, const ContactProblem *problem) {
         load_slot(&r->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, pair, k, problem, first + k, r->push_out);
 }
 
-bool reference_reserve(Reference *r, const ContactProblem *problem) {
-    if (!reference_point_reserve(r, problem)) return false;
-    find_pairs(r, problem);
-    return block_graph_load(&r->graph, problem, r->pair_count);
-}
-
 /* The problem, without impulses. False when memory is short. */
 static bool reference_point_load(Reference *r, const ContactProblem *problem) {
-    if (!reference_reserve(r, problem)) return false;
+    if (!reference_point_reserve(r, problem)) return false;
+    find_pairs(r, problem);
+    if (!block_graph_load(&r->graph, problem, r->pair_count)) return false;
     const int32_t none = r->graph.lu.count, spare = block_lu_spare(&r->graph.lu);
     Vec4 *const numbers[] = {r->moved, r->changes, r->first_changes, r->kept[0].moved, r->kept[1].moved};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) numbers[i][none] = (Vec4){0};

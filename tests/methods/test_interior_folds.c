@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The method interior where its iterations fail: at impacts whose central path turns back; and the work that this
-   takes. */
+   takes. The reference follows such paths. */
 #include "allocations.h"
 #include "consistent.h"
 #include "kernels.h"
@@ -98,8 +98,7 @@ TEST(a_hard_impact_allocates_nothing) {
     assert_int_equal(allocations, 0);
 }
 
-/* The reference ends as soon as asked to. */
-TEST(the_path_ends_at_the_tolerance) {
+TEST(the_reference_ends_at_the_tolerance) {
     OWN(World) *world = make_struck_wall(2.1f, 0.3f, 1);
     const ContactProblem *problem = next_problem(world);
     assert_ok(reference_solve_to(&reference, problem, 0.01, INT_MAX, &error), error);
