@@ -40,9 +40,7 @@ static const Option option_table[] = {
      OPTION_PATH(Options, view_from)},
     {"--scene", 0, "SCENE", "divergence: scene of the first run, for the band of chaos",
      OPTION_PATH(Options, figure.scene)},
-    {"--bodies", 0, "A,B,...",
-     "narrow-phase: the pair (default: the bomb's first, else the first to touch); strip: show the part of the world "
-     "with these bodies",
+    {"--bodies", 0, "A,B,...", "strip: show the part of the world with these bodies",
      OPTION_READ(read_bodies, Options, figure)},
     {"--width", 0, "column|page|MM", "Width: 85 mm, 174 mm (default) or 40 to 400 mm",
      OPTION_READ(read_width, Options, figure.width), .least = FIGURE_WIDTH_MIN, .most = FIGURE_WIDTH_MAX, .group = 1},
@@ -173,10 +171,7 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     if (figure->height > 0 && !kind->takes_height) return figure_refuse("--height", kind, error);
     if (figure->body_count > 0 && figure->view.width > 0)
         return error_input(error, "--bodies", "cannot be combined with --camera");
-    if (figure->body_count > 0 && kind->max_bodies == 0) return figure_refuse("--bodies", kind, error);
-    if (figure->body_count > 0 && (figure->body_count < kind->min_bodies || figure->body_count > kind->max_bodies))
-        return error_input(error, "--bodies", "%s takes %s%d bodies (got %d)", kind->name,
-                           kind->min_bodies < kind->max_bodies ? "at most " : "", kind->max_bodies, figure->body_count);
+    if (figure->body_count > 0 && !kind->takes_bodies) return figure_refuse("--bodies", kind, error);
     if (figure->view.width > 0 && !kind->takes_view) return figure_refuse("--camera", kind, error);
     if (options->view_from != NULL && !kind->takes_view) return figure_refuse("--view-from", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||

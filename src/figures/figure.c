@@ -12,8 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const FigureKind *const kinds[] = {&figure_strip,  &figure_annotated, &figure_divergence,
-                                          &figure_strobe, &figure_pair,      NULL};
+static const FigureKind *const kinds[] = {&figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, NULL};
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
 

@@ -21,7 +21,6 @@ enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60, FIGURE_BODI
 /* What was drawn, for the caption. */
 typedef struct FigureFacts {
     int frame_count, frames[FIGURE_MOMENTS_MAX]; /* shown */
-    int bodies[2];                               /* narrow-phase: the pair */
     int shifted;                                 /* divergence: the number of bodies shifted for the band; 0: no band */
 } FigureFacts;
 
@@ -42,7 +41,7 @@ typedef struct FigureSpec {
     CameraView view;                  /* the part of the world to show; width 0: that of `view_from` */
     const Trajectory *view_from;      /* the run whose bodies set the view; NULL: the first */
     int body_count;                   /* 0: the kind chooses */
-    int bodies[FIGURE_BODIES_MAX];    /* narrow-phase: the pair; strip: those that must be in view */
+    int bodies[FIGURE_BODIES_MAX];    /* strip: those that must be in view */
     FigureFacts *facts;               /* filled in by drawing; NULL: not wanted */
     const Progress *progress;         /* of simulations run for the figure, or NULL */
 } FigureSpec;
@@ -51,9 +50,8 @@ typedef struct FigureKind {
     const char *name, *summary;
     const char *example; /* arguments after `twinbox figure` */
     int min_runs, max_runs;
-    bool takes_times, takes_moments, takes_scene, takes_height, takes_view;
-    bool needs_contacts;        /* runs without are refused; trajectory_find_contacts() finds them again */
-    int min_bodies, max_bodies; /* 0, 0: takes none */
+    bool takes_times, takes_moments, takes_scene, takes_height, takes_view, takes_bodies;
+    bool needs_contacts; /* runs without are refused; trajectory_find_contacts() finds them again */
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */
     bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);
@@ -73,67 +71,3 @@ bool figure_write_caption(const FigureKind *kind, const FigureSpec *spec, const 
 
 /* NULL with error set, which lists the kinds, if there is no such kind. */
 const FigureKind *figure_kind(const char *name, Error *error);
-
-/* The separating axis theorem, computed for display: two boxes overlap if their projections on all four axes do, and
-   the axis of the least overlap is the contact normal. engine/box.c has the optimised version. */
-
-/* The projections of boxes a and b on an axis. */
-typedef struct AxisOverlap {
-    int box;                /* owner of the axis: 0 is a, 1 is b */
-    char letter;            /* 'x' or 'y', the axis in its box */
-    Vec2 axis;              /* unit */
-    double low[2], high[2]; /* m from the world's origin: the projections of a and of b */
-    double depth;           /* m that b must move to separate; negative if separated */
-} AxisOverlap;
-
-enum { SEPARATING_AXES = 4 };
-
-/* The axes of a, x first, then those of b. */
-void separating_axes(AxisOverlap overlaps[SEPARATING_AXES], const Box *a, const Box *b);
-
-/* The index of the least depth. */
-int least_overlap(const AxisOverlap overlaps[SEPARATING_AXES]);
-
-/* The collision of two boxes, and the two halves of its picture. Of a View passed in, only the corners are used. */
-
-/* A pair in a step, as the narrow phase found it. */
-typedef struct Collision {
-    Box boxes[2];
-    int bodies[2], bomb, step;
-    Manifold manifold;
-    AxisOverlap overlaps[SEPARATING_AXES];
-    int least;         /* index of the overlap whose axis is the manifold's normal */
-    const char *label; /* label of that overlap: "smallest overlap" */
-    char names[2][16];
-    double points; /* font size */
-    Vec2 normal;   /* the manifold's, in world coordinates (the picture is rotated) */
-} Collision;
-
-/* Computes manifold and overlaps of the boxes. False if they do not touch. */
-bool collision_find(Collision *collision);
-
-/* Rotates everything about the origin so that the reference box is below the other. Returns the rotated down
-   direction, unit. */
-Vec2 collision_turn_up(Collision *collision);
-
-static inline bool is_bomb(const Collision *collision, int i) { return collision->bodies[i] == collision->bomb; }
-
-/* Gives two boxes different colours. */
-static inline bool is_second_box(const Collision *collision, int i) { return i == 1 && !is_bomb(collision, 0); }
-
-static inline uint32_t fill_of(const Collision *collision, int i) {
-    return is_bomb(collision, i) ? BOMB.fill : is_second_box(collision, i) ? NETWORK_COLOUR : BOX_COLOUR;
-}
-
-static inline uint32_t ink_of(const Collision *collision, int i) {
-    return is_bomb(collision, i) ? BOMB.line : is_second_box(collision, i) ? NETWORK_INK : BOX_INK;
-}
-
-static inline const char *name_of(const Collision *collision, int i) { return collision->names[i]; }
-
-/* Draws the projections of both boxes on the axes of each, and their overlaps, in the window, with a scale below them
-   and, unless `down` is NULL, an arrow in this direction. ERROR_INPUT if the labels have no room. */
-bool draw_overlaps(Sketch *sketch, View window, const Collision *collision, const Vec2 *down, Error *error);
-
-/* Draws an enlarged view of the overlap: edges, normal and contact points, in the window. ERROR_INPUT as above. */
-bool draw_contact_closeup(Sketch *sketch, View window, const Collision *collision, Error *error);

@@ -451,8 +451,7 @@ const FigureKind figure_strip = {
     .takes_view = true,
     .takes_moments = true,
     .takes_height = true,
-    .min_bodies = 1,
-    .max_bodies = FIGURE_BODIES_MAX,
+    .takes_bodies = true,
     .draw = strip_draw,
     .caption = strip_caption,
 };

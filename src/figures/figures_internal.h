@@ -15,7 +15,7 @@
 #include <stdio.h>
 
 /* The kinds of figures. */
-extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_pair;
+extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe;
 
 /* A text in lines of a width. */
 typedef struct WrappedText {

@@ -76,7 +76,7 @@ twinbox simulate scenes/pyramid_s<TAB>|twinbox simulate scenes/pyramid_settled.y
 twinbox simulate pyramid_se<TAB>|twinbox simulate pyramid_settled 
 twinbox simulate height.yaml --set hei<TAB>|twinbox simulate height.yaml --set height=
 twinbox simulate stack_height --set hei<TAB>|twinbox simulate stack_height --set height=
-twinbox figure nar<TAB>|twinbox figure narrow-phase 
+twinbox figure ann<TAB>|twinbox figure annotated 
 twinbox figure strip engine.npz -o fig<TAB>|twinbox figure strip engine.npz -o figure.svg 
 twinbox train --kind sce<TAB>|twinbox train --kind scene-net 
 twinbox dataset --inputs nei<TAB>|twinbox dataset --inputs neighbours 

@@ -44,7 +44,6 @@ table() {
 0 | 1 run of 61 frames | page theirs.npz -o one.html
 0 | divergence | figure divergence ours.npz other.npz -o divergence.svg
 0 | annotated | figure annotated theirs.npz -o annotated.svg
-0 | narrow-phase | figure narrow-phase theirs.npz -o narrow.svg
 2 | theirs.npz: error: | solve theirs.npz --method engine
 END
 }

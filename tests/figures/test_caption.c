@@ -118,14 +118,4 @@ TEST(a_strobe_names_its_moments) {
                    " at 0.25, 0.5 and 0.75~s in one picture; earlier moments are paler. Method: " ENGINE ".");
 }
 
-/* The poses of the pair are made to touch as the contact says. */
-TEST(a_narrow_phase_names_the_pair) {
-    *run_position(runs[0], IMPACT - 1, BOMB_BODY) = vec2(-2, 1.7F);
-    assert_caption(
-        "narrow-phase", spec_of(runs, 1),
-        "Narrow phase of body~1 and the bomb in the " SCENE
-        " at 0.483~s: overlaps along the axes of both boxes, and contact points with their separations along "
-        "the normal. Method: " ENGINE ".");
-}
-
 RUN_TESTS(make, destroy)

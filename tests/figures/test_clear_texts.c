@@ -92,23 +92,6 @@ TEST(the_least_width_is_enough) {
     assert_clear(&faults);
 }
 
-/* Boxes that touch in one point or two, side by side, one on the other, tilted. */
-TEST(pairs_of_boxes) {
-    Trajectory *runs[] = {read_run("stack", "engine"), read_run("stack", "pair-net"), read_run("single", "engine"),
-                          read_run("pyramid", "engine")};
-    for (int run = 0; run < 4; run++)
-        for (int frame = 5; frame < runs[run]->frames - 1; frame += 11) {
-            FigureSpec spec = spec_of(&runs[run], 1);
-            spec.dpi = 50, spec.time_count = 1, spec.times[0] = frame * (double)runs[run]->dt;
-            Sketch sketch = {0};
-            const bool drawn = figure_draw(figure_kind("narrow-phase", &error), &sketch, &spec, &error);
-            sketch_free(&sketch);
-            if (drawn) draw_at_sizes(figure_kind("narrow-phase", &error), &spec, LEAST, USUAL);
-        }
-    free_runs(runs, 4);
-    assert_clear(&faults);
-}
-
 /* Nothing is shortened, whatever runs are called. */
 TEST(long_names) {
     Trajectory *runs[] = {read_run("stack", "engine"), read_run("stack", "pair-net")};

@@ -53,8 +53,7 @@ TEST(drawings_say_what_they_show) {
                                                "Constraint solving", "Neural network, in place of the solver",
                                                "Integration", "first touch", NULL});
     expect_texts("narrow-phase",
-                 (const char *const[]){"bomb x: ", "bomb y: ", "box x: ", "box y: ", "smallest overlap",
-                                       "reference edge", "incident edge", "side plane", "normal (", NULL});
+                 (const char *const[]){"bomb x", "bomb y", "box x", "box y", "smallest overlap", "normal (", NULL});
     expect_texts("data",
                  (const char *const[]){"21 of 201 launches", "Ten inputs", "angle b", "dvxa", "velocity before", NULL});
     expect_texts("scenes", (const char *const[]){"1  Single: 1 box", "2  Stack: 10 boxes", "3  Pyramid: 66 boxes",
@@ -135,67 +134,9 @@ TEST(the_collision_shown_is_the_engines) {
     assert_near(manifold.normal.x, x, 0.0006);
     assert_near(manifold.normal.y, y, 0.0006);
     for (int i = 0; i < 2; i++) assert_near(-1000 * (double)manifold.points[i].separation, deep[i], 0.6);
+    assert_near(1000 * overlap_depth(&box_a, &box_b), least, 0.6);
     /* The deepest point is a corner that clipping has left where it was. */
     assert_int_equal(least, deep[0] > deep[1] ? deep[0] : deep[1]);
-}
-
-static float uniform(uint32_t *seed, float from, float to) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return from + (to - from) * (float)(*seed >> 8) / 16777216.0f;
-}
-
-static Box random_box(uint32_t *seed) {
-    Vec2 position = vec2(uniform(seed, -0.8f, 0.8f), uniform(seed, -0.8f, 0.8f));
-    Vec2 size = vec2(uniform(seed, 0.4f, 1.6f), uniform(seed, 0.4f, 1.6f));
-    return box_make(position, size, uniform(seed, -3, 3));
-}
-
-static int points_of(const Box *a, const Box *b) {
-    Manifold manifold;
-    manifold_compute(&manifold, a, b);
-    return manifold.count;
-}
-
-/* b, gone so far along the axis, away from a. */
-static Box moved(const Box *a, const Box *b, Vec2 axis, double way) {
-    Box away = *b;
-    float side = vec2_dot(vec2_sub(b->position, a->position), axis) < 0 ? -1.0f : 1.0f;
-    away.position = vec2_add(b->position, vec2_scale(side * (float)way, axis));
-    return away;
-}
-
-/* Moving a box by the smallest overlap separates the two. The engine's normal is along the axis of the smallest
-   overlap, or of a nearly equal one (clearly_better() in engine/box.c). Its points are as deep as that, or less deep
-   where clipping has cut the deepest corner off. */
-TEST(the_smallest_overlap_separates_the_boxes) {
-    const double slack = 1e-4;
-    uint32_t seed = 1;
-    int touching = 0, as_deep = 0;
-    for (int i = 0; i < 20000; i++) {
-        const Box a = random_box(&seed), b = random_box(&seed);
-        AxisOverlap overlaps[SEPARATING_AXES];
-        separating_axes(overlaps, &a, &b);
-        const AxisOverlap *least = &overlaps[least_overlap(overlaps)];
-        if (fabs(least->depth) < 2 * slack) continue;
-        Manifold manifold;
-        manifold_compute(&manifold, &a, &b);
-        assert_int_equal(manifold.count > 0, least->depth > 0);
-        if (manifold.count == 0) continue;
-        touching++;
-        const Box out = moved(&a, &b, least->axis, least->depth + slack);
-        assert_int_equal(points_of(&a, &out), 0);
-        double chosen = HUGE_VAL;
-        for (int k = 0; k < SEPARATING_AXES; k++)
-            if (fabsf(vec2_dot(overlaps[k].axis, manifold.normal)) > 0.999999f)
-                chosen = fmin(chosen, overlaps[k].depth);
-        assert_true(chosen <= (least->depth + 0.01 * 0.8) / 0.95 + slack);
-        double deepest = 0;
-        for (int k = 0; k < manifold.count; k++) deepest = fmax(deepest, -(double)manifold.points[k].separation);
-        assert_true(deepest <= chosen + slack);
-        as_deep += deepest > chosen - slack;
-    }
-    assert_in_range(touching, 5000, 19000);
-    assert_in_range(as_deep, touching / 2, touching - 1);
 }
 
 TEST(the_row_shown_is_the_datasets) {
