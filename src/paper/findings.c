@@ -143,15 +143,6 @@ static bool add_transfer(const FindingsFile *file, const StudyTables *study) {
            add_text(file, "transfer_is", transfer.transfer < transfer.constant ? "below" : "not below");
 }
 
-static bool add_claims(const FindingsFile *file, const StudyTables *study) {
-    int held[CLAIM_HOLDS] = {0};
-    for (int i = 0; i < study->claim_count; i++) held[study->claims[i].holds]++;
-    return add_number(file, "system_claims", study->claim_count) &&
-           add_number(file, "system_claims_yes", held[CLAIM_YES]) &&
-           add_number(file, "system_claims_partly", held[CLAIM_PARTLY]) &&
-           add_number(file, "system_claims_no", held[CLAIM_NO]);
-}
-
 static bool write_summary(const FindingsFile *file, const StudyTables *study) {
     return add_number(file, "paper_rows", PUBLISHED_SCORES) && add_number(file, "small_network", SMALL_NETWORK) &&
            add_number(file, "last_frame", CLOSED_LOOP_FRAMES) && add_number(file, "after_frames", AFTER_FRAMES) &&
@@ -159,7 +150,7 @@ static bool write_summary(const FindingsFile *file, const StudyTables *study) {
            add_costs(file, study) &&
            add_number(file, "momentum_error_contact_net", largest_momentum_error(study, "contact-net")) &&
            add_number(file, "momentum_error_baseline", largest_momentum_error(study, "baseline")) &&
-           add_laws(file, study) && add_transfer(file, study) && add_claims(file, study);
+           add_laws(file, study) && add_transfer(file, study);
 }
 
 static const CsvColumn findings_summary_columns[] = {FINDINGS_TEXT(SummaryRow, key), FINDINGS_TEXT(SummaryRow, value)};
@@ -360,49 +351,6 @@ static const CsvColumn factor_columns[] = {
     FINDINGS_TEXT(FactorRow, verdict)};
 static const FindingsTable findings_factors = FINDINGS_TABLE("factors", factor_columns, FactorRow, write_factors);
 
-/* The systems that the paper cites: how many of their claims hold. */
-
-typedef struct SystemRow {
-    const char *system;
-    int claims, yes, partly, no;
-} SystemRow;
-
-static bool is_first_of_system(const StudyTables *study, int row) {
-    const char *system = study->system_scores[row].system;
-    if (strcmp(system, SYSTEM_RIVAL) == 0) return false;
-    for (int i = 0; i < row; i++)
-        if (strcmp(study->system_scores[i].system, system) == 0) return false;
-    return true;
-}
-
-static SystemRow row_of(const StudyTables *study, const char *system) {
-    SystemRow row = {.system = system};
-    for (int i = 0; i < study->claim_count; i++) {
-        const ClaimRow *claim = &study->claims[i];
-        if (strcmp(claim->system, system) != 0) continue;
-        row.claims++;
-        row.yes += claim->holds == CLAIM_YES;
-        row.partly += claim->holds == CLAIM_PARTLY;
-        row.no += claim->holds == CLAIM_NO;
-    }
-    return row;
-}
-
-static bool write_systems(const FindingsFile *file, const StudyTables *study) {
-    for (int i = 0; i < study->system_score_count; i++) {
-        if (!is_first_of_system(study, i)) continue;
-        const SystemRow row = row_of(study, study->system_scores[i].system);
-        if (!findings_add(file, &row)) return false;
-    }
-    return true;
-}
-
-static const CsvColumn findings_systems_columns[] = {FINDINGS_TEXT(SystemRow, system),
-                                                     FINDINGS_COUNT(SystemRow, claims), FINDINGS_COUNT(SystemRow, yes),
-                                                     FINDINGS_COUNT(SystemRow, partly), FINDINGS_COUNT(SystemRow, no)};
-static const FindingsTable findings_systems =
-    FINDINGS_TABLE("systems", findings_systems_columns, SystemRow, write_systems);
-
 static bool write_rows(void *context, FILE *out, Error *error) {
     FindingsFile *file = context;
     file->out = out;
@@ -412,10 +360,9 @@ static bool write_rows(void *context, FILE *out, Error *error) {
 }
 
 bool findings_write(const char *folder, Error *error) {
-    static const FindingsTable *const tables[] = {&findings_summary,  &findings_targets,     &findings_paper_table1,
-                                                  &findings_factors,  &findings_definitions, &findings_laws,
-                                                  &findings_transfer, &findings_aims,        &findings_claims,
-                                                  &findings_systems,  &findings_loops};
+    static const FindingsTable *const tables[] = {
+        &findings_summary, &findings_targets,  &findings_paper_table1, &findings_factors, &findings_definitions,
+        &findings_laws,    &findings_transfer, &findings_aims,         &findings_claims,  &findings_loops};
     StudyTables study;
     char path[PATH_MAX];
     if (!file_path(path, sizeof path, error, "%s/findings", folder) || !study_tables_read(&study, folder, error))

@@ -13,9 +13,9 @@
 #include <string.h>
 
 bool study_tables_read(StudyTables *study, const char *folder, Error *error) {
-    const CsvLayout *const layouts[STUDY_TABLES] = {
-        &paper_score_layout, &paper_trained_layout,  &paper_rate_layout,   &paper_closed_loop_layout,
-        &paper_law_layout,   &paper_transfer_layout, &system_score_layout, &claim_layout};
+    const CsvLayout *const layouts[STUDY_TABLES] = {&paper_score_layout, &paper_trained_layout,
+                                                    &paper_rate_layout,  &paper_closed_loop_layout,
+                                                    &paper_law_layout,   &paper_transfer_layout};
     memset(study, 0, sizeof *study);
     CsvTable *table = study->tables;
     for (int i = 0; i < STUDY_TABLES; i++) {
@@ -29,8 +29,6 @@ bool study_tables_read(StudyTables *study, const char *folder, Error *error) {
     study->runs = table[3].rows, study->run_count = table[3].count;
     study->laws = table[4].rows, study->law_count = table[4].count;
     study->transfers = table[5].rows, study->transfer_count = table[5].count;
-    study->system_scores = table[6].rows, study->system_score_count = table[6].count;
-    study->claims = table[7].rows, study->claim_count = table[7].count;
     return true;
 }
 

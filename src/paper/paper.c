@@ -147,15 +147,12 @@ static bool write_facts(const PaperPlan *plan, Error *error) {
 }
 
 static bool write_tables(const PaperPlan *plan, Error *error) {
-    enum { TABLES_MAX = 32 };
     const char *folder = plan->options->folder;
-    const CsvLayout *layouts[TABLES_MAX] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
-                                            &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
-                                            &system_score_layout};
-    int count = 7;
-    for (int i = 0; plan->systems[i] != NULL; i++) layouts[count++] = plan->systems[i]->table;
-    return piece_tables_write(plan->pieces, folder, layouts, count, NULL, 0, error) &&
-           system_claims_write(plan->systems, folder, error) && write_facts(plan, error);
+    const CsvLayout *const layouts[] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
+                                        &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
+                                        &system_score_layout};
+    return piece_tables_write(plan->pieces, folder, layouts, sizeof layouts / sizeof *layouts, NULL, 0, error) &&
+           write_facts(plan, error);
 }
 
 /* A hash of all that decides the result: the program, the options, the scenes. */

@@ -7,7 +7,6 @@
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "methods/pair.h"
-#include "methods/sain_view.h"
 #include "nets/nets.h"
 #include "paper/paper.h"
 #include "runs/pieces.h"
@@ -15,147 +14,32 @@
 #include "studies/frozen.h"
 #include "studies/rollout.h"
 
-/* gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
-   how the shapes of boxes last; large piles; what the paper's own size costs. */
+/* system_scores.csv: every system that the paper cites, with its ablations, and rivals, on held-out launches of the four
+   scenes (launches_for_scoring). Each method runs on its own trajectory, from the start to the scene's last frame. */
 
-/* What a row of system_gns.csv is about. */
-typedef enum GnsMeasure { GNS_ROLLOUT, GNS_LARGE, GNS_COST } GnsMeasure;
-enum { GNS_MEASURES = GNS_COST + 1, GNS_MAX_ROWS = 1000 };
+enum { SYSTEM_SCORES_MAX = 400, SYSTEM_NAME_SIZE = 64 };
 
-/* NAN where a number is not applicable. */
-typedef struct GnsRow {
-    int measure;         /* GnsMeasure */
-    const char *variant; /* of gns_variants; of a cost "width 128, M = 10" */
-    const char *scene;
-    double seconds; /* s from the bomb's launch on */
-    double boxes;   /* that move, with the bomb */
-    double error;   /* m: distance of a box from its place in the run of the method that made the training data,
-                                   mean over boxes and launches */
-    double shape;   /* m: gns_shape_distance, mean over launches */
-    double moved, moved_engine; /* boxes that moved more than 0.5 m, at most 5 s after the launch */
-    double ms_step;             /* ms of a simulation step on one thread: neighbour search, network, projection */
-    double ms_gradient;         /* ms of a gradient step with the paper's batch, on all threads */
-    double hours;               /* for the paper's number of gradient steps */
-} GnsRow;
+/* Sums and maxima are over all launches. NAN where a number is not applicable. */
+typedef struct SystemScoreRow {
+    const char *system, *method; /* "sain", or "rival"; the method as on the command line */
+    int scene;                   /* of paper_scene_names */
+    double launches, frames;     /* how many; frames of each run */
+    double frames_engine;        /* first frame in which a body is 0.1 m from its place in the engine's run; median over
+                                    launches; `frames`: never */
+    double frames_converged; /* the same of the run of the converged solver, over the launches of which it is known */
+    double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch, mean (ChartRow) */
+    double penetration_max;  /* m: the deepest contact */
+    double energy_created;   /* J: the largest mechanical energy above that when the bomb was added; 0: never above */
+    double momentum_error;   /* N s: momentum created per step (ContactSolution), mean */
+    double fallback_share;   /* 0 to 1: steps with discarded outputs, beyond training, or solved by sweeps */
+    double us_step;          /* microseconds per step of a held-out launch, everything counted: the whole step; of
+                                    methods without contacts their own work (no_contacts in its description) */
+    double us_step_engine;   /* of the engine, measured in turns with it */
+    /* launches in which the converged run has an unconverged step before the method parts from it */
+    double unconverged;
+} SystemScoreRow;
 
-/* What the rollouts compare, each trained by scenes/networks/train in the same number of steps. */
-typedef struct GnsVariant {
-    const char *name, *network, *settings; /* network: a file of the folder `networks` beside the scenes */
-    int rounds;
-} GnsVariant;
-
-enum { GNS_SHIPPED, GNS_TWO_ROUNDS, GNS_ONE_ROUND, GNS_NO_NOISE, GNS_NOT_RIGID, GNS_VARIANTS };
-extern const GnsVariant gns_variants[GNS_VARIANTS];
-
-extern const CsvLayout gns_table_layout;
-
-extern ClaimRule *const gns_claims[];
-
-/* A run of gns beside the run of the method that made its training data. */
-
-enum { GNS_TIMES = 9 };
-
-typedef struct GnsRollout {
-    int boxes;               /* that move, with the bomb */
-    double error[GNS_TIMES]; /* m: mean distance between the boxes of both; at times after the scene's end those of its
-                                       last frame. A run that breaks off keeps its last places */
-    double shape[GNS_TIMES]; /* m: gns_shape_distance */
-    double moved, moved_teacher; /* boxes that are more than 0.5 m off their place of the launch, at the last time */
-    double seconds_a_step;       /* of gns's own work, mean */
-} GnsRollout;
-
-/* launched: a scene with its launch. network: a file; settings: further ones of gns ("rigid=off", ""). */
-bool gns_rollout_run(GnsRollout *rollout, const Scene *launched, const char *network, const char *settings,
-                     Error *error);
-
-/* system_subspace.csv: what a step of subspace costs and how far its runs end up, beside the engines that it replaces
-   and beside what its components alone lose. Source: Holden et al. 2019 (nets/kinds.h). */
-
-enum { SUBSPACE_STUDY_ROWS_MAX = 100 };
-
-/* Distances are those of positions from the runs of the offline engine that recorded the training launches
-   (SUBSPACE_OFFLINE), over all bodies, frames and held-out launches; NAN where a number is not applicable. */
-typedef struct SubspaceStudyRow {
-    int scene;                      /* of paper_scene_names */
-    const char *method;             /* as on the command line */
-    double components;              /* 0: an engine */
-    double launches, frames;        /* how many; frames of each with the bomb */
-    double us_step;                 /* microseconds: an engine's whole step; the method's whole own work */
-    double rms, frames_near;        /* m; frames until a body is 0.1 m away, median */
-    double floor_rms, floor_near;   /* the same of the recorded poses, projected and reconstructed */
-    double linear_rms, linear_near; /* the same of the linear term alone */
-} SubspaceStudyRow;
-
-extern const CsvLayout subspace_study_layout;
-
-/* The offline engine of the claims: the converged solution of each step. */
-#define SUBSPACE_STUDY_OFFLINE "reference"
-
-extern ClaimRule *const subspace_claims[];
-
-/* The row of a method in a scene of paper_scene_names, or NULL. */
-const SubspaceStudyRow *subspace_study_find(const SubspaceStudyRow *rows, int count, int scene, const char *method);
-
-/* The study of sain: networks trained on launches of the stack alone, scored on impacts of held-out launches of the
-   stack and of the settled pyramid. */
-
-typedef enum SainScene { SAIN_STACK, SAIN_PYRAMID, SAIN_SCENES } SainScene;
-
-/* A training, scored on one scene. RMS velocity errors of all bodies that touch another, m/s. */
-typedef struct SainRow {
-    int scene, form; /* SainScene, SainForm */
-    int launches;    /* of the stack, trained on */
-    int seed;
-    double error, engine, constant; /* the network; 10 sweeps alone; the mean correction of the training data */
-} SainRow;
-
-extern const CsvLayout sain_layout; /* system_sain.csv */
-
-enum { SAIN_MAX_LAUNCHES = 64, SAIN_LITTLE = 16 /* launches: "little data" */ };
-
-/* The median over seeds; NaN without rows. of: the row's number. */
-typedef double SainNumber(const SainRow *row);
-double sain_median(const CsvTable *table, SainScene scene, SainForm form, int launches, SainNumber *of);
-
-SainNumber sain_error, sain_engine_error, sain_constant_error;
-
-/* The most launches of any row. */
-int sain_most_launches(const CsvTable *table);
-
-extern ClaimRule *const sain_claims[];
-
-/* What the memory of hybrid learns over the launches, what it costs and what it saves. */
-
-enum { HYBRID_ROWS_MAX = 500 };
-
-/* system_hybrid.csv: a learning (learning/hybrid_training.h) at some number of launches. Shares are of the launches
-   since the row before, each answered by the memory as it was before the launch. Errors and times are of launches that
-   it has not learned, by the memory so far. NAN where nothing was answered. */
-typedef struct HybridRow {
-    int scene;        /* of paper_scene_names */
-    double tolerance; /* m/s */
-    /* 1: a learning whose family changes half way: from then on bombs have a random rotation and spin; 0: not */
-    int changes;
-    int turned;           /* 1: they have */
-    double launches;      /* so far */
-    double share;         /* of the steps with an impact: answered */
-    double share_all;     /* of all steps with the bomb */
-    double error;         /* m/s: RMS velocity error of answers against the converged solution, mean */
-    double error_95;      /* their 95% quantile */
-    double us_answer;     /* microseconds of an answered step, with key and search */
-    double us_solve;      /* of the same steps by interior:near=0.001 */
-    double us_question;   /* what a step that is not answered takes beyond that */
-    double us_step;       /* of a step with an impact, answered or not */
-    double us_step_solve; /* of the same by interior:near=0.001 */
-    double entries, kib;
-    double learning_ms; /* spent on learning so far */
-    double saved_ms;    /* solving less answering, questions and learning so far */
-    double paid;        /* the launch from which on saved_ms was never below 0 again; NAN: it still is */
-} HybridRow;
-
-extern const CsvLayout hybrid_layout;
-
-extern ClaimRule *const hybrid_claims[];
+extern const CsvLayout system_score_layout;
 
 /* Training with laws of physics in the loss, and the engine's own violations of these laws: the paper's outlook. */
 
@@ -274,7 +158,7 @@ typedef struct PaperSize {
     int seeds, law_iterations, transfer_iterations; /* of the outlook */
     double weights[PAPER_WEIGHTS];                  /* of laws, ended by 0 */
     int launches[PAPER_LAUNCHES];                   /* of transfer, ended by 0 */
-    /* Of the scores of systems (paper/paper.h). Frames of each run, at most, 0: the scene's; timed ones from the start,
+    /* Of the scores of systems. Frames of each run, at most, 0: the scene's; timed ones from the start,
        and after a later launch of the bomb as many from there. */
     int system_launches, system_frames, system_timed_frames, system_repetitions;
 } PaperSize;
@@ -314,7 +198,6 @@ struct PaperPart {
     int index; /* of the plan's network, for paper_training_write; of the scene, for scores */
     LawStudy laws;
     TransferStudy transfer;
-    const SystemPart *system;
 };
 
 /* paper_plan_free(), also after a failure. Parts point into it: it stays where it was made. */
@@ -325,8 +208,6 @@ struct PaperPlan {
     const PaperOptions *options;
     const PaperSize *size;
     PaperDatasets datasets;
-    const PaperSystem *const *systems; /* ended by NULL */
-    SystemStudy system_study;
     char networks_folder[PAPER_PATH_SIZE];
     PaperNetwork *networks;
     int network_count;

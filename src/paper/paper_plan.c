@@ -132,19 +132,7 @@ static double scoring_weight(const PaperSize *size, int scene) {
     return size->system_launches * run * (size->system_frames > 0 ? size->system_frames / whole_frames : 1);
 }
 
-static bool write_system(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
-    return part->system->write(&plan->system_study, part->system->index, lines, progress, error);
-}
-
 static bool add_systems(PaperPlan *plan, Error *error) {
-    for (int i = 0; plan->systems[i] != NULL; i++)
-        for (const SystemPart *own = plan->systems[i]->parts; own->name != NULL; own++) {
-            PaperPart *part = add_part(plan, plan->options->quick ? own->quick_weight : own->weight, write_system,
-                                       error, "system-%s-%s", plan->systems[i]->name, own->name);
-            if (part == NULL) return false;
-            part->timed = own->timed;
-            part->system = own;
-        }
     for (int i = 0; i < PAPER_SCENES; i++) {
         PaperPart *part = add_part(plan, scoring_weight(plan->size, i), system_scores_write, error, "systems-%s",
                                    paper_scene_names[i]);
@@ -190,8 +178,6 @@ static bool paper_plan_whole(void *context, int64_t piece, const char *results, 
 static bool paper_plan_begin(PaperPlan *plan, const PaperOptions *options, Error *error) {
     plan->options = options;
     plan->size = options->quick ? &paper_quick_size : &paper_whole_size;
-    plan->systems = paper_systems;
-    plan->system_study = (SystemStudy){options->scenes, options->quick, options->seed};
     plan->networks = malloc((size_t)paper_network_count * sizeof *plan->networks);
     if (plan->networks == NULL) return error_memory(error, "paper");
     choose_networks(plan);

@@ -33,7 +33,6 @@ bool illustrations_draw(const char *scenes_folder, const char *folder, Error *er
      closed-loop  closed_loop.csv  frames until divergence, and cost, with a network in place of the solver
      laws         laws.csv         error and violations over the weight of the laws in the loss
      transfer     transfer.csv     error over launches, from scratch and after smaller scenes
-     system-NAME  system_NAME.csv  what the claims of a cited system are judged by (paper/paper.h)
    Plots are as wide as a page or a column (figures/sketch.h). Colour-blind readers can tell their lines apart, and
    so can readers of a grey print.
 

@@ -355,13 +355,12 @@ static bool plot_laws(const CsvTable *table, PlotPage *page, Error *error) {
 
 /* A plot in progress. All tables are read before the first picture is written. */
 typedef struct Plot {
-    char name[64];
+    const char *name;
     const CsvLayout *layout;
     PlotWrite *write;
-    PlotPage page;
 } Plot;
 
-static const Plot results[] = {
+static const Plot plots[] = {
     {.name = "loss", .layout = &paper_score_layout, .write = plot_loss},
     {.name = "factors", .layout = &paper_trained_layout, .write = plot_factors},
     {.name = "rates", .layout = &paper_rate_layout, .write = plot_rates},
@@ -370,46 +369,28 @@ static const Plot results[] = {
     {.name = "transfer", .layout = &paper_transfer_layout, .write = plot_transfer},
 };
 
-enum { RESULTS = sizeof results / sizeof *results };
+enum { RESULTS = sizeof plots / sizeof *plots };
 
-/* Those of the results, then those of the systems. */
-static Plot *make_plots(int *count) {
-    int systems = 0;
-    while (paper_systems[systems] != NULL) systems++;
-    Plot *plots = calloc(RESULTS + (size_t)systems, sizeof *plots);
-    if (plots == NULL) return NULL;
-    memcpy(plots, results, sizeof results);
-    for (int i = 0; i < systems; i++) {
-        Plot *plot = &plots[RESULTS + i];
-        snprintf(plot->name, sizeof plot->name, "system-%s", paper_systems[i]->name);
-        plot->layout = paper_systems[i]->table;
-        plot->write = paper_systems[i]->plot;
-    }
-    *count = RESULTS + systems;
-    return plots;
-}
-
-static bool make_page(Plot *plot, const char *folder, Error *error) {
+static bool make_page(const Plot *plot, const char *folder, PlotPage *page, Error *error) {
     CsvTable table;
     if (!csv_table_read_from(&table, folder, plot->layout, error)) return false;
-    const bool made = plot->write(&table, &plot->page, error);
+    const bool made = plot->write(&table, page, error);
     csv_table_free(&table);
     return made;
 }
 
 bool plots_draw(const char *folder, const Progress *progress, Error *error) {
     char path[PATH_MAX];
-    int count = 0;
     if (!file_path(path, sizeof path, error, "%s/figures", folder)) return false;
-    Plot *plots = make_plots(&count);
-    bool done = plots != NULL || error_memory(error, "figures");
-    for (int i = 0; done && i < count; i++) done = make_page(&plots[i], folder, error);
+    PlotPage pages[RESULTS];
+    memset(pages, 0, sizeof pages);
+    bool done = true;
+    for (int i = 0; done && i < RESULTS; i++) done = make_page(&plots[i], folder, &pages[i], error);
     done = done && file_make_directory(path, error);
-    for (int i = 0; done && i < count; i++)
-        done = (progress_report(progress, i, count) ||
+    for (int i = 0; done && i < RESULTS; i++)
+        done = (progress_report(progress, i, RESULTS) ||
                 error_interrupted(error, path, "stopped; the tables are finished")) &&
-               plot_page_write(&plots[i].page, path, "", plots[i].name, error);
-    for (int i = 0; i < count; i++) plot_page_free(&plots[i].page);
-    free(plots);
+               plot_page_write(&pages[i], path, "", plots[i].name, error);
+    for (int i = 0; i < RESULTS; i++) plot_page_free(&pages[i]);
     return done;
 }

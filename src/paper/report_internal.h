@@ -64,8 +64,9 @@ typedef struct Illustration {
 extern const Illustration illustration_loop, illustration_narrow_phase, illustration_data, illustration_scenes;
 
 /* The plots of report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error
-   set if memory is short. Those of the systems that the paper cites are in paper.h. */
-PlotWrite plot_factors, plot_closed_loop, plot_transfer, plot_sain, plot_hybrid, plot_gns, plot_subspace;
+   set if memory is short. */
+typedef bool PlotWrite(const CsvTable *table, PlotPage *page, Error *error);
+PlotWrite plot_factors, plot_closed_loop, plot_transfer;
 
 extern const char *const paper_scene_titles[PAPER_SCENES]; /* of paper_scene_names, for readers */
 
@@ -106,7 +107,6 @@ int next_pair(const ContactProblem *problem, int first);
      transfer.csv      each number of launches: medians over the seeds, and how many launches transfer needs
      aims.csv          the study's aims: whether they are reached
      claims.csv        the paper's claims about factors: the lowest error with and without
-     systems.csv       each system that the paper cites: how many of its claims hold
 
    An empty field is a number that is not applicable. */
 
@@ -116,7 +116,7 @@ bool findings_write(const char *folder, Error *error);
 
 /* The tables that the study wrote into its folder, read again, and look-ups in them. */
 
-enum { STUDY_TABLES = 8 };
+enum { STUDY_TABLES = 6 };
 
 typedef struct StudyTables {
     const ScoreRow *scores;
@@ -125,9 +125,7 @@ typedef struct StudyTables {
     const ClosedLoopRow *runs;
     const LawRow *laws;
     const TransferRow *transfers;
-    const SystemScoreRow *system_scores;
-    const ClaimRow *claims;
-    int score_count, network_count, rate_count, run_count, law_count, transfer_count, system_score_count, claim_count;
+    int score_count, network_count, rate_count, run_count, law_count, transfer_count;
     CsvTable tables[STUDY_TABLES]; /* owns the rows */
 } StudyTables;
 

@@ -58,17 +58,15 @@ static void check_table(const CsvTable *table, const CsvLayout *layout) {
 
 /* The first byte chooses the table: 'a' is a chart. */
 void fuzz_tables(const uint8_t *data, size_t size) {
-    static const CsvLayout *const layouts[] = {&chart_layout,          &map_layout,
-                                               &border_layout,         &refusal_layout,
-                                               &rest_layout,           &fallback_layout,
-                                               &equal_time_layout,     &equal_methods_layout,
-                                               &paper_score_layout,    &paper_trained_layout,
-                                               &paper_rate_layout,     &paper_closed_loop_layout,
-                                               &paper_law_layout,      &paper_transfer_layout,
-                                               &paper_fact_layout,     &system_score_layout,
-                                               &claim_layout,          &hybrid_layout,
-                                               &subspace_study_layout, &gns_table_layout,
-                                               &sain_layout,           &unconverged_layout};
+    static const CsvLayout *const layouts[] = {&chart_layout,       &map_layout,
+                                               &border_layout,      &refusal_layout,
+                                               &rest_layout,        &fallback_layout,
+                                               &equal_time_layout,  &equal_methods_layout,
+                                               &paper_score_layout, &paper_trained_layout,
+                                               &paper_rate_layout,  &paper_closed_loop_layout,
+                                               &paper_law_layout,   &paper_transfer_layout,
+                                               &paper_fact_layout,  &system_score_layout,
+                                               &unconverged_layout};
     enum { LAYOUTS = sizeof layouts / sizeof *layouts };
     if (size == 0 || data[0] < 'a' || data[0] >= 'a' + LAYOUTS) return;
     const CsvLayout *layout = layouts[data[0] - 'a'];
