@@ -18,7 +18,7 @@ static void print_help(FILE *file) {
     fprintf(file, "Usage: twinbox COMMAND [OPTION...]\n%s Help: twinbox help COMMAND\n", program_summary);
     for (const Command *command = commands; command->name != NULL; command++) {
         if (command->heading != NULL) fprintf(file, "%s:\n", command->heading);
-        if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
+        fprintf(file, "  %-10s %s\n", command->name, command->summary);
     }
     fprintf(file,
             "Exit status: 0 done and equal, 1 different or incomplete, 2 bad input,\n"
@@ -44,8 +44,7 @@ static bool is_verbose(const char *word) { return strcmp(word, "--verbose") == 0
 static int refuse_command(const char *name) {
     Error error = {0};
     NameList known = {0};
-    for (const Command *command = commands; command->name != NULL; command++)
-        if (command->summary != NULL) name_list_add(&known, command->name);
+    for (const Command *command = commands; command->name != NULL; command++) name_list_add(&known, command->name);
     error_unknown(&error, "twinbox", name, "a command", &known);
     fprintf(stderr, "%s\n", error.message);
     return ERROR_INPUT;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The list of the commands, the scenes of `twinbox new`, the scripts that complete command lines. */
+/* The list of the commands, and the scenes of `twinbox new`. */
 #pragma once
 #include "base/base.h"
 
@@ -7,8 +7,7 @@
 #include <stdio.h>
 
 /* The commands of twinbox. Each is one file, with its option table and glue only, and one line here: name, summary, and
-   the heading of the group that begins with it, or NULL. Help, manual page and completion have these groups. One
-   without a summary is not listed. */
+   the heading of the group that begins with it, or NULL. Help and manual page have these groups. */
 
 #define COMMANDS(COMMAND)                                                                    \
     COMMAND(new, "write a commented scene to start from", "Make")                            \
@@ -28,12 +27,11 @@
     COMMAND(dataset, "record what the engine's solver does to each touching pair", NULL)     \
     COMMAND(paper, "reproduce the paper, from seed to report", "For research on the method") \
     COMMAND(merge, "join what the shards of a study did", NULL)                              \
-    COMMAND(solve, "solve the contact problem of one step with many methods", NULL)          \
-    COMMAND(completion, NULL, NULL)
+    COMMAND(solve, "solve the contact problem of one step with many methods", NULL)
 
 typedef struct Command {
-    const char *name, *summary; /* summary NULL: not listed */
-    const char *heading;        /* of the group that begins with it; NULL: of the group of the command before it */
+    const char *name, *summary;
+    const char *heading; /* of the group that begins with it; NULL: of the group of the command before it */
     /* True: done and equal (exit status 0). False: different (1) or, with error set, failed: the caller prints the
        error and exits with its kind. argv[0] is "twinbox NAME". Bad options and --help end the program from within
        argp. */
@@ -59,10 +57,6 @@ COMMANDS(COMMAND_DECLARED)
 #define TEMPLATE_DECLARED(name) extern const char template_##name##_yaml[];
 TEMPLATES(TEMPLATE_DECLARED)
 #undef TEMPLATE_DECLARED
-
-/* The scripts in src/cli/completion, each ended by a 0. */
-
-extern const char completion_twinbox_bash[], completion__twinbox[], completion_twinbox_fish[];
 
 /* What `twinbox --version -v` adds: what pictures are drawn by. */
 

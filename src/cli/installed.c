@@ -78,33 +78,3 @@ const char *installed_network(const char *method) {
     all_found = text;
     return text->path;
 }
-
-static bool is_scene(const char *name) {
-    const char *ending = strrchr(name, '.');
-    return ending != NULL && strcmp(ending, ".yaml") == 0;
-}
-
-/* `shown`: the folder as in paths; NULL: names alone. */
-static void list_scenes(const char *folder, const char *shown, InstalledScene *found, void *context) {
-    FolderList list;
-    Error ignored = {0};
-    if (!folder_list(&list, folder, is_scene, false, &ignored)) return;
-    for (size_t i = 0; i < list.count; i++) {
-        char path[PATH_SIZE];
-        const int length = (int)(strlen(list.names[i]) - strlen(".yaml"));
-        const bool fits = shown != NULL ? file_path(path, sizeof path, &ignored, "%s/%s", shown, list.names[i])
-                                        : file_path(path, sizeof path, &ignored, "%.*s", length, list.names[i]);
-        if (fits && (shown == NULL || access(path, F_OK) != 0)) found(path, context);
-    }
-    folder_list_free(&list);
-}
-
-void installed_scenes(InstalledScene *found, void *context) {
-    for (int i = 0; i < SCENE_FOLDERS; i++) {
-        char folder[PATH_SIZE];
-        list_scenes(scene_folders[i], NULL, found, context);
-        if (!installed_find(folder, scene_folders[i])) continue;
-        list_scenes(folder, NULL, found, context);
-        list_scenes(folder, scene_folders[i], found, context);
-    }
-}

@@ -11,8 +11,3 @@ const char *installed_path(const char *path);
 /* The text of a method, in which the file of its network is looked for in the same way. Valid until the program
    ends. */
 const char *installed_network(const char *method);
-
-/* Calls found("stack", context) and found("scenes/stack.yaml", context) for each scene that installed_path() finds by
-   its name, or, but for what the working directory has, by its path. Names may come twice. */
-typedef void InstalledScene(const char *scene, void *context);
-void installed_scenes(InstalledScene *found, void *context);

@@ -158,19 +158,13 @@ bool option_set(const Option *option, const char *text, void *value, Error *erro
 
 enum { FIRST_KEY = 256, SHOWN_SIZE = 72 };
 
-const Option options_of_all[] = {
+static const Option options_of_all[] = {
     {.name = "--quiet", .letter = 'q', .help = "Print errors, and results that go to no file: no progress, no notes"},
     {.name = "--verbose",
      .letter = 'v',
      .help = "Print what is done to get the result: files, settings, programs, threads, time, memory"},
     {0}};
 enum { OPTIONS_OF_ALL = sizeof options_of_all / sizeof *options_of_all - 1, GROUP_OF_HELP = -1 };
-
-/* See options_visit_next(). */
-static struct {
-    OptionsVisit *visit;
-    void *context;
-} visitor;
 
 typedef struct Parsing {
     const CommandSpec *spec;
@@ -347,18 +341,7 @@ static bool writes_files(const Parsing *parsing) {
     return writes;
 }
 
-void options_visit_next(OptionsVisit *visit, void *context) {
-    visitor.visit = visit;
-    visitor.context = context;
-}
-
 bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error) {
-    if (visitor.visit != NULL) {
-        OptionsVisit *visit = visitor.visit;
-        visitor.visit = NULL;
-        visit(spec, visitor.context);
-        return false;
-    }
     struct argp_option rows[OPTIONS_MAX + OPTIONS_OF_ALL + 1] = {{0}};
     make_rows(spec, rows);
     if (!check_words(rows, argv, error)) return false;

@@ -99,14 +99,6 @@ typedef struct CommandSpec {
     const char *help; /* description, \v, examples */
 } CommandSpec;
 
-/* What every command has besides: -q and -v. */
-extern const Option options_of_all[];
-
-/* Hands the table of the next command that runs to `visit`, instead of its command line: options_parse() then returns
-   false without an error. */
-typedef void OptionsVisit(const CommandSpec *spec, void *context);
-void options_visit_next(OptionsVisit *visit, void *context);
-
 /* Fills `options`. Bad usage ends the program with exit status 2; a bad value sets error: the first one stands. Options
    may stand between arguments. */
 bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error);

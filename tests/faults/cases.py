@@ -44,7 +44,6 @@ SHORT = [
     Case("new-output", "new - --like wall"),
     Case("simulate-output", f"simulate {TINY} -o -"),
     Case("methods", "methods"),
-    Case("completion", "completion bash"),
     Case("simulate", f"simulate {TINY} -o run.npz --hash run.hash --verdict run.json --json",
          "run.npz=b.npz run.hash=a.csv run.json=a.csv"),
     Case("simulate-csv", f"simulate {TINY} -o run.csv -m momentum:k=5", "run.csv=a.csv"),
