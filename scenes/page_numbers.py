@@ -13,14 +13,18 @@ class Refusal(Exception):
     """What the reader of the message must mend."""
 
 
-def read_value(text, studies, where):
-    table, column, *conditions = shlex.split(text)
-    path = studies / table
+def read_table(path, where=""):
+    """The rows of a CSV file."""
     try:
         with open(path, encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+            return list(csv.DictReader(file))
     except OSError as error:
-        raise Refusal(f"{where}: {path}: {error.strerror}") from None
+        raise Refusal(f"{where}{path}: {error.strerror}") from None
+
+
+def read_value(text, studies, where):
+    table, column, *conditions = shlex.split(text)
+    rows = read_table(studies / table, f"{where}: ")
     wanted = dict(condition.split("=", 1) for condition in conditions)
     unknown = [key for key in [column, *wanted] if rows and key not in rows[0] and key != "rows"]
     if unknown:

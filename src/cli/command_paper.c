@@ -34,9 +34,9 @@ static const CommandSpec spec = {
     .help =
         "Reproduce the paper (Avatavului, Ifrim, Voncila 2023) from seed to report: train its networks in every "
         "reading, one factor at a time, rate them, replace the solver by them, and try what the paper leaves to future "
-        "work. Score the systems that it cites. Writes report.md, report.html, every table as CSV and every figure as "
-        "PNG "
-        "and SVG. Takes less than twenty minutes on two cores. An interrupted run continues where it stopped.\v"
+        "work. Score the systems that it cites. Writes every table as CSV, every figure as PNG and SVG, and "
+        "report.md, which shows them. Takes less than twenty minutes on two cores. An interrupted run continues where "
+        "it stopped.\v"
         "Example: twinbox paper -o out/paper\n"
         "         twinbox paper -o out/paper-quick --quick"};
 
@@ -47,8 +47,7 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
     if (!file_make_directory(figures, error) || !illustrations_draw(study->scenes, figures, error) ||
         !plots_draw(study->folder, progress_bar_begin("figures"), error) || !paper_report_write(study->folder, error))
         return false;
-    printf("tables, figures, networks -> %s\nreport -> %s/report.md, %s/report.html\n", study->folder, study->folder,
-           study->folder);
+    printf("tables, figures, networks -> %s\nreport -> %s/report.md\n", study->folder, study->folder);
     return true;
 }
 

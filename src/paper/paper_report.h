@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The report of the paper's study (Avatavului, Ifrim, Voncila 2023): report.md.in of this folder, filled in. */
+/* What shows the study of the paper (Avatavului, Ifrim, Voncila 2023): its figures and its report. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
 
-/* folder: of a study (paper/paper.h) whose figures are drawn (paper/figures). Computes folder/findings
-   (paper/report_internal.h), and writes report.md, which links the figures, and report.html, which needs no other
-   file to be read; its links to pages of runs lead to figures/strip-SCENE.html. The same folder gives the same bytes.
-
-   ERROR_INPUT where a CSV file or a figure is missing or damaged, with path:line:column for CSV files; then neither
-   report is written. */
+/* Writes folder/report.md: the tables of the study in the folder and its figures, which are drawn, with a sentence for
+   each. The same folder gives the same bytes. ERROR_INPUT where a table or a caption is missing or damaged; then there
+   is no report. */
 bool paper_report_write(const char *folder, Error *error);
 
 /* The figures of the paper (Avatavului, Ifrim, Voncila 2023, figures 1 to 4), drawn from runs of this engine. */

@@ -9,13 +9,13 @@ whole=$twinbox
 cat >pkg-config <<'SH'
 #!/bin/sh
 for word in "$@"; do
-    case $word in gsl | libzip | freetype2 | libcmark-gfm | cmocka | egl | gl | osmesa) exit 1 ;; esac
+    case $word in gsl | libzip | freetype2 | cmocka | egl | gl | osmesa) exit 1 ;; esac
 done
 exec /usr/bin/pkg-config "$@"
 SH
 chmod +x pkg-config
 mkdir -p headers/GL headers/EGL headers/gsl
-for header in GL/glcorearb.h GL/osmesa.h EGL/egl.h gsl/gsl_math.h zip.h ft2build.h cmark-gfm.h; do
+for header in GL/glcorearb.h GL/osmesa.h EGL/egl.h gsl/gsl_math.h zip.h ft2build.h; do
     echo '#error "of a library that compare does not need"' >headers/$header
 done
 launcher=$(command -v ccache) && export CCACHE_DIR=${CCACHE_DIR:-$folder/ccache}

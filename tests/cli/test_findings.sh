@@ -40,6 +40,7 @@ cp "$sources/scenes/findings" "$sources/scenes/page_numbers.py" copy/scenes
 cp "$sources/README.md" copy
 cp "$sources/src/studies/README.md" copy/src/studies
 cp -r copy/golden/findings/*/ copy/out
+cp "$sources"/tests/paper/report/{networks,rates,closed_loop,laws,transfer}.csv copy/out/paper
 for table in families:families/table launches:launches/chart; do
     printf '#!/bin/sh\ncat golden/findings/%s.txt\n' "${table%%:*}" >"copy/scenes/${table#*:}"
     chmod +x "copy/scenes/${table#*:}"
@@ -49,9 +50,37 @@ mkdir -p copy/out/families copy/out/paper/figures copy/golden/figures
 touch copy/out/paper/report.md copy/out/{chart,chart_net,families}/equal_time.csv copy/out/families/equal_time.png \
     copy/out/chart/chart-pyramid_settled.png copy/out/paper/figures/factors.png copy/out/stability/{map-rate_height,borders}.png \
     copy/out/buckling/borders.png
+
+# What the made-up study of the paper found: 0.004 is below the rows of Table 1 for 0 to 100 iterations, and of nine networks with
+# that target one has 1289 parameters. The baseline is right in 81 and 92% of two scenes, the constant in 80 and 95%.
+# Solvers are no networks: their runs do not count. Medians over seeds: momentum is violated less at a larger error, the cone more at
+# a smaller one; after the smaller scenes 1 launch gives 3 m/s, as 2 do from scratch.
+copy/golden/findings/write --paper copy/out/paper || fail "golden/findings/write"
+equal "what the study found" "$(cd copy/golden/findings/paper && tail -n +2 -q targets.csv definitions.csv loops.csv summary.csv)" "\
+pair,0.004,4,8,inputs-contact,0.2
+net,0.001,5,1,net,0.7
+impulse,0.0001,6,2,impulse,0.5
+range,2,0.81,0.92,1
+absolute,2,0.3,0.62,1
+bodies,1,0.2,0.2,1
+single,2,346.5,600,contact-net,,,
+stack,2,306.25,600,contact-net,40,60,110
+pyramid,1,4,4,baseline,,,
+pyramid_settled,1,20,20,baseline,50,,600
+last_frame,600
+runs,6
+runs_complete,2
+highest_cost,3
+law_cases,2
+law_cases_obeyed,1
+law_cases_better,1
+transfer_rows,2
+transfer_rows_saved,1"
+grep -q 'Of 6 runs with a network 2 stay within' copy/src/studies/README.md || fail "the page does not say how many runs stay"
+cp -r copy/golden/findings kept && cp copy/src/studies/README.md kept || fail "no pages"
 (cd copy && scenes/findings 1 /usr/bin/false) || fail "scenes/findings"
-cmp "$sources/README.md" copy/README.md && cmp "$sources/src/studies/README.md" copy/src/studies/README.md || fail "the pages are not renewed to themselves"
-diff -r "$sources/golden/findings" copy/golden/findings || fail "other tables are kept"
+cmp kept/README.md copy/src/studies/README.md || fail "the page is not renewed to itself"
+diff -r kept copy/golden/findings | grep -v README.md && fail "other tables are kept"
 /usr/bin/python3 - copy/out/chart/chart.csv <<'PYTHON' || fail "planting"
 import csv, sys
 rows = list(csv.DictReader(open(sys.argv[1])))
@@ -66,7 +95,7 @@ was=$(grep -o '<!--net_time-->[0-9.]*' copy/src/studies/README.md)
 (cd copy && scenes/findings 1 /usr/bin/false) || fail "scenes/findings, again"
 is=$(grep -o '<!--net_time-->[0-9.]*' copy/src/studies/README.md)
 equal "the time is twice as long" "$(echo "${is##*>} / ${was##*>}" | awk '{ printf "%.1f", $1 / $3 }')" 2.0
-equal "changed lines of the page" "$(diff "$sources/src/studies/README.md" copy/src/studies/README.md | grep -c '^>')" 2
+equal "changed lines of the page" "$(diff kept/README.md copy/src/studies/README.md | grep -c '^>')" 2
 
 # Held-out scenes follow from the seed alone, and stand.
 "$families/heldout" one 5 0 >drawn.txt || fail "no scenes"

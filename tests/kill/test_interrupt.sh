@@ -78,7 +78,7 @@ working INT dataset "$scenes/pyramid.yaml" --random 5000 -o new.npz
 working TERM train --kind scene-net "$scenes/stack.yaml" -o new.npz --iterations 100000
 [ -e new.json ] && fail "an interrupted run has a verdict"
 folder=paper working TERM paper -o paper --scenes "$scenes"
-[ -e paper/paper_report.html ] && fail "an interrupted study has a report"
+[ -e paper/report.md ] && fail "an interrupted study has a report"
 folder=study working INT stability -o study --scenes "$scenes"
 folder=chart working TERM chart "$scenes/pyramid.yaml" -o chart
 equal "tables of interrupted studies" "$(find study chart paper -name '*.csv')" ""
