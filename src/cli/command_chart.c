@@ -14,6 +14,7 @@
 #include "cli/page_set.h"
 #include "cli/progress_bar.h"
 #include "methods/methods.h"
+#include "methods/programs.h"
 #include "pictures/player.h"
 #include "pixels/type.h"
 #include "runs/pieces.h"

@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "cli/larger_commands.h"
 #include "methods/methods.h"
+#include "methods/programs.h"
 #include "nets/kernels.h"
 #include "pictures/player.h"
 #include "runs/trajectory.h"

@@ -7,6 +7,7 @@
 #include "cli/installed.h"
 #include "cli/notes.h"
 #include "methods/methods.h"
+#include "methods/programs.h"
 #include "scenes/scenes.h"
 
 #include <argp.h>

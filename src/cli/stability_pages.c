@@ -7,6 +7,7 @@
 #include "cli/page_set.h"
 #include "cli/progress_bar.h"
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "pictures/player.h"
 #include "runs/pieces.h"
 #include "runs/trajectory.h"

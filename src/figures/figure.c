@@ -7,6 +7,7 @@
 #include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "runs/trajectory.h"
 
 #include <stdio.h>

@@ -7,6 +7,7 @@
 #include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pixels/png.h"

@@ -33,29 +33,8 @@
 #define LIVE_EXPORT(name)
 #endif
 
-/* The methods that a page can run: the registry of the module. All but exec, whose programs no browser starts, and
-   playback, which records a hundred launches before each of its own. There are two modules: the plain one has no
-   networks, and is two thirds as large. */
-#define LIVE_PLAIN_METHODS(SOLVER, STEPPING) \
-    SOLVER(engine)                           \
-    SOLVER(momentum)                         \
-    SOLVER(nncg)                             \
-    STEPPING(substepping)                    \
-    SOLVER(reference)                        \
-    STEPPING(soft_step)                      \
-    STEPPING(avbd)                           \
-    SOLVER(interior)                         \
-    SOLVER(closed_form)                      \
-    SOLVER(admm)
-#define LIVE_METHODS(SOLVER, STEPPING)   \
-    LIVE_PLAIN_METHODS(SOLVER, STEPPING) \
-    SOLVER(pair_net)                     \
-    SOLVER(contact_net)                  \
-    SOLVER(scene_net)                    \
-    SOLVER(sain)                         \
-    SOLVER(hybrid)                       \
-    STEPPING(gns)                        \
-    STEPPING(subspace)
+/* The methods that a page can run are those of the list METHODS with LIVE or LIVE_NETWORK (methods/methods.h). There
+   are two modules: the plain one has no networks, and is two thirds as large. */
 
 /* The functions of the module. */
 

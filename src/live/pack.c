@@ -19,9 +19,12 @@ LiveModule live_module(bool networks) {
 }
 
 bool live_has_method(const MethodDescription *description) {
-#define SOLVER_LISTED(name) &solver_##name.description,
-#define STEPPING_LISTED(name) &stepping_##name.description,
-    const MethodDescription *const methods[] = {LIVE_METHODS(SOLVER_LISTED, STEPPING_LISTED)};
+#define LIVE(entry) entry,
+#define LIVE_NETWORK(entry) entry,
+#define NOT_LIVE(entry)
+#define SOLVER_LISTED(name, where) where(&solver_##name.description)
+#define STEPPING_LISTED(name, where) where(&stepping_##name.description)
+    const MethodDescription *const methods[] = {METHODS(SOLVER_LISTED, STEPPING_LISTED)};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
         if (methods[i] == description) return true;
     return false;

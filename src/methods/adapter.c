@@ -9,6 +9,7 @@
 #include "base/machine.h"
 #include "methods/adapter_internal.h"
 #include "methods/methods.h"
+#include "methods/programs.h"
 
 #include <pthread.h>
 #include <stdio.h>

@@ -114,6 +114,7 @@ const ContactSolverKind solver_admm = {
                     .summary = "proximal ADMM: a factorization over the bodies, then many solutions with it",
                     .caption = "proximal ADMM",
                     .settings = settings,
+                    .converges = "k=400",
                     .falls_back = true,
                     .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "k=2,near=0.1,more=400",
                                          "k=2,near=0.02,more=400", "k=2,near=0.005,more=400", "k=1,near=0.5,more=10000",

@@ -75,6 +75,7 @@ const ContactSolverKind solver_engine = {
                     .caption = "physics engine, sequential impulses",
                     .settings = settings,
                     .shipped = "k=10",
+                    .converges = "k=20000,warm=off",
                     .lite_contacts = true,
                     .chart = METHOD_RUNS("k=5", "k=10", "k=50", "k=100", "k=2,near=0.1,more=400",
                                          "k=2,near=0.001,more=10000"),

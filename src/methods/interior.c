@@ -362,6 +362,7 @@ const ContactSolverKind solver_interior = {
                     .summary = "interior-point steps with a sparse direct solve over the bodies",
                     .caption = "interior-point steps",
                     .settings = settings,
+                    .converges = "near=1e-6",
                     .falls_back = true,
                     .chart = METHOD_RUNS("near=1", "near=0.1", "near=0.02", "near=0.002", "near=0.0005", "near=0.0001"),
                     .chart_quick = METHOD_RUNS("near=0.002"),

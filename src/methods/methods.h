@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Methods: what describes one, the interface of contact solvers and of steppers, the list of all, and how a scene is
-   stepped. */
+/* Methods: the list of all, what describes one, the interfaces of contact solvers and steppers, and how a scene is
+   stepped:
+
+       Method method;
+       Stepper *stepper = method_parse(&method, "engine:k=20", error) ? stepper_create(&method, scene, error) : NULL;
+       stepper_step(stepper, world, &(Step){.scene = scene, .frame = 1}, error);
+*/
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -11,7 +16,7 @@
 #include <stdint.h>
 
 /* What lists, charts, studies and captions know of a method. A field left zero has a sensible default: a name and a
-   summary are enough to begin with; pictures/colours also wants a caption, and a colour in pictures/colours.c. */
+   summary are enough. */
 
 /* What a method's results are compared for. */
 typedef enum MethodRole {
@@ -46,6 +51,7 @@ typedef struct MethodDescription {
                             settings otherwise. NULL: nothing is learned */
     const char *own_settings; /* those that hold where none are given, "k=10"; NULL: k is the scene's iterations */
     const char *shipped;      /* the setting in common use, which charts mark; NULL: none */
+    const char *converges;    /* settings with which it finds the converged solution, as a test checks; NULL: none do */
     /* What `twinbox chart`, `twinbox chart --quick` and `twinbox stability` run by default. NULL: one run, no settings
        given. METHOD_NO_RUNS: left out unless named, and reported as left out. */
     MethodRuns chart, chart_quick, stability;
@@ -70,35 +76,36 @@ typedef struct ContactSolver {
     void *state;
 } ContactSolver;
 
-/* The list of methods. To add a contact solver, write one file in this folder that defines solver_NAME, and add one
-   line SOLVER(NAME) here. */
+/* The list of methods, in the order of lists and charts. To add one, write one file in this folder that defines
+   solver_NAME, and add one line here, at the end. SOLVER(x, where) is solver_x; STEPPING(x, where) is stepping_x, for
+   methods that need more than one solver call in a step. where:
 
-/* In the order of lists and charts. SOLVER(x) is solver_x; STEPPING(x) is stepping_x, for methods that need more than
-   one solver call in a step. New methods go to the end. */
-#define METHODS(SOLVER, STEPPING) \
-    SOLVER(engine)                \
-    SOLVER(momentum)              \
-    SOLVER(nncg)                  \
-    STEPPING(substepping)         \
-    SOLVER(pair_net)              \
-    SOLVER(contact_net)           \
-    SOLVER(scene_net)             \
-    STEPPING(playback)            \
-    SOLVER(reference)             \
-    STEPPING(soft_step)           \
-    STEPPING(avbd)                \
-    SOLVER(interior)              \
-    SOLVER(sain)                  \
-    SOLVER(hybrid)                \
-    STEPPING(gns)                 \
-    STEPPING(subspace)            \
-    STEPPING(exec)                \
-    SOLVER(closed_form)           \
-    SOLVER(admm)                  \
-    SOLVER(exec_solver)
+       LIVE          pages can run it (live/live.h), too
+       LIVE_NETWORK  so can pages that have networks
+       NOT_LIVE      pages cannot: it needs programs or files */
+#define METHODS(SOLVER, STEPPING)     \
+    SOLVER(engine, LIVE)              \
+    SOLVER(momentum, LIVE)            \
+    SOLVER(nncg, LIVE)                \
+    SOLVER(pair_net, LIVE_NETWORK)    \
+    SOLVER(contact_net, LIVE_NETWORK) \
+    SOLVER(scene_net, LIVE_NETWORK)   \
+    STEPPING(playback, NOT_LIVE)      \
+    SOLVER(reference, LIVE)           \
+    STEPPING(soft_step, LIVE)         \
+    STEPPING(avbd, LIVE)              \
+    SOLVER(interior, LIVE)            \
+    SOLVER(sain, LIVE_NETWORK)        \
+    SOLVER(hybrid, LIVE_NETWORK)      \
+    STEPPING(gns, LIVE_NETWORK)       \
+    STEPPING(subspace, LIVE_NETWORK)  \
+    STEPPING(exec, NOT_LIVE)          \
+    SOLVER(closed_form, LIVE)         \
+    SOLVER(admm, LIVE)                \
+    SOLVER(exec_solver, NOT_LIVE)
 
-#define METHOD_OMITTED(name)
-#define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;
+#define METHOD_OMITTED(name, where)
+#define SOLVER_DECLARED(name, where) extern const ContactSolverKind solver_##name;
 METHODS(SOLVER_DECLARED, METHOD_OMITTED)
 #undef SOLVER_DECLARED
 
@@ -150,7 +157,7 @@ typedef struct SteppingKind {
 /* Advances the world by one step of the scene; on failure the world is unchanged. */
 bool stepping_step(const SteppingKind *kind, void *state, World *world, const Step *step, Error *error);
 
-#define STEPPING_DECLARED(name) extern const SteppingKind stepping_##name;
+#define STEPPING_DECLARED(name, where) extern const SteppingKind stepping_##name;
 METHODS(METHOD_OMITTED, STEPPING_DECLARED)
 #undef STEPPING_DECLARED
 
@@ -170,8 +177,8 @@ typedef struct MethodKind {
 extern const MethodKind method_kinds[];
 
 /* An entry for each line of the list METHODS. */
-#define METHOD_KIND_SOLVER(name) {&solver_##name.description, &solver_##name, NULL},
-#define METHOD_KIND_STEPPING(name) {&stepping_##name.description, NULL, &stepping_##name},
+#define METHOD_KIND_SOLVER(name, where) {&solver_##name.description, &solver_##name, NULL},
+#define METHOD_KIND_STEPPING(name, where) {&stepping_##name.description, NULL, &stepping_##name},
 
 /* The description of the method in `name` or `name:key=value,...`; NULL if there is no method of that name. */
 const MethodDescription *method_describe(const char *text);
@@ -204,24 +211,6 @@ bool method_lacks_network(const Method *method, const Scene *scene);
    set. */
 const char *method_network(const Settings *settings, const Scene *scene, const char *name, Error *error);
 
-/* Programs of the methods `exec` and `exec-solver`. Files may name methods, too: of runs that are to be repeated, of
-   tables. So only a program is started that an option for methods names, "exec:PROGRAM", alone or in a list; the text
-   must outlive the methods. Without a call, none is. */
-void programs_allow(const char *methods);
-
-enum { PROGRAM_NAME_SIZE = 48 };
-
-/* What a program says that it is. */
-typedef struct ProgramName {
-    char name[PROGRAM_NAME_SIZE], version[PROGRAM_NAME_SIZE];
-} ProgramName;
-
-/* The first failure of a program in this process; NULL: none. For studies, in which it only ends a run. */
-const char *programs_failure(void);
-
-/* False for methods that are no program, or one that has not run yet. */
-bool method_program(const Method *method, ProgramName *name);
-
 /* For the table of a method in whose step contacts may be kept (ContactRules); stepper_create() reads it. `...`:
    SETTING_OWN, or a member of the method's own. */
 #define KEEP_SETTING(...) \
@@ -240,17 +229,3 @@ const MethodDescription *stepper_describe(const Stepper *stepper);
    has Box2D-Lite's (lite_contacts) or the step is the engine's. Afterwards world_problem() and world_solution() are
    those of the step. */
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error);
-
-/* How methods are named in all pictures: captions, legends, charts and figures. Their colours: pictures/colours.h.
-
-   The name is the method's text as on the command line ("momentum:k=20"), without the folders of its files. */
-
-/* Copies a method's text without the folders of its files, which differ between machines. Returns its length. */
-size_t method_name(char *name, size_t size, const char *text);
-
-/* The name of run `index` of a picture whose runs have these methods: without the file of its network, unless another
-   of them has the same settings but for this file. */
-size_t method_name_among(char *name, size_t size, const char *const *methods, int count, int index);
-
-/* Length of the part of a name before its settings. */
-size_t method_name_head(const char *name);

@@ -333,6 +333,7 @@ const ContactSolverKind solver_momentum = {
                     .summary = "sequential impulses with momentum extrapolation between sweeps",
                     .caption = "sequential impulses with momentum",
                     .settings = settings,
+                    .converges = "k=2000",
                     .chart = METHOD_RUNS("k=5", "k=20", "k=50", "k=100", "k=1,near=0.005,more=10000",
                                          "k=1,near=0.0002,more=10000", "k=5,near=0.5,more=10000",
                                          "k=5,near=0.1,more=10000", "k=5,near=0.02,more=10000",

@@ -178,6 +178,7 @@ const ContactSolverKind solver_nncg = {
                     .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
                     .caption = "conjugate gradients over sweeps",
                     .settings = settings,
+                    .converges = "k=200",
                     .chart = METHOD_RUNS("k=5", "k=20", "k=50", "k=1,near=0.5,more=10000", "k=1,near=0.02,more=10000",
                                          "k=5,near=0.02,more=10000", "k=5,near=0.001,more=10000",
                                          "k=5,near=0.0002,more=10000"),

@@ -327,6 +327,7 @@ const ContactSolverKind solver_reference = {
                     .caption = "converged solution",
                     .role = METHOD_REFERENCE,
                     .settings = settings,
+                    .converges = "",
                     .stability_place = 6},
     .create = reference_point_create,
     .solve = reference_point_solve,

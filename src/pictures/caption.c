@@ -2,6 +2,7 @@
 /* Texts of a picture: numbers, names, lines, the header. */
 #include "base/base.h"
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"

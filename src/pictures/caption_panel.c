@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The line above a panel, and the cards before and after a run. */
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"

@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "pictures/picture.h"
 
 #include <assert.h>
@@ -35,7 +36,6 @@ static const MethodPaint paints[] = {
     {"pair-net", METHOD_DIAMOND, {0xE69F00, 0x7A4F00, 0xFFD47A}, {0xE9A92A, 0x3B2600, 0xFFE3A3}},
     {"contact-net", METHOD_CIRCLE, {0x882255, 0x3F0F27, 0xC98BA6}, {0xB0487D, 0x2A0818, 0xE8B4CE}},
     {"avbd", METHOD_DIAMOND, .light.fill = 0x439100},
-    {"substepping", METHOD_SQUARE, .light.fill = 0x826BFB},
     {"nncg", METHOD_DIAMOND, .light.fill = 0x2A5900},
     {"admm", METHOD_TRIANGLE, .light.fill = 0x7F8F3D},
     {"closed-form", METHOD_CIRCLE, .light.fill = 0x0C00AC},
@@ -46,10 +46,18 @@ static const MethodPaint paints[] = {
     {"subspace", METHOD_CIRCLE, .light.fill = 0xCAB77F},
 };
 
-/* Fills for programs, own runs and all that is not in the table. */
-static const uint32_t spares[] = {0xFF4FD5, 0x7ACC53, 0xFF4072, 0x0000F9, 0xAB3835, 0x920AFF, 0x55016A};
+/* Fills for methods of the registry that are not in the table, in its order; then for programs, own runs and all other
+   names. Where there are more such methods than fills of theirs, they share those of the others. */
+static const uint32_t spares[] = {0x826BFB, 0x540000, 0xFF4FD5, 0x7ACC53, 0xFF4072,
+                                  0x0000F9, 0xAB3835, 0x920AFF, 0x55016A};
 
-enum { OWNED = sizeof paints / sizeof *paints, SPARES = sizeof spares / sizeof *spares, PAINTS = OWNED + SPARES };
+enum {
+    OWNED = sizeof paints / sizeof *paints,
+    SPARES = sizeof spares / sizeof *spares,
+    PAINTS = OWNED + SPARES,
+    FOR_METHODS = 2,
+    OTHERS = SPARES - FOR_METHODS
+};
 
 /* 0 to 255, of the channels as they are: exact on every machine, and near enough to lightness. */
 static double luma(uint32_t colour) {
@@ -82,7 +90,8 @@ static MethodPaint paint_with(MethodSymbol symbol, uint32_t fill) {
 }
 
 static MethodPaint paint_at(int place) {
-    if (place >= OWNED) return paint_with(METHOD_PENTAGON, spares[place - OWNED]);
+    if (place >= OWNED)
+        return paint_with(place < OWNED + FOR_METHODS ? METHOD_SQUARE : METHOD_PENTAGON, spares[place - OWNED]);
     const MethodPaint paint = paints[place];
     return paint.dark.fill != 0 ? paint : paint_with(paint.symbol, paint.light.fill);
 }
@@ -174,12 +183,22 @@ static bool find_choice(const ColourChoices *choices, const char *name, uint32_t
     return false;
 }
 
-/* The place of a method in the table, or -1. */
-static int owned(const char *method) {
-    const size_t length = method_name_head(method);
+static int place_in_table(const char *method, size_t length) {
     for (int i = 0; i < OWNED; i++)
         if (strlen(paints[i].name) == length && strncmp(paints[i].name, method, length) == 0) return i;
     return -1;
+}
+
+/* The place of a method: in the table, or the spare one that is its own; -1: it is no method, or a program. */
+static int owned(const char *method) {
+    const int place = place_in_table(method, method_name_head(method));
+    const MethodDescription *wanted = method_describe(method);
+    if (place >= 0 || wanted == NULL || wanted->external) return place;
+    int before = 0;
+    for (const MethodKind *kind = method_kinds; kind->description != wanted; kind++)
+        before += !kind->description->external &&
+                  place_in_table(kind->description->name, strlen(kind->description->name)) < 0;
+    return OWNED + before % SPARES;
 }
 
 bool colours_have(const char *method) { return owned(method) >= 0; }
@@ -191,7 +210,7 @@ typedef struct Assignment {
     int count;
     char names[COLOURS_MAX][METHOD_TEXT_SIZE];
     int order[COLOURS_MAX];  /* by name */
-    int places[COLOURS_MAX]; /* in the table */
+    int places[COLOURS_MAX]; /* in the table, or behind it */
     int members[PAINTS];     /* runs of each place */
     bool chosen[COLOURS_MAX];
 } Assignment;
@@ -208,10 +227,10 @@ static void sort_names(Assignment *all) {
 /* The spare colour that a name chooses, or the next that no other name of the picture has; without any, the first
    again. */
 static int spare_place(const Assignment *all, const char *name) {
-    const int first = (int)(hash_fnv1a64(FNV1A64_START, name, strlen(name)) % SPARES);
-    for (int i = 0; i < SPARES; i++)
-        if (all->members[OWNED + (first + i) % SPARES] == 0) return OWNED + (first + i) % SPARES;
-    return OWNED + first;
+    const int begin = OWNED + FOR_METHODS, first = (int)(hash_fnv1a64(FNV1A64_START, name, strlen(name)) % OTHERS);
+    for (int i = 0; i < OTHERS; i++)
+        if (all->members[begin + (first + i) % OTHERS] == 0) return begin + (first + i) % OTHERS;
+    return begin + first;
 }
 
 static void find_places(Assignment *all, const char *const *methods) {

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/page.h"
 #include "pictures/picture.h"

@@ -4,6 +4,7 @@
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "methods/programs.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"

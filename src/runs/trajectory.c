@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "methods/names.h"
 
 #include <assert.h>
 #include <math.h>

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/machine.h"
 #include "methods/methods.h"
+#include "methods/programs.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
 #include "studies/contenders.h"

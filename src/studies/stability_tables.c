@@ -5,6 +5,8 @@
 #include "base/file.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
+#include "methods/names.h"
+#include "methods/programs.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
 #include "studies/chart_data.h"

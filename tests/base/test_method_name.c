@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "methods/methods.h"
+#include "methods/names.h"
 
 TEST(a_name_has_no_folders) {
     static const struct {

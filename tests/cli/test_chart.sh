@@ -69,7 +69,7 @@ grep -Eq "^    not scored, as the reference does not converge: [1-9][0-9]* of [0
     fail "unconverged steps of a chart: $(cat out)"
 grep -Eq "^    energy and drift are compared before the converged runs' steps that did not converge: [1-9]" out ||
     fail "unconverged steps of the converged runs: $(cat out)"
-few=engine:k=10,momentum:k=20,substepping:substeps=10,pair-net,scene-net
+few=engine:k=10,momentum:k=20,pair-net,scene-net
 run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||
     fail "other numbers of the pyramid: $(head -5 difference)"

@@ -8,7 +8,7 @@
     echo scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step,instructions,error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved
     time=1
     for row in engine,k=5 engine,k=10 engine,k=20 momentum,k=10 momentum,'"near=0.1,k=10"' avbd,k=4 avbd,k=10 \
-        substepping,substeps=2 substepping,substeps=4; do
+        soft-step,substeps=2 soft-step,substeps=4; do
         echo "single,$row,closed,impact,1,$time,$time,$time,$time,,1,1,1,1,1,0,0,0,0"
         time=$((time + 1))
     done
@@ -31,8 +31,8 @@ simulate near --method momentum:k=10,near=0.1
 simulate avbd --method avbd
 draw engine.npz engine5.npz given.npz momentum.npz near.npz avbd.npz
 equal "costs" "$(cost)" "2.0 1.0 3.0 4.0 5.0 7.0 "
-simulate substepping --method substepping
-draw substepping.npz
+simulate soft-step --method soft-step
+draw soft-step.npz
 equal "cost of the method's own settings" "$(cost)" "9.0 "
 equal "iterations in the run" "$(/usr/bin/python3 -c "
 import numpy

@@ -9,7 +9,7 @@ import {load} from './live.mjs';
 
 const [path, twinbox, pack, launches] = process.argv.slice(2);
 const solvers = ['engine', 'engine:k=4,warm=off', 'momentum', 'interior', 'interior:near=0.02', 'soft-step', 'soft-step:keep=0.05', 'engine:keep=0.02',
-  'avbd', 'nncg', 'substepping', 'reference', 'closed-form', 'admm'];
+  'avbd', 'nncg', 'reference', 'closed-form', 'admm'];
 const networks = ['pair-net', 'contact-net', 'pair-net:net=off', 'sain', 'hybrid', 'gns', 'subspace'];
 const scenes = [
   {file: 'scenes/single.yaml', methods: [...solvers, ...networks]},

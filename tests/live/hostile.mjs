@@ -9,9 +9,9 @@ import {load} from './live.mjs';
 
 const [path, plain_path, pack] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), 'live-'));
-// The methods of live.h: those of the plain module, and those with a network.
-const [PLAIN, LEARNED] = readFileSync('src/live/live.h', 'utf8').split(/#define LIVE_(?:PLAIN_)?METHODS\(/).slice(1)
-  .map(list => [...list.matchAll(/(?:SOLVER|STEPPING)\((\w+)\)/g)].map(entry => entry[1].replaceAll('_', '-')).join());
+// The methods of the list METHODS: those of the plain module, and those of the one with networks.
+const [PLAIN, ALL] = ['LIVE', 'LIVE|LIVE_NETWORK'].map(where => [...readFileSync('src/methods/methods.h', 'utf8')
+  .matchAll(RegExp(`(?:SOLVER|STEPPING)\\((\\w+), (?:${where})\\)`, 'g'))].map(entry => entry[1].replaceAll('_', '-')).join());
 const live = await load(path);
 let failures = 0;
 
@@ -53,7 +53,7 @@ refused(() => begin(stack, 'bomb_speed=-1'), 'bomb_speed must be a number from 0
 refused(() => begin(height, 'height=1e9'), 'height must be from');
 refused(() => begin(height, 'height=2.5'), 'height must be a whole number');
 refused(() => begin(stack, '', 'egnine'), "'egnine' is not a method; did you mean 'engine'?");
-refused(() => begin(stack, '', 'playback'), "'playback' is not a method; known: engine, momentum, nncg, substepping, reference, soft-step, avbd");
+refused(() => begin(stack, '', 'playback'), "'playback' is not a method; known: engine, momentum, nncg, pair-net, contact-net, scene-net, reference");
 refused(() => begin(stack, '', 'engine:k=0'), "k: error: must be a whole number from 1 to 1000000 (got '0')");
 refused(() => begin(stack, '', 'interior:near=nan'), 'near');
 refused(() => begin(stack, '', 'x'.repeat(100000)), "a method's text has at most 127 characters");
@@ -63,7 +63,7 @@ refused(() => begin(settled, 'dt=1e-5'), 'out of memory');
 refused(() => live.json('live_describe', stack, 'iterations=0.5'), 'iterations must be a whole number');
 
 const method_names = live.json('live_methods').map(method => method.name);
-expect(method_names.join() === `${PLAIN},${LEARNED}`, method_names.join());
+expect(method_names.join() === ALL, method_names.join());
 const {parameters, bomb} = live.json('live_describe', height, 'height=7');
 expect(parameters.find(each => each.name === 'height').value === 7, 'a setting is described');
 expect(bomb === null, 'a scene without a bomb is described');

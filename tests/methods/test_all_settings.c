@@ -21,7 +21,6 @@ TEST(what_is_not_given_is_the_scenes_or_the_methods) {
     assert_settings("engine", 0, "");
     assert_settings("momentum:near=0.02", 7, "near=0.02,k=7");
     assert_settings("avbd", 7, "k=10");
-    assert_settings("substepping:substeps=10", 7, "substeps=10,k=1");
     assert_settings("soft-step", 7, "substeps=4");
     assert_settings("interior", 7, "");
     Settings settings;

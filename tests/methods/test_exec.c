@@ -6,6 +6,7 @@
 
 #include "methods/adapter.h"
 #include "methods/methods.h"
+#include "methods/programs.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 

@@ -5,10 +5,17 @@
 
 enum { TILES = 60, PLATES = 40 };
 
-static const char *const mended[] = {
-    "interior",           "momentum",           "nncg",      "soft-step",        "avbd",
-    "substepping",        "reference",          "admm:k=50", "engine:keep=0.05", "momentum:keep=0.05",
-    "interior:keep=0.05", "soft-step:keep=0.05"};
+static const char *const mended[] = {"interior",
+                                     "momentum",
+                                     "nncg",
+                                     "soft-step",
+                                     "avbd",
+                                     "reference",
+                                     "admm:k=50",
+                                     "engine:keep=0.05",
+                                     "momentum:keep=0.05",
+                                     "interior:keep=0.05",
+                                     "soft-step:keep=0.05"};
 
 enum { MENDED = sizeof mended / sizeof mended[0] };
 

@@ -4,6 +4,7 @@
 #include "owned_drawings.h"
 
 #include "methods/methods.h"
+#include "methods/names.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 

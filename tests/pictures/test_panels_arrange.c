@@ -10,7 +10,7 @@
 #include <limits.h>
 
 static const char *const methods[RENDER_PANELS_MAX] = {"engine",   "momentum:k=20", "pair-net",
-                                                       "interior", "reference",     "substepping"};
+                                                       "interior", "reference",     "soft-step"};
 static const int sizes[][2] = {{1920, 1080}, {1080, 1920}, {1080, 1080}, {640, 360}};
 enum { SIZES = sizeof sizes / sizeof sizes[0] };
 

@@ -137,7 +137,7 @@ TEST(methods_without_k_use_the_scenes_iterations) {
         const char *method;
         bool takes;
     } rows[] = {{"engine", true},     {"engine:k=10", false}, {"engine:warm=off", true}, {"momentum", true},
-                {"reference", false}, {"substepping", false}, {"contact-net", false}};
+                {"reference", false}, {"soft-step", false},   {"contact-net", false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         const Method method = method_named(rows[i].method);
         assert_true(stability_takes_iterations(&method) == rows[i].takes);
