@@ -71,13 +71,6 @@ const PaperSize paper_quick_size = {
     .system_repetitions = 1,
 };
 
-const double target_aims[PAIR_TARGETS] = {[TARGET_PAIR] = 0.4, [TARGET_NET] = 0.4, [TARGET_IMPULSE] = 0.1};
-
-const PublishedScore published_scores[PUBLISHED_SCORES] = {
-    {0, 0.105798, 0.106044},   {10, 0.051244, 0.051222},   {50, 0.015246, 0.015388},
-    {100, 0.007767, 0.007789}, {1000, 0.001212, 0.001225}, {2000, 0.000728, 0.000730},
-};
-
 void launched_free(Launched *launched) {
     for (int i = 0; launched->states != NULL && i < launched->count; i++) snapshots_free(&launched->states[i]);
     free(launched->states);
@@ -102,29 +95,11 @@ bool launched_begin(Launched *launched, const char *path, int count, Error *erro
     return ok;
 }
 
-typedef struct Watch {
-    const Progress *progress;
-    bool stopped;
-} Watch;
-
-static bool report_paper(void *context, double done, double total) {
-    Watch *watch = context;
-    if (!progress_report(watch->progress, done, total)) watch->stopped = true;
-    return !watch->stopped;
-}
-
-Network *whole_training(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
-                        Error *error) {
-    Watch watch = {.progress = progress};
-    const Progress watched = {report_paper, &watch};
-    Network *network = training_run(dataset, options, &watched, error);
-    if (network == NULL || !watch.stopped) return network;
-    network_destroy(network);
-    return error_interrupted(error, "training", "stopped"), NULL;
-}
-
-/* The study's parameters, for the report. */
-static bool write_facts(const PaperPlan *plan, Error *error) {
+static bool write_tables(const PaperPlan *plan, Error *error) {
+    static const CsvLayout *const layouts[] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
+                                               &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
+                                               &system_score_layout};
+    const char *folder = plan->options->folder;
     const PaperSize *size = plan->size;
     const double values[] = {(double)plan->options->seed, plan->network_count, size->iterations,
                              size->data.random,           size->rate_launches, size->closed_launches};
@@ -142,17 +117,9 @@ static bool write_facts(const PaperPlan *plan, Error *error) {
                              {"launches_random", numbers[3]},
                              {"launches_rated", numbers[4]},
                              {"launches_in_closed_loop", numbers[5]}};
-    return csv_table_path(path, plan->options->folder, &paper_fact_layout, error) &&
-           csv_table_write(path, &paper_fact_layout, facts, sizeof facts / sizeof *facts, error);
-}
-
-static bool write_tables(const PaperPlan *plan, Error *error) {
-    const char *folder = plan->options->folder;
-    const CsvLayout *const layouts[] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
-                                        &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
-                                        &system_score_layout};
     return piece_tables_write(plan->pieces, folder, layouts, sizeof layouts / sizeof *layouts, NULL, 0, error) &&
-           write_facts(plan, error);
+           csv_table_path(path, folder, &paper_fact_layout, error) &&
+           csv_table_write(path, &paper_fact_layout, facts, sizeof facts / sizeof *facts, error);
 }
 
 /* A hash of all that decides the result: the program, the options, the scenes. */

@@ -7,7 +7,6 @@
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "methods/pair.h"
-#include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "scenes/scenes.h"
 #include "studies/closed_loop.h"
@@ -32,6 +31,8 @@ const char *const paper_optimizer_words[PAPER_OPTIMIZERS + 1] = {"adam", "gd", "
 static const char *const paper_phase_words[RATE_PHASES + 1] = {
     [PHASE_IMPACT] = "impact", [PHASE_AFTER] = "after", [PHASE_REST] = "rest", [RATE_ALL] = "all"};
 static const char *const start_words[] = {"scratch", "transfer", NULL};
+
+static const char *const rate_definition_names[RATE_DEFINITIONS + 1] = {"range", "absolute", "bodies"};
 
 static const CsvColumn score_columns[] = {
     CSV_MEMBER(ScoreRow, network, CSV_NAME),
@@ -126,6 +127,13 @@ const CsvLayout paper_closed_loop_layout = LAYOUT("closed_loop", closed_loop_col
 const CsvLayout paper_law_layout = LAYOUT("laws", law_columns, LawRow, PAPER_MAX_ROWS);
 const CsvLayout paper_transfer_layout = LAYOUT("transfer", transfer_columns, TransferRow, PAPER_MAX_ROWS);
 const CsvLayout paper_fact_layout = LAYOUT("study", fact_columns, FactRow, PAPER_MAX_ROWS);
+
+const double target_aims[PAIR_TARGETS] = {[TARGET_PAIR] = 0.4, [TARGET_NET] = 0.4, [TARGET_IMPULSE] = 0.1};
+
+const struct PublishedScore published_scores[PUBLISHED_SCORES] = {
+    {0, 0.105798, 0.106044},   {10, 0.051244, 0.051222},   {50, 0.015246, 0.015388},
+    {100, 0.007767, 0.007789}, {1000, 0.001212, 0.001225}, {2000, 0.000728, 0.000730},
+};
 
 const char *const paper_scene_names[PAPER_SCENES + 1] = {"single", "stack", "pyramid", "pyramid_settled"};
 

@@ -6,7 +6,7 @@
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
-#include "paper/paper_internal.h"
+#include "paper/paper_tables.h"
 #include "studies/study_page.h"
 
 #include <limits.h>

@@ -8,7 +8,6 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "nets/nets.h"
-#include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "studies/closed_loop.h"
 #include "studies/frozen.h"
@@ -21,23 +20,18 @@
 
 enum { COMPONENTS = 2 };
 
-static void mean_label(const Dataset *dataset, double mean[COMPONENTS]) {
-    int64_t count = 0;
-    mean[0] = mean[1] = 0;
+/* RMS errors on test rows: of the network, and of the mean of the training rows. */
+static bool score_transfer(const Dataset *dataset, const Network *network, TransferRow *result, Error *error) {
+    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[COMPONENTS];
+    if (scratch == NULL) return error_memory(error, "study");
+    double mean[COMPONENTS] = {0}, squares = 0, squares_constant = 0;
+    int64_t trained = 0, count = 0;
     for (int64_t row = 0; row < dataset->rows; row++) {
         if (dataset_is_test(dataset, row)) continue;
         for (int k = 0; k < COMPONENTS; k++) mean[k] += (double)dataset_target(dataset, row, COMPONENTS, k);
-        count++;
+        trained++;
     }
-    for (int k = 0; k < COMPONENTS; k++) mean[k] /= (double)count;
-}
-
-static bool paper_scores_score(const Dataset *dataset, const Network *network, TransferRow *result, Error *error) {
-    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[COMPONENTS];
-    if (scratch == NULL) return error_memory(error, "study");
-    double mean[COMPONENTS], squares = 0, squares_constant = 0;
-    int64_t count = 0;
-    mean_label(dataset, mean);
+    for (int k = 0; k < COMPONENTS; k++) mean[k] /= (double)trained;
     for (int64_t row = 0; row < dataset->rows; row++) {
         if (!dataset_is_test(dataset, row)) continue;
         network_predict(network, dataset->inputs + row * dataset_inputs(dataset), scratch, output);
@@ -55,36 +49,28 @@ static bool paper_scores_score(const Dataset *dataset, const Network *network, T
     return true;
 }
 
-/* Trains on `count` datasets one after the other, each network starting from the one before. */
-static Network *train_stages(const Dataset *const *datasets, int count, const TransferStudy *study,
-                             const Progress *progress, Error *error) {
+bool transfer_study_run(const Dataset *const data[TRANSFER_SCENES], const TransferStudy *study, TransferRow *row,
+                        const Progress *progress, Error *error) {
+    enum { PYRAMID = TRANSFER_SCENES - 1 };
+    *row = (TransferRow){study->transfer, (double)study->seed, study->launches, NAN, NAN};
+    Dataset *drawn = dataset_draw_subset(data[PYRAMID], study->launches, study->seed, error);
     Network *network = NULL;
-    for (int stage = 0; stage < count; stage++) {
+    bool ok = drawn != NULL;
+    for (int stage = study->transfer ? 0 : PYRAMID; ok && stage <= PYRAMID; stage++) {
+        const Dataset *dataset = stage == PYRAMID ? drawn : data[stage];
         const TrainingOptions options = {.layers = 2,
-                                         .widths = {dataset_inputs(datasets[stage]), 10, COMPONENTS},
+                                         .widths = {dataset_inputs(dataset), 10, COMPONENTS},
                                          .optimizer = "adam",
                                          .output_activation = "linear",
                                          .iterations = study->iterations,
                                          .seed = study->seed,
                                          .start = network};
-        Network *next = whole_training(datasets[stage], &options, progress, error);
+        Network *next = whole_training(dataset, &options, progress, error);
         network_destroy(network);
         network = next;
-        if (network == NULL) break;
+        ok = network != NULL;
     }
-    return network;
-}
-
-bool transfer_study_run(const Dataset *const data[TRANSFER_SCENES], const TransferStudy *study, TransferRow *row,
-                        const Progress *progress, Error *error) {
-    enum { PYRAMID = TRANSFER_SCENES - 1 };
-    Dataset *drawn = dataset_draw_subset(data[PYRAMID], study->launches, study->seed, error);
-    if (drawn == NULL) return false;
-    const Dataset *const stages[TRANSFER_SCENES] = {data[0], data[1], drawn};
-    const int first = study->transfer ? 0 : PYRAMID;
-    Network *network = train_stages(stages + first, TRANSFER_SCENES - first, study, progress, error);
-    *row = (TransferRow){study->transfer, (double)study->seed, study->launches, NAN, NAN};
-    const bool ok = network != NULL && paper_scores_score(drawn, network, row, error);
+    ok = ok && score_transfer(drawn, network, row, error);
     network_destroy(network);
     dataset_destroy(drawn);
     return ok;
@@ -124,17 +110,11 @@ enum { SOLVERS = sizeof solvers / sizeof *solvers };
 /* One scene's study in progress. */
 typedef struct Scores {
     const PaperPlan *plan;
-    int scene;
     Launched launched;
     PairRates *rates;   /* [network_count + 1]; the last is the warm start's */
     RunLog *converged;  /* [launches] */
     ClosedLoop *closed; /* [network_count + SOLVERS] */
 } Scores;
-
-/* A network of single impulses with inputs by contact would need impulses at points: it cannot take a step. */
-static bool takes_steps(const PaperNetwork *network) {
-    return network->target != TARGET_IMPULSE || !pair_views[network->view].by_contact;
-}
 
 static bool sample_launch(void *context, int i, Error *error) {
     Scores *scores = context;
@@ -152,30 +132,26 @@ static bool rate_network(void *context, int i, Error *error) {
                               scores->launched.count, &plan->size->sampling, &scores->rates[i], error);
 }
 
-static bool write_rates(const Scores *scores, int network, FILE *lines, Error *error) {
-    const PaperPlan *plan = scores->plan;
-    RateRow row = {.network = network < plan->network_count ? plan->networks[network].name : "warm-start",
-                   .scene = scores->scene};
-    for (int i = 0; i < scores->launched.count; i++) row.unconverged += scores->launched.states[i].unconverged;
-    for (row.definition = 0; row.definition < RATE_DEFINITIONS; row.definition++)
-        for (row.phase = 0; row.phase < RATE_PHASES; row.phase++) {
-            memcpy(row.share, scores->rates[network].share[row.definition][row.phase], sizeof row.share);
-            if (!piece_tables_print(lines, &paper_rate_layout, -1, &row, error)) return false;
-        }
-    return true;
-}
-
 bool paper_rates_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
-    Scores scores = {.plan = plan, .scene = part->index};
+    Scores scores = {.plan = plan};
+    const Launched *launched = &scores.launched;
     const int networks = plan->network_count;
-    if (!launched_begin(&scores.launched, plan->datasets.scenes[scores.scene], plan->size->rate_launches, error))
+    if (!launched_begin(&scores.launched, plan->datasets.scenes[part->index], plan->size->rate_launches, error))
         return false;
     scores.rates = calloc((size_t)networks + 1, sizeof *scores.rates);
     const ParallelWork sampling = {sample_launch, &scores}, rating = {rate_network, &scores};
     bool ok = (scores.rates != NULL || error_memory(error, "rates")) &&
-              parallel_for(&sampling, scores.launched.count, "sampled launches", NULL, error) &&
+              parallel_for(&sampling, launched->count, "sampled launches", NULL, error) &&
               parallel_for(&rating, networks + 1, "rated networks", progress, error);
-    for (int i = 0; ok && i <= networks; i++) ok = write_rates(&scores, i, lines, error);
+    for (int i = 0; ok && i <= networks; i++) {
+        RateRow row = {.network = i < networks ? plan->networks[i].name : "warm-start", .scene = part->index};
+        for (int k = 0; k < launched->count; k++) row.unconverged += launched->states[k].unconverged;
+        for (row.definition = 0; ok && row.definition < RATE_DEFINITIONS; row.definition++)
+            for (row.phase = 0; ok && row.phase < RATE_PHASES; row.phase++) {
+                memcpy(row.share, scores.rates[i].share[row.definition][row.phase], sizeof row.share);
+                ok = piece_tables_print(lines, &paper_rate_layout, -1, &row, error);
+            }
+    }
     free(scores.rates);
     launched_free(&scores.launched);
     return ok;
@@ -189,13 +165,13 @@ static bool method_of(const PaperPlan *plan, int i, Method *method, Error *error
     return paper_network_path(plan, i, path, error) && method_with_network(method, name, path, error);
 }
 
+static bool is_closed(const PaperPlan *plan, int i) {
+    return i >= plan->network_count || network_takes_steps(plan->networks[i].target, plan->networks[i].view);
+}
+
 static bool log_launch(void *context, int i, Error *error) {
     Scores *scores = context;
     return closed_loop_log_converged(&scores->converged[i], &scores->launched.launches[i], error);
-}
-
-static bool is_closed(const PaperPlan *plan, int i) {
-    return i >= plan->network_count || takes_steps(&plan->networks[i]);
 }
 
 static bool close_method(void *context, int i, Error *error) {
@@ -207,35 +183,10 @@ static bool close_method(void *context, int i, Error *error) {
            closed_loop_run(&method, launched->launches, scores->converged, launched->count, &scores->closed[i], error);
 }
 
-static bool time_method(const Scores *scores, int i, FILE *lines, Error *error) {
-    const PaperPlan *plan = scores->plan;
-    const ClosedLoop *closed = &scores->closed[i];
-    ClosedLoopRow row = {.network = i < plan->network_count ? plan->networks[i].name : solvers[i - plan->network_count],
-                         .scene = scores->scene,
-                         .frames_until_apart = closed->frames_until_apart,
-                         .penetration_max = closed->penetration_max,
-                         .momentum_error = closed->momentum_error,
-                         .energy_ratio = closed->energy_ratio,
-                         .unconverged = closed->unconverged};
-    Method method;
-    return method_of(plan, i, &method, error) &&
-           closed_loop_time(&method, &scores->launched.states[0], plan->size->repetitions, &row.us_step,
-                            &row.us_step_engine, error) &&
-           piece_tables_print(lines, &paper_closed_loop_layout, -1, &row, error);
-}
-
-/* One after the other. */
-static bool time_methods(const Scores *scores, FILE *lines, Error *error) {
-    bool ok = true;
-    for (int i = 0; ok && i < scores->plan->network_count + SOLVERS; i++)
-        if (is_closed(scores->plan, i)) ok = time_method(scores, i, lines, error);
-    return ok;
-}
-
 bool paper_closed_loop_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress,
                              Error *error) {
-    Scores scores = {.plan = plan, .scene = part->index};
-    if (!launched_begin(&scores.launched, plan->datasets.scenes[scores.scene], plan->size->closed_launches, error))
+    Scores scores = {.plan = plan};
+    if (!launched_begin(&scores.launched, plan->datasets.scenes[part->index], plan->size->closed_launches, error))
         return false;
     const int methods = plan->network_count + SOLVERS, launches = scores.launched.count;
     scores.closed = calloc((size_t)methods, sizeof *scores.closed);
@@ -244,7 +195,25 @@ bool paper_closed_loop_write(PaperPlan *plan, const PaperPart *part, FILE *lines
     bool ok = ((scores.closed != NULL && scores.converged != NULL) || error_memory(error, "closed loop")) &&
               parallel_for(&logging, launches, "converged runs", NULL, error) &&
               parallel_for(&closing, methods, "networks in closed loop", progress, error) &&
-              sample_launch(&scores, 0, error) && time_methods(&scores, lines, error);
+              sample_launch(&scores, 0, error);
+    /* Times are taken one after the other. */
+    for (int i = 0; ok && i < methods; i++) {
+        if (!is_closed(plan, i)) continue;
+        const ClosedLoop *closed = &scores.closed[i];
+        ClosedLoopRow row = {.network =
+                                 i < plan->network_count ? plan->networks[i].name : solvers[i - plan->network_count],
+                             .scene = part->index,
+                             .frames_until_apart = closed->frames_until_apart,
+                             .penetration_max = closed->penetration_max,
+                             .momentum_error = closed->momentum_error,
+                             .energy_ratio = closed->energy_ratio,
+                             .unconverged = closed->unconverged};
+        Method method;
+        ok = method_of(plan, i, &method, error) &&
+             closed_loop_time(&method, &scores.launched.states[0], plan->size->repetitions, &row.us_step,
+                              &row.us_step_engine, error) &&
+             piece_tables_print(lines, &paper_closed_loop_layout, -1, &row, error);
+    }
     for (int i = 0; scores.converged != NULL && i < launches; i++) run_log_free(&scores.converged[i]);
     free(scores.converged);
     free(scores.closed);

@@ -9,7 +9,6 @@
 #include "learning/pair_training.h"
 #include "methods/pair.h"
 #include "nets/nets.h"
-#include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "studies/piece_tables.h"
 
@@ -18,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const paper_data_names[PAPER_DATA] = {
+static const char *const data_names[PAPER_DATA] = {
     "swept", "random", "mixed", "swept finely", "swept most finely", "swept as in the paper"};
 
 #define SEARCHED(form) \
@@ -126,51 +125,82 @@ PaperNetwork paper_network(int i) {
     return network;
 }
 
-/* The hidden widths of "10-8-8-2": "-8-8-"; the last one follows. */
-static size_t hidden_widths(const char *layers, const char **begin) {
-    *begin = layers + strcspn(layers, "-");
-    return (size_t)(strrchr(layers, '-') + 1 - *begin);
-}
-
-int paper_network_factors(const PaperNetwork *a, const PaperNetwork *b, char names[PAPER_FACTORS_SIZE]) {
-    const char *hidden_a, *hidden_b;
-    const size_t length_a = hidden_widths(a->layers, &hidden_a), length_b = hidden_widths(b->layers, &hidden_b);
-    const struct {
-        const char *name;
-        bool differs;
-    } factors[] = {{"data", a->data != b->data},
-                   {"labels", a->labels != b->labels},
-                   {"inputs", a->view != b->view},
-                   {"target", a->target != b->target},
-                   {"outputs", strcmp(hidden_a + length_a, hidden_b + length_b) != 0},
-                   {"layers", length_a != length_b || strncmp(hidden_a, hidden_b, length_a) != 0},
-                   {"hidden", strcmp(a->hidden, b->hidden) != 0},
-                   {"scaling", strcmp(a->output, b->output) != 0 || strcmp(a->scale, b->scale) != 0},
-                   {"optimizer", strcmp(a->optimizer, b->optimizer) != 0},
-                   {"loss", strcmp(a->loss, b->loss) != 0},
-                   {"iterations", a->iterations != b->iterations}};
-    int count = 0;
-    names[0] = '\0';
-    for (size_t i = 0; i < sizeof factors / sizeof *factors; i++) {
-        if (!factors[i].differs) continue;
-        strcat(strcat(names, factors[i].name), " ");
-        count++;
+bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error) {
+    const double near_share = 0.05; /* of the outputs' range */
+    const int outputs = network->widths[network->layers], inputs = network->widths[0];
+    double near[PAIR_CHANGES];
+    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[PAIR_CHANGES];
+    if (scratch == NULL) return error_memory(error, "paper");
+    for (int k = 0; k < outputs; k++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int64_t row = 0; row < dataset->rows; row++) {
+            if (dataset_is_test(dataset, row)) continue;
+            least = fmin(least, (double)dataset_target(dataset, row, outputs, k));
+            most = fmax(most, (double)dataset_target(dataset, row, outputs, k));
+        }
+        near[k] = near_share * (most - least);
     }
-    return count;
+    int64_t rows = 0, right = 0;
+    for (int64_t row = 0; row < dataset->rows; row++) {
+        if (!dataset_is_test(dataset, row)) continue;
+        network_predict(network, dataset->inputs + row * inputs, scratch, output);
+        bool is_right = true;
+        for (int k = 0; k < outputs; k++)
+            is_right &= fabs((double)output[k] - (double)dataset_target(dataset, row, outputs, k)) <= near[k];
+        right += is_right;
+        rows++;
+    }
+    free(scratch);
+    *accuracy = rows > 0 ? (double)right / (double)rows : NAN;
+    return true;
 }
 
-static const double near_share = 0.05; /* of the outputs' range */
+typedef struct Watch {
+    const Progress *progress;
+    bool stopped;
+} Watch;
+
+static bool watch_training(void *context, double done, double total) {
+    Watch *watch = context;
+    if (!progress_report(watch->progress, done, total)) watch->stopped = true;
+    return !watch->stopped;
+}
+
+Network *whole_training(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
+                        Error *error) {
+    Watch watch = {.progress = progress};
+    const Progress watched = {watch_training, &watch};
+    Network *network = training_run(dataset, options, &watched, error);
+    if (network == NULL || !watch.stopped) return network;
+    network_destroy(network);
+    return error_interrupted(error, "training", "stopped"), NULL;
+}
+
+bool paper_network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE], Error *error) {
+    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", plan->networks_folder, plan->networks[i].name);
+}
 
 enum { NOTE_SIZE = 64, NETWORK_MAX_SIZE = 1 << 26 };
 
-/* text: "10-10-2". */
-static void read_layers(const char *text, TrainingOptions *options) {
-    int count = 0;
-    for (char *rest = (char *)text; *rest != '\0';) {
-        options->widths[count++] = (int)strtol(rest, &rest, 10);
-        if (*rest == '-') rest++;
-    }
-    options->layers = count - 1;
+/* The note that tells a network from one of the same name. */
+static bool print_note(char note[NOTE_SIZE], const char *path, Error *error) {
+    size_t size;
+    char *data = file_read(path, NETWORK_MAX_SIZE, &size, error);
+    if (data == NULL) return false;
+    snprintf(note, NOTE_SIZE, "# network %016" PRIx64 "\n", hash_xxh3(data, size));
+    free(data);
+    return true;
+}
+
+bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error) {
+    char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
+    Error reason = {0};
+    *there = false;
+    if (!paper_network_path(plan, part->index, path, error)) return false;
+    if (print_note(note, path, &reason)) *there = strstr(lines, note) != NULL;
+    if (reason.kind == ERROR_NONE || reason.kind == ERROR_INPUT) return true;
+    *error = reason;
+    return false;
 }
 
 /* Writes the scores of a training. */
@@ -196,46 +226,19 @@ static void write_score(void *context, const TrainingScore *score) {
     writer->ok = writer->ok && piece_tables_print(writer->lines, &paper_score_layout, -1, &row, writer->error);
 }
 
-static void find_ranges(const Dataset *dataset, int outputs, double range[PAIR_CHANGES]) {
-    for (int k = 0; k < outputs; k++) {
-        double least = INFINITY, most = -INFINITY;
-        for (int64_t row = 0; row < dataset->rows; row++) {
-            if (dataset_is_test(dataset, row)) continue;
-            least = fmin(least, (double)dataset_target(dataset, row, outputs, k));
-            most = fmax(most, (double)dataset_target(dataset, row, outputs, k));
-        }
-        range[k] = most - least;
-    }
-}
-
-bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error) {
-    const int outputs = network->widths[network->layers], inputs = network->widths[0];
-    double range[PAIR_CHANGES];
-    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[PAIR_CHANGES];
-    if (scratch == NULL) return error_memory(error, "paper");
-    find_ranges(dataset, outputs, range);
-    int64_t rows = 0, right = 0;
-    for (int64_t row = 0; row < dataset->rows; row++) {
-        if (!dataset_is_test(dataset, row)) continue;
-        network_predict(network, dataset->inputs + row * inputs, scratch, output);
-        bool near = true;
-        for (int k = 0; k < outputs; k++)
-            near &= fabs((double)output[k] - (double)dataset_target(dataset, row, outputs, k)) <= near_share * range[k];
-        right += near;
-        rows++;
-    }
-    free(scratch);
-    *accuracy = rows > 0 ? (double)right / (double)rows : NAN;
-    return true;
-}
-
-static bool write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
-                          double accuracy, Error *error) {
+static bool score_and_store(const PaperPlan *plan, const PaperPart *part, const Dataset *dataset, Network *network,
+                            int iterations, FILE *lines, Error *error) {
+    const PaperNetwork *of = &plan->networks[part->index];
+    TrainingScore score = {0}; /* of the weights that are kept, which are not the last ones */
+    double accuracy;
+    if (!training_score(dataset, network, of->loss, &score, error) ||
+        !paper_accuracy(network, dataset, &accuracy, error))
+        return false;
     const TrainedRow row = {.network = of->name,
                             .factor = of->factor,
                             .value = of->value,
                             .inputs = pair_views[of->view].name,
-                            .data = paper_data_names[of->data],
+                            .data = data_names[of->data],
                             .labels = dataset_label_names[of->labels],
                             .target = (int)of->target,
                             .layers = of->layers,
@@ -244,46 +247,17 @@ static bool write_network(FILE *lines, const PaperNetwork *of, const Network *ne
                             .scale = of->scale,
                             .optimizer = of->optimizer,
                             .loss = of->loss,
-                            .iterations = score->iteration,
+                            .iterations = iterations,
                             .parameters = network_parameter_count(network),
-                            .test = score->test,
-                            .train = score->train,
-                            .constant = score->constant_test,
-                            .ratio = score->test / score->constant_test,
+                            .test = score.test,
+                            .train = score.train,
+                            .constant = score.constant_test,
+                            .ratio = score.test / score.constant_test,
                             .accuracy = accuracy};
-    return piece_tables_print(lines, &paper_trained_layout, -1, &row, error);
-}
-
-bool paper_network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE], Error *error) {
-    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", plan->networks_folder, plan->networks[i].name);
-}
-
-/* The note that tells a network from one of the same name. */
-static bool print_note(char note[NOTE_SIZE], const char *path, Error *error) {
-    size_t size;
-    char *data = file_read(path, NETWORK_MAX_SIZE, &size, error);
-    if (data == NULL) return false;
-    snprintf(note, NOTE_SIZE, "# network %016" PRIx64 "\n", hash_xxh3(data, size));
-    free(data);
-    return true;
-}
-
-bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error) {
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
-    Error reason = {0};
-    *there = false;
-    if (!paper_network_path(plan, part->index, path, error)) return false;
-    if (print_note(note, path, &reason)) *there = strstr(lines, note) != NULL;
-    if (reason.kind == ERROR_NONE || reason.kind == ERROR_INPUT) return true;
-    *error = reason;
-    return false;
-}
-
-static bool paper_training_store(const PaperPlan *plan, const PaperPart *part, Network *network, FILE *lines,
-                                 Error *error) {
-    char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
-    snprintf(network->command, sizeof network->command, "twinbox paper: %s", plan->networks[part->index].name);
-    if (!paper_network_path(plan, part->index, path, error) || !network_write(network, path, error) ||
+    snprintf(network->command, sizeof network->command, "twinbox paper: %s", of->name);
+    if (!piece_tables_print(lines, &paper_trained_layout, -1, &row, error) ||
+        !paper_network_path(plan, part->index, path, error) || !network_write(network, path, error) ||
         !print_note(note, path, error))
         return false;
     fputs(note, lines);
@@ -295,7 +269,8 @@ bool paper_training_write(PaperPlan *plan, const PaperPart *part, FILE *lines, c
     const Dataset *dataset = paper_dataset(&plan->datasets, of, error);
     if (dataset == NULL) return false;
     ScoreWriter writer = {lines, of, {0}, true, error};
-    TrainingOptions options = {.optimizer = of->optimizer,
+    TrainingOptions options = {.layers = -1,
+                               .optimizer = of->optimizer,
                                .iterations = of->iterations,
                                .seed = plan->datasets.seed,
                                .hidden = of->hidden,
@@ -304,18 +279,12 @@ bool paper_training_write(PaperPlan *plan, const PaperPart *part, FILE *lines, c
                                .loss = of->loss,
                                .on_score = write_score,
                                .context = &writer};
-    read_layers(of->layers, &options);
+    /* "10-10-2" */
+    for (char *rest = (char *)of->layers; *rest != '\0'; rest += *rest == '-')
+        options.widths[++options.layers] = (int)strtol(rest, &rest, 10);
     Network *network = whole_training(dataset, &options, progress, error);
     if (network == NULL) return false;
-    /* The score of the weights that are kept, which are not the last ones. */
-    TrainingScore score = {.iteration = writer.last.iteration};
-    const int iterations = score.iteration;
-    bool ok = writer.ok && training_score(dataset, network, of->loss, &score, error);
-    score.iteration = iterations;
-    double accuracy = NAN;
-    ok = ok && paper_accuracy(network, dataset, &accuracy, error) &&
-         write_network(lines, of, network, &score, accuracy, error) &&
-         paper_training_store(plan, part, network, lines, error);
+    const bool ok = writer.ok && score_and_store(plan, part, dataset, network, writer.last.iteration, lines, error);
     network_destroy(network);
     return ok;
 }

@@ -7,8 +7,7 @@
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
-#include "paper/paper.h"
-#include "paper/paper_internal.h"
+#include "paper/paper_tables.h"
 #include "scenes/scenes.h"
 
 #include <stddef.h>

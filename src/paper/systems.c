@@ -4,7 +4,6 @@
 #include "base/csv.h"
 #include "base/machine.h"
 #include "methods/methods.h"
-#include "paper/paper.h"
 #include "paper/paper_internal.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"

@@ -2,8 +2,7 @@
 /* CSV files: launches, the tables of charts and studies, runs. */
 #include "fuzz.h"
 
-#include "paper/paper.h"
-#include "paper/paper_internal.h"
+#include "paper/paper_tables.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 #include "studies/chart_table.h"
