@@ -3,7 +3,6 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cli/draw_panels.h"
 #include "cli/json_output.h"
 #include "cli/larger_commands.h"
 #include "cli/notes.h"
@@ -180,7 +179,7 @@ static void print_lists(FILE *out, const Scene *scene) {
 }
 
 static bool check_draw(const Trajectory *run, const char *path, Error *error) {
-    RenderOptions render = draw_panels_defaults(NULL);
+    RenderOptions render = render_defaults(NULL);
     render.look.show = LOOK_APPROACH;
     render.width = WIDTH;
     render.height = HEIGHT;

@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/common_options.h"
-#include "cli/draw_panels.h"
 #include "cli/notes.h"
 #include "cli/options.h"
 #include "cli/output_checks.h"
@@ -86,7 +85,7 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
                           .live = live,
                           .title = options->title,
                           .colours = options->colours,
-                          .describe = draw_panels_defaults(NULL).describe};
+                          .describe = render_defaults(NULL).describe};
     PlayerResult result;
     if (options->caption_count > panels->count)
         return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,

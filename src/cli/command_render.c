@@ -1,36 +1,47 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox render: frames and films of runs or scenes. */
 #include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "base/numbers.h"
 #include "cli/cli.h"
 #include "cli/common_options.h"
-#include "cli/draw_panels.h"
 #include "cli/notes.h"
 #include "cli/options.h"
 #include "cli/output_checks.h"
 #include "cli/panels.h"
+#include "cli/progress_bar.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pixels/gl.h"
-#include "runs/pieces.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
+#include "studies/chart_table.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <limits.h>
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { VIDEOS_MAX = 8 };
 
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX];
     int input_count, caption_count;
     RenderOptions render;
     FrameRange frames;
-    DrawVideos videos;
+    const char *videos[VIDEOS_MAX]; /* "-": y4m on standard output */
+    int video_count;
     SceneSettings set;
     PanelMethods methods;
     const char *costs;     /* FILE.csv, or NULL */
     const char *view_from; /* RUN.npz, or NULL */
-    const char *shard;     /* or NULL */
-    PiecesRun run;
-    PiecesMode mode;
 } Options;
 
 static OptionRead read_size, read_png, read_context, read_camera;
@@ -59,7 +70,7 @@ static const Option option_table[] = {
     {"--video", 0, "FILE",
      "Also encode a video: FILE.mp4 (H.264), .webm (VP9) or .gif; - writes y4m in 4:4:4 and BT.709 to standard output "
      "(may be repeated)",
-     OPTION_TEXTS(Options, videos.paths, videos.count)},
+     OPTION_TEXTS(Options, videos, video_count)},
     {"--resume", 0, NULL, "Redraw only frames that are missing or altered, compared with the manifest in DIR",
      OPTION_FLAG(Options, render.resume)},
     {"--png", 0, "fast|small", "Compression (default: fast); the pixels are the same",
@@ -68,7 +79,6 @@ static const Option option_table[] = {
      OPTION_INT(Options, render.jobs, 1, RENDER_JOBS_MAX)},
     {"--context", 0, "osmesa|egl", "OpenGL without a display (default: the first that works); the frames are the same",
      OPTION_READ(read_context, Options, render.context)},
-    {OPTION_SHARD(Options, shard)},
     {OPTION_METHODS(Options, methods, "default: engine, and pair-net if the scene names one")},
     {OPTION_SET(Options, set)},
     {.help = "Look:"},
@@ -139,22 +149,117 @@ static bool read_png(const Option *option, const char *text, void *value, Error 
            error_input(error, option->name, "'%s' is neither fast nor small", text);
 }
 
-/* Messages go to standard error if standard output is the video. */
-static void print_result(const Options *options, const RenderResult *result) {
-    const RenderOptions *render = &options->render;
-    FILE *out = draw_videos_use_output(&options->videos) ? stderr : stdout;
-    if (render->resume && result->why[0] != '\0') fprintf(out, "nothing to resume: %s\n", result->why);
-    fprintf(out, "%d frames -> %s/frame_%06d.png ... frame_%06d.png", result->last - result->first + 1,
-            render->directory, result->first, result->last);
-    if (render->resume) fprintf(out, ", %d of them kept", result->kept);
-    fprintf(out, "\nmanifest -> %s/manifest.json\n", render->directory);
-    for (int i = 0; i < options->videos.count; i++) fprintf(out, "video -> %s\n", options->videos.paths[i]);
+/* What the steps of a run's method cost: from a chart.csv, the same scene, closed loop, at the impact. */
+
+/* All settings of `some` are in `all` with the same value; a network only has to be if `all` has one. */
+static bool contains(const Settings *all, const Settings *some) {
+    for (int i = 0; i < some->count; i++) {
+        const char *key = some->items[i].key, *value = settings_get(all, key);
+        if (value == NULL ? strcmp(key, "network") != 0 : strcmp(value, some->items[i].value) != 0) return false;
+    }
+    return true;
 }
 
-/* Before anything is written. */
-static bool check_moments(const RenderOptions *render, const Panels *panels, Error *error) {
-    const int end = panels_last_frame(panels), last = render->last < 0 ? end : render->last;
+/* In any order, and whether given or not: "engine" is "engine:k=10" in a scene with 10 iterations. The chart has no
+   setting for the network that the scene names. */
+static bool has_settings(const ChartRow *row, const Trajectory *run) {
+    char text[METHOD_TEXT_SIZE];
+    Settings charted, own;
+    if (snprintf(text, sizeof text, "%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting) >=
+            (int)sizeof text ||
+        !method_all_settings(&charted, text, run->iterations) ||
+        !method_all_settings(&own, run->method, run->iterations))
+        return false;
+    return contains(&charted, &own) && contains(&own, &charted);
+}
+
+/* The row with the settings of the run. A run without settings that does not state its scene's iterations is the only
+   row of its method. NULL if there is no row. */
+static const ChartRow *find_cost(const CsvTable *table, const Trajectory *run) {
+    const size_t length = strcspn(run->method, ":");
+    const ChartRow *found = NULL;
+    int fitting = 0;
+    for (int i = 0; i < table->count; i++) {
+        const ChartRow *row = chart_row(table, i);
+        if (strcmp(row->scene, run->scene) != 0 || row->protocol != PROTOCOL_CLOSED || row->phase != PHASE_IMPACT ||
+            isnan(row->us_solver) || strncmp(row->method, run->method, length) != 0 || row->method[length] != '\0')
+            continue;
+        if (has_settings(row, run)) return row;
+        found = row;
+        fitting++;
+    }
+    return run->method[length] == '\0' && run->iterations == 0 && fitting == 1 ? found : NULL;
+}
+
+typedef struct Costs {
+    char texts[RENDER_PANELS_MAX][64];
+} Costs;
+
+/* A run without a row has no cost; a file without any row for the runs is refused. The look then points into
+   `costs`. */
+static bool read_costs(Costs *costs, const char *path, const Panels *panels, RenderLook *look, Error *error) {
+    CsvTable table;
+    if (!csv_table_read(&table, path, &chart_layout, error)) return false;
+    int found = 0;
+    for (int i = 0; i < panels->count; i++) {
+        const ChartRow *row = find_cost(&table, panels->runs[i]);
+        if (row == NULL) continue;
+        const int decimals = row->us_solver < 1 ? 2 : row->us_solver < 100 ? 1 : 0;
+        snprintf(costs->texts[i], sizeof costs->texts[i], "%.*f \xC2\xB5s a step at the impact", decimals,
+                 row->us_solver);
+        look->costs[i] = costs->texts[i];
+        found++;
+    }
+    csv_table_free(&table);
+    return found > 0 || error_input(error, path, "has no closed-loop time at the impact for any of these runs");
+}
+
+static bool writes_output(const Options *options) {
+    for (int i = 0; i < options->video_count; i++)
+        if (path_is_standard(options->videos[i])) return true;
+    return false;
+}
+
+/* Names, sizes, places and programs, before anything is drawn. */
+static bool check_videos(const Options *options, Error *error) {
+    const int width = options->render.width, height = options->render.height;
+    bool files = false;
+    for (int i = 0; i < options->video_count; i++) {
+        const char *path = options->videos[i];
+        for (int k = 0; k < i; k++)
+            if (strcmp(path, options->videos[k]) == 0) return error_input(error, "--video", "'%s' twice", path);
+        if (!path_is_standard(path)) {
+            if (!video_check(path, width, height, error)) return false;
+            files = true;
+        } else if (isatty(STDOUT_FILENO))
+            return error_input(error, "--video", "'-' writes a video to standard output, which is a terminal");
+    }
+    return !files || video_check_programs(error);
+}
+
+/* Of slow motion around an impact that the pictures do not contain; -1 for none. */
+static void note_missing_impact(const MomentPlan *plan, int impact) {
+    char slow[64] = "nothing is slowed down";
+    if (impact >= plan->first && impact <= plan->last) return;
+    if (plan->slow > 1)
+        snprintf(slow, sizeof slow, "frames %d to %d beside it are slowed down", plan->slow_first, plan->slow_last);
+    if (impact < 0)
+        note_print("--slow: no run has a contact of the bomb with a box; %s", slow);
+    else
+        note_print("--slow: frames %d to %d do not contain the impact, frame %d; %s", plan->first, plan->last, impact,
+                   slow);
+}
+
+/* All that can be refused before anything is written. */
+static bool check_panels(Options *options, const Panels *panels, Costs *costs, Error *error) {
+    RenderOptions *render = &options->render;
     const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
+    if (options->caption_count > panels->count)
+        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
+                           panels->count == 1 ? "" : "s");
+    int end = 0;
+    for (int i = 0; i < panels->count; i++) end = int_max(end, runs[i]->frames - 1);
+    const int last = render->last < 0 ? end : render->last;
     MomentPlan plan;
     if (render->first > end || last > end)
         return error_input(error, "--frames", "%d is beyond the last frame, %d",
@@ -162,7 +267,153 @@ static bool check_moments(const RenderOptions *render, const Panels *panels, Err
     if (!moments_plan(&plan, runs, panels->count, render->first, last, render, error)) return false;
     if (render->slow > 1) note_missing_impact(&plan, moments_impact(runs, panels->count));
     note_different_scenes(runs, panels->count);
-    return true;
+    return (options->costs == NULL || read_costs(costs, options->costs, panels, &render->look, error)) &&
+           picture_check(runs, panels->count, render, error);
+}
+
+static bool make_video(const char *path, const RenderOptions *render, const RenderResult *result, Error *error) {
+    const bool output = path_is_standard(path);
+    const VideoOptions video = {.directory = render->directory,
+                                .first = result->first,
+                                .last = result->last,
+                                .frame_rate = result->rate,
+                                .hashes = result->hashes,
+                                .path = output ? "standard output" : path,
+                                .rate_is_chosen = render->fps > 0};
+    const Progress *progress = progress_bar_begin(output ? "writing" : "encoding");
+    bool ok;
+    if (output) { /* a closed pipe is reported as an error; without this, SIGPIPE would end the program */
+        void (*before)(int) = signal(SIGPIPE, SIG_IGN);
+        ok = video_write_y4m(&video, STDOUT_FILENO, progress, error);
+        signal(SIGPIPE, before);
+    } else
+        ok = video_encode(&video, progress, error);
+    progress_bar_end();
+    return ok;
+}
+
+/* Draws the frames that the options select and encodes the videos; `result` owns no memory afterwards. */
+static bool draw(const Options *options, const Panels *panels, RenderResult *result, Error *error) {
+    const RenderOptions *render = &options->render;
+    const Progress *progress = progress_bar_begin("drawing");
+    note_verbose("drawing %d panel%s, %d x %d pixels, at most %d process%s", panels->count, plural(panels->count),
+                 render->width, render->height, render->jobs, render->jobs == 1 ? "" : "es");
+    bool ok = render_sequence((const Trajectory *const *)panels->runs, panels->count, render, result, progress, error);
+    progress_bar_end();
+    for (int i = 0; ok && i < options->video_count; i++) ok = make_video(options->videos[i], render, result, error);
+    free(result->hashes);
+    result->hashes = NULL;
+    return ok;
+}
+
+/* Messages go to standard error if standard output is the video. */
+static void print_result(const Options *options, const RenderResult *result) {
+    const RenderOptions *render = &options->render;
+    FILE *out = writes_output(options) ? stderr : stdout;
+    if (render->resume && result->why[0] != '\0') fprintf(out, "nothing to resume: %s\n", result->why);
+    fprintf(out, "%d frames -> %s/frame_%06d.png ... frame_%06d.png", result->last - result->first + 1,
+            render->directory, result->first, result->last);
+    if (render->resume) fprintf(out, ", %d of them kept", result->kept);
+    fprintf(out, "\nmanifest -> %s/manifest.json\n", render->directory);
+    for (int i = 0; i < options->video_count; i++) fprintf(out, "video -> %s\n", options->videos[i]);
+}
+
+/* Files in the folder of a sequence that could be mistaken for a part of it. */
+
+/* The number of a frame's file, or -1. */
+static int frame_of(const char *name) {
+    int index = -1;
+    char own[SINK_NAME_SIZE];
+    if (sscanf(name, "frame_%9d.png", &index) != 1 || index < 0) return -1;
+    sink_frame_name(own, index);
+    return strcmp(name, own) == 0 ? index : -1;
+}
+
+static bool is_of_sequence(const char *name, const RenderResult *result, const Panels *panels) {
+    const int frame = frame_of(name);
+    if (frame >= 0) return frame >= result->first && frame <= result->last;
+    for (int i = 0; i < panels->count; i++) {
+        char own[TRAJECTORY_FILE_NAME_SIZE];
+        trajectory_file_name((const Trajectory *const *)panels->runs, i, own);
+        if (strcmp(name, own) == 0) return true;
+    }
+    return false;
+}
+
+/* False with an error if the system fails. */
+static bool look_up(const char *path, struct stat *status, Error *error) {
+    *status = (struct stat){.st_ino = 0};
+    return stat(path, status) == 0 || errno == ENOENT || errno == ENOTDIR || errno == ELOOP || errno == EACCES ||
+           error_system(error, path, "cannot be read: %s", strerror(errno));
+}
+
+/* Whether the file is one of the runs' inputs, by whatever path. False with an error if the system fails. */
+static bool is_input(const char *directory, const char *name, const Panels *panels, Error *error) {
+    char path[PATH_MAX];
+    struct stat file, input;
+    if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path || !look_up(path, &file, error))
+        return false;
+    for (int i = 0; i < panels->count; i++) {
+        if (!look_up(panels->inputs[i], &input, error)) return false;
+        if (input.st_ino != 0 && input.st_dev == file.st_dev && input.st_ino == file.st_ino) return true;
+    }
+    return false;
+}
+
+static bool find_foreign(FolderList *names, const char *directory, const RenderResult *result, const Panels *panels,
+                         Error *error) {
+    DIR *folder = opendir(directory);
+    if (folder == NULL) return folder_error(directory, error);
+    const struct dirent *entry;
+    bool ok = true;
+    while (errno = 0, ok && (entry = readdir(folder)) != NULL) {
+        const char *name = entry->d_name;
+        if (name[0] == '.' || (!file_name_ends_with(name, ".png") && !file_name_ends_with(name, ".npz")) ||
+            is_of_sequence(name, result, panels) || is_input(directory, name, panels, error))
+            continue;
+        ok = error->kind == ERROR_NONE;
+        if (!ok) break;
+        char *copy = strdup(name);
+        ok = copy != NULL &&
+             array_reserve((void **)&names->names, &names->capacity, names->count + 1, sizeof *names->names);
+        if (ok)
+            names->names[names->count++] = copy;
+        else
+            free(copy), error_memory(error, "render");
+    }
+    if (ok && errno != 0) ok = error_system(error, directory, "cannot be read: %s", strerror(errno));
+    closedir(folder);
+    return ok;
+}
+
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+/* Names files that are not of the sequence, and not inputs of it. False if the folder cannot be read. */
+static bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error) {
+    enum { SHOWN = 5 };
+    FolderList list = {0};
+    char text[1024] = "";
+    const bool ok = find_foreign(&list, directory, result, panels, error);
+    if (ok && list.count > 0) {
+        qsort(list.names, list.count, sizeof *list.names, by_name);
+        size_t first = 0;
+        for (int shown = 0; shown < SHOWN && first < list.count; shown++) {
+            /* Frames that follow each other are named by the first and the last. */
+            const int frame = frame_of(list.names[first]);
+            size_t last = first;
+            while (frame >= 0 && last + 1 < list.count &&
+                   frame_of(list.names[last + 1]) == frame + (int)(last + 1 - first))
+                last++;
+            text_add(text, sizeof text, "%s%.100s", shown > 0 ? ", " : "", list.names[first]);
+            if (last > first) text_add(text, sizeof text, "%s%s", last > first + 1 ? " ... " : ", ", list.names[last]);
+            first = last + 1;
+        }
+        if (first < list.count) text_add(text, sizeof text, " and %zu more", list.count - first);
+        note_print("%s also has %zu file%s that %s not of this sequence: %s", directory, list.count,
+                   plural((int)list.count), list.count > 1 ? "are" : "is", text);
+    }
+    folder_list_free(&list);
+    return ok;
 }
 
 /* A figure of the runs that the folder has. */
@@ -182,89 +433,49 @@ static void next_figure(const char *directory, const Panels *panels) {
     next_print(words);
 }
 
-static bool draw_study(Options *options, const Panels *panels, RenderStudy *study, Error *error) {
-    RenderOptions *render = &options->render;
+static bool render_panels(Options *options, const Panels *panels, Error *error) {
+    const char *directory = options->render.directory;
+    Costs costs;
     RenderResult result;
-    if ((options->mode != PIECES_WHOLE && !render_key(study->key, panels, &options->videos, options->costs, error)) ||
-        !draw_panels(panels, render, &options->videos, study, &result, error))
-        return false;
-    if (study->pieces.mode == PIECES_SHARD) {
-        shard_option_print(&study->pieces, render->directory);
-        return true;
-    }
+    if (!check_panels(options, panels, &costs, error) || !draw(options, panels, &result, error)) return false;
     print_result(options, &result);
-    if (!note_foreign_files(render->directory, &result, panels, error)) return false;
-    if (!draw_videos_use_output(&options->videos)) next_figure(render->directory, panels);
+    if (!note_foreign_files(directory, &result, panels, error)) return false;
+    if (!writes_output(options)) next_figure(directory, panels);
     return true;
 }
 
-static bool render_panels(Options *options, const Panels *panels, Error *error) {
-    RenderOptions *render = &options->render;
-    const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
-    PanelCosts costs;
-    StudyKey key = {0};
-    RunsPlace place = {panels, render->directory};
-    RenderStudy study = {.run = &options->run, .key = &key, .begin = render_store_runs, .context = &place};
-    if (options->caption_count > panels->count)
-        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
-                           panels->count == 1 ? "" : "s");
-    const bool ok =
-        check_moments(render, panels, error) &&
-        (options->costs == NULL || panel_costs_read(&costs, options->costs, panels, &render->look, error)) &&
-        picture_check(runs, panels->count, render, error) && draw_study(options, panels, &study, error);
-    study_key_free(&key);
-    return ok;
-}
-
-/* The name of a film after -o would become a folder of frames. */
-static bool check_directory(const char *path, Error *error) {
-    const char *ending = strrchr(path, '.');
+/* What can be refused before a run is read. */
+static bool check_options(const Options *options, Error *error) {
+    const RenderOptions *render = &options->render;
+    const char *path = render->directory, *ending = strrchr(path, '.');
+    /* The name of a film after -o would become a folder of frames. */
     if (video_check_format(path, 2, 2, &(Error){0}))
         return error_input(error, path, "-o names the folder of the frames; for a film: -o %.*s --video %s",
                            (int)(ending - path), path, path);
-    return output_check_folder_name(path, error);
-}
-
-/* How the command is to run. The merge reads the inputs of shards once more. */
-static bool choose_mode(Options *options, int argc, char **argv, Error *error) {
-    if (!shard_option_take(&options->run, options->shard, argc, argv, error) ||
-        !pieces_find_mode(&options->mode, options->render.directory, &options->run, error))
+    if (!output_check_folder_name(path, error) || !colours_check(&render->colours, error) ||
+        !caption_check(render->title, "--title", error) || !caption_check(render->look.end, "--end", error))
         return false;
-    bool ok = true;
-    for (int i = 0; ok && options->mode == PIECES_SHARD && i < options->input_count; i++)
-        ok = render_check_again(options->inputs[i], error);
-    return ok && (options->mode != PIECES_SHARD || render_check_again(options->view_from, error));
-}
-
-static bool check_texts(const Options *options, Error *error) {
-    bool ok = colours_check(&options->render.colours, error) &&
-              caption_check(options->render.title, "--title", error) &&
-              caption_check(options->render.look.end, "--end", error);
-    for (int i = 0; ok && i < options->caption_count; i++)
-        ok = caption_check(options->render.captions[i], "--caption", error);
-    return ok;
+    for (int i = 0; i < options->caption_count; i++)
+        if (!caption_check(render->captions[i], "--caption", error)) return false;
+    if (render->look.end_bare && render->look.end == NULL)
+        return error_input(error, "--no-table", "needs --end TEXT: only that card has a table");
+    return true;
 }
 
 bool command_render(int argc, char **argv, Error *error) {
-    Options options = {.render = draw_panels_defaults(NULL), .frames = {0, -1}};
-    if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!check_directory(options.render.directory, error) || !check_texts(&options, error) ||
-        !choose_mode(&options, argc, argv, error))
-        return false;
-    options.render.first = options.frames.first;
-    options.render.last = options.frames.last;
-    options.render.title_card = options.render.title != NULL;
-    if (options.render.look.end_bare && options.render.look.end == NULL)
-        return error_input(error, "--no-table", "needs --end TEXT: only that card has a table");
-    options.render.end_card = options.render.look.end != NULL;
+    Options options = {.render = render_defaults(NULL), .frames = {0, -1}};
+    RenderOptions *render = &options.render;
+    if (!options_parse(&spec, argc, argv, &options, error) || !check_options(&options, error)) return false;
+    render->first = options.frames.first;
+    render->last = options.frames.last;
+    render->title_card = render->title != NULL;
+    render->end_card = render->look.end != NULL;
+    render->store_runs = true;
     Panels panels = {0};
-    RenderLook *look = &options.render.look;
     Trajectory *view_from;
-    bool ok = camera_option_load(options.view_from, &look->view, &view_from, error);
-    look->view_from = view_from;
-    ok = ok &&
-         draw_videos_check(&options.videos, options.render.width, options.render.height, options.mode == PIECES_SHARD,
-                           error) &&
+    bool ok = camera_option_load(options.view_from, &render->look.view, &view_from, error);
+    render->look.view_from = view_from;
+    ok = ok && check_videos(&options, error) &&
          panels_load(&panels, options.inputs, options.input_count, &options.set, &options.methods, error) &&
          render_panels(&options, &panels, error);
     panels_free(&panels);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runs in a picture, and what their steps cost. */
+/* The runs in a picture. */
 #include "base/base.h"
-#include "base/csv.h"
 #include "base/file.h"
 #include "base/machine.h"
 #include "cli/larger_commands.h"
@@ -13,10 +12,10 @@
 #include "pixels/type.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
-#include "studies/chart_table.h"
 
-#include <math.h>
+#include <inttypes.h>
 #include <string.h>
+#include <unistd.h>
 
 int panels_last_frame(const Panels *panels) {
     int frames = 0;
@@ -25,65 +24,17 @@ int panels_last_frame(const Panels *panels) {
     return frames - 1;
 }
 
-static bool is_of(const ChartRow *row, const Trajectory *run) {
-    size_t length = strcspn(run->method, ":");
-    return strncmp(row->method, run->method, length) == 0 && row->method[length] == '\0';
-}
-
-/* All settings of `some` are in `all` with the same value; a network only has to be if `all` has one. */
-static bool contains(const Settings *all, const Settings *some) {
-    for (int i = 0; i < some->count; i++) {
-        const char *key = some->items[i].key, *value = settings_get(all, key);
-        if (value == NULL ? strcmp(key, "network") != 0 : strcmp(value, some->items[i].value) != 0) return false;
-    }
-    return true;
-}
-
-/* In any order, and whether given or not: "engine" is "engine:k=10" in a scene with 10 iterations. The chart has no
-   setting for the network that the scene names. */
-static bool has_settings(const ChartRow *row, const Trajectory *run) {
-    char text[METHOD_TEXT_SIZE];
-    Settings charted, own;
-    if (snprintf(text, sizeof text, "%s%s%s", row->method, row->setting[0] != '\0' ? ":" : "", row->setting) >=
-            (int)sizeof text ||
-        !method_all_settings(&charted, text, run->iterations) ||
-        !method_all_settings(&own, run->method, run->iterations))
-        return false;
-    return contains(&charted, &own) && contains(&own, &charted);
-}
-
-/* The row with the settings of the run. A run without settings that does not state its scene's iterations is the only
-   row of its method. NULL if there is no row. */
-static const ChartRow *find_cost(const CsvTable *table, const Trajectory *run) {
-    const ChartRow *found = NULL;
-    int fitting = 0;
-    for (int i = 0; i < table->count; i++) {
-        const ChartRow *row = chart_row(table, i);
-        if (strcmp(row->scene, run->scene) != 0 || row->protocol != PROTOCOL_CLOSED || row->phase != PHASE_IMPACT ||
-            isnan(row->us_solver) || !is_of(row, run))
-            continue;
-        if (has_settings(row, run)) return row;
-        found = row;
-        fitting++;
-    }
-    return strchr(run->method, ':') == NULL && run->iterations == 0 && fitting == 1 ? found : NULL;
-}
-
-bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels, RenderLook *look, Error *error) {
-    CsvTable table;
-    if (!csv_table_read(&table, path, &chart_layout, error)) return false;
-    int found = 0;
-    for (int i = 0; i < panels->count; i++) {
-        const ChartRow *row = find_cost(&table, panels->runs[i]);
-        if (row == NULL) continue;
-        const int decimals = row->us_solver < 1 ? 2 : row->us_solver < 100 ? 1 : 0;
-        snprintf(costs->texts[i], sizeof costs->texts[i], "%.*f \xC2\xB5s a step at the impact", decimals,
-                 row->us_solver);
-        look->costs[i] = costs->texts[i];
-        found++;
-    }
-    csv_table_free(&table);
-    return found > 0 || error_input(error, path, "has no closed-loop time at the impact for any of these runs");
+RenderOptions render_defaults(const char *directory) {
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    return (RenderOptions){.width = 1920,
+                           .height = 1080,
+                           .first = 0,
+                           .last = -1,
+                           .jobs = cores < 1                 ? 1
+                                   : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX
+                                                             : (int)cores,
+                           .directory = directory,
+                           .describe = method_describe};
 }
 
 static bool panels_add(Panels *panels, Trajectory *run, const char *input, Error *error) {
@@ -180,13 +131,19 @@ void panels_free(Panels *panels) {
     panels->count = 0;
 }
 
-bool panels_store(const Panels *panels, const char *directory, Error *error) {
-    for (int i = 0; i < panels->count; i++) {
-        char name[TRAJECTORY_FILE_NAME_SIZE], path[4096];
-        trajectory_file_name((const Trajectory *const *)panels->runs, i, name);
-        if (!file_path(path, sizeof path, error, "%s/%s", directory, name) ||
-            !trajectory_write(panels->runs[i], path, error))
-            return false;
+void note_different_scenes(const Trajectory *const *runs, int count) {
+    for (int i = 1; i < count; i++) {
+        const Trajectory *a = runs[0], *b = runs[i];
+        const bool named = strcmp(a->scene, b->scene) == 0;
+        if (a->scene_hash == 0 || b->scene_hash == 0 || (named && a->scene_hash == b->scene_hash)) continue;
+        if (!named)
+            note_print("the runs are of different scenes: %s (by %s) and %s (by %s)", a->scene, a->method, b->scene,
+                       b->method);
+        else
+            note_print(
+                "the runs of %s by %s and by %s are of different scenes: their launches, settings or files differ "
+                "(scene_hash %016" PRIx64 " and %016" PRIx64 ")",
+                a->scene, a->method, b->method, a->scene_hash, b->scene_hash);
+        return;
     }
-    return true;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runs in a picture, and what their steps cost. Runs are read from .npz, or simulated from a scene, by the
-   engine and pair-net unless methods are given. */
+/* The runs in a picture. Runs are read from .npz, or simulated from a scene, by the engine and pair-net unless methods
+   are given. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -53,18 +53,8 @@ bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name,
 bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_name, const char *input,
                         const Progress *progress, Error *error);
 
-/* Writes each run into the directory, under its trajectory_file_name(). */
-bool panels_store(const Panels *panels, const char *directory, Error *error);
+/* 1920 x 1080, all frames, one process per core, the descriptions of all methods. */
+RenderOptions render_defaults(const char *directory);
 
-/* The time per step of each panel's method, for the captions. */
-
-typedef struct PanelCosts {
-    char texts[RENDER_PANELS_MAX][64];
-} PanelCosts;
-
-/* Reads the costs of the panels from a chart.csv: the same scene, closed loop, at the impact. A run without a row has
-   no cost; a file without any row for the runs is refused. The look then points into `costs`. */
-bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels, RenderLook *look, Error *error);
-
-/* The last frame of the longest panel. */
-int panels_last_frame(const Panels *panels);
+/* A note if the runs are of different scenes. A run without a scene_hash is of an unknown scene, and not compared. */
+void note_different_scenes(const Trajectory *const *runs, int count);

@@ -163,6 +163,7 @@ typedef struct RenderOptions {
     double duration;           /* s, of the whole film: the run is shown faster or slower; 0: real time */
     bool title_card, end_card; /* before and after the run */
     bool resume;               /* keep the frames that an earlier, equal call has written */
+    bool store_runs;           /* beside the frames, each as its trajectory_file_name() */
 } RenderOptions;
 
 /* The layout of a picture of a given size. */

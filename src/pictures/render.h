@@ -7,7 +7,6 @@
 #include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"
-#include "runs/pieces.h"
 #include "runs/trajectory.h"
 
 #include <stdint.h>
@@ -17,25 +16,14 @@ typedef struct PictureHashes {
     uint64_t pixels, file;
 } PictureHashes;
 
-/* Result of render_study(). */
+/* Result of render_sequence(). */
 typedef struct RenderResult {
     int first, last;       /* indices of the files */
-    bool all;              /* the whole run was drawn */
     double rate;           /* pictures per second of the film */
     int kept;              /* of these, unchanged from an earlier call */
     char why[256];         /* options->resume: why nothing could be kept; otherwise empty */
     PictureHashes *hashes; /* [last - first + 1]; freed by the caller */
 } RenderResult;
-
-/* A sequence that shards may draw (runs/pieces.h). */
-typedef struct RenderStudy {
-    const PiecesRun *run;
-    StudyKey *key; /* of the inputs of a shard or a merge; what the manifest says of the pictures is added */
-    /* Called when the folder is reserved, before anything is written there; not for a shard. */
-    bool (*begin)(void *context, Error *error);
-    void *context;
-    Pieces pieces; /* set: what was done; it has no plan */
-} RenderStudy;
 
 /* Writes directory/frame_000000.png, ...: the moments of the longest of 1 to 6 runs, or of the selected
    frames, numbered from the first one; a shorter run shows its last frame. Without slow motion, hold and cards, file
@@ -44,13 +32,9 @@ typedef struct RenderStudy {
    error is "stopped" (ERROR_INTERRUPTED). `result` may be NULL.
    If that is the whole run, frames of an earlier sequence that would remain beside these are removed.
    options->resume keeps the pictures of an earlier call, even one that was killed, whose files are unchanged, and
-   draws all others. If that call had other runs or options or was another version, it draws all.
-
-   study NULL: the sequence as a whole; otherwise also as a shard or as a merge. A piece is a range of consecutive
-   pictures. A shard writes the frames of its pieces and nothing else beside them, and *result has no hashes. A merge
-   takes the frames as the shards left them; a range of which a frame is missing or altered is missing. */
-bool render_study(const Trajectory *const *panels, int panel_count, const RenderOptions *options, RenderStudy *study,
-                  RenderResult *result, const Progress *progress, Error *error);
+   draws all others. If that call had other runs or options or was another version, it draws all. */
+bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
+                     RenderResult *result, const Progress *progress, Error *error);
 
 typedef struct Renderer Renderer;
 

@@ -65,7 +65,7 @@ void manifest_recall(Manifest *manifest, char *why, size_t size);
 bool manifest_check(const Manifest *manifest, Error *error);
 
 /* Starts the journal with the known pictures and removes a manifest of other pictures; if the sequence is a whole run,
-   also the frames of an earlier one that would remain. Errors of manifest_check(), too. */
+   also the frames of an earlier one that would remain. */
 bool manifest_begin(Manifest *manifest, bool whole, Error *error);
 
 /* Records a finished picture; without a journal, in memory alone. */

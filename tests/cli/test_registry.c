@@ -6,7 +6,7 @@
 #include "owned_drawings.h"
 
 #include "cli/cli.h"
-#include "cli/draw_panels.h"
+#include "cli/panels.h"
 #include "methods/methods.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
@@ -119,7 +119,7 @@ TEST(its_fallbacks_are_counted) {
 TEST(a_picture_has_its_caption) {
     OWN(Picture) picture;
     OWN(Trajectory) *run = run_make("of-test", 2);
-    const RenderOptions options = draw_panels_defaults(".");
+    const RenderOptions options = render_defaults(".");
     char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
     assert_ok(picture_plan(&picture, (const Trajectory *[]){run}, 1, 640, 360, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);

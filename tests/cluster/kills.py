@@ -28,7 +28,6 @@ PREPARED = "simulate SCENES/single.yaml --frames 400 -o a.npz"
 STUDIES = [
     ("map", "stability SCENES/stability/heavy_on_one.yaml --vary ratio --vary iterations --methods engine", 0.3, 0.3),
     ("chart", "chart SCENES/single.yaml --quick --launches 40 --methods engine:k=10,momentum:k=20", 0.1, 0.6),
-    ("frames", "render a.npz --size 64x64 --jobs 1", 0.4, 0.2),
 ]
 
 

@@ -19,7 +19,6 @@ PREPARATION = [
     "compare expected actual --report report -q",
     f"{SHARDED} -o sharded --shard 1/2 -q",
     f"{SHARDED} -o sharded --shard 2/2 -q",
-    "render a.npz -o film --size 64x64 --frames 40:42 --jobs 1 --shard 1/2 -q",
 ]
 
 
@@ -92,8 +91,6 @@ LONG = [
     Case("render-video", f"render a.npz -o out --frames 40:42 {SMALL} --video out.mp4 --video out.gif",
          "a.npz out.mp4=a.csv out.gif=a.csv", "out/manifest.json.part"),
     Case("render-output", f"render a.npz -o out --frames 40:42 {SMALL} --video -", "a.npz", "out/manifest.json.part"),
-    Case("render-shard", f"render a.npz -o out --frames 40:42 {SMALL} --shard 1/2", "a.npz", "out/shards/*"),
-    Case("render-merge", "merge film", "a.npz film", "film/manifest.json.part"),
     Case("chart", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2", "", "out/parts-*"),
     Case("chart-pages", "chart SCENES/single.yaml -o out --quick --methods engine:k=10 --launches 2 --pages", "",
          "out/parts-*"),

@@ -37,7 +37,7 @@ FIXTURE(make) {
     trajectory_end_contacts(runs[0]);
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
     RenderOptions options = options_for(whole);
-    assert_ok(render_study(panels, 2, &options, NULL, NULL, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
 }
 
 FIXTURE(destroy) {
@@ -57,8 +57,8 @@ static int resume(const char *directory, char why[256]) {
     RenderResult result;
     RenderOptions options = options_for(directory);
     options.resume = true;
-    assert_ok(render_study(panels, 2, &options, NULL, &result, NULL, &error), error);
-    assert_true(result.first == 0 && result.last == PICTURES - 1 && result.all);
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+    assert_true(result.first == 0 && result.last == PICTURES - 1);
     free(result.hashes);
     if (why != NULL) memcpy(why, result.why, sizeof result.why);
     assert_same_folder(whole, directory);
@@ -182,11 +182,11 @@ TEST(the_view_leads_to_the_bodies) {
     options.look.camera = LOOK_BOMB;
     options.width = 4 * WIDTH, options.height = 4 * HEIGHT;
     check_view(whole, false);
-    assert_ok(render_study(panels, 2, &options, NULL, NULL, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     check_view(options.directory, true);
     options.resume = true; /* the lines with a camera are recalled, too */
     RenderResult result;
-    assert_ok(render_study(panels, 2, &options, NULL, &result, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
     assert_int_equal(result.kept, PICTURES);
     free(result.hashes);
 }
@@ -194,7 +194,7 @@ TEST(the_view_leads_to_the_bodies) {
 TEST(the_view_names_the_files_of_the_runs) {
     RenderOptions options = options_for(temporary_path("named"));
     options.look.show = LOOK_GHOSTS;
-    assert_ok(render_study(panels, 2, &options, NULL, NULL, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     json_t *manifest = json_load_file(manifest_of(options.directory), JSON_REJECT_DUPLICATES, NULL);
     const json_t *panel = json_array_get(json_object_get(json_object_get(manifest, "view"), "panels"), 1);
     const json_t *names = json_object_get(panel, "runs");
@@ -253,7 +253,7 @@ TEST(a_stopped_sequence_goes_on) {
     for (int at = 1; at < PICTURES; at += 30) {
         error = (Error){0};
         RenderOptions options = options_for(temporary_path("stopped"));
-        assert_false(render_study(panels, 2, &options, NULL, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
+        assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
         assert_error(error, ERROR_INTERRUPTED, "stopped");
         assert_int_equal(access(manifest_of(options.directory), F_OK), -1);
         assert_true(resume(options.directory, NULL) >= at);
@@ -267,7 +267,7 @@ TEST(a_killed_sequence_goes_on) {
         pid_t child = fork();
         if (child == 0) {
             setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-            render_study(panels, 2, &options, NULL, NULL, &(Progress){stop, &(Stop){at, true}}, &(Error){0});
+            render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, true}}, &(Error){0});
             _exit(0);
         }
         assert_int_equal(waitpid(child, &status, 0), child);
@@ -279,7 +279,7 @@ TEST(a_killed_sequence_goes_on) {
 /* A power failure cuts a write: the last line may be partial, and so may pictures. */
 TEST(every_cut_of_the_journal_is_survived) {
     RenderOptions options = options_for(temporary_path("cut"));
-    assert_false(render_study(panels, 2, &options, NULL, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
     const char *journal = printed("%s.part", manifest_of(options.directory));
     size_t size;
     FREED char *text = read_whole(journal, &size);
@@ -312,7 +312,7 @@ TEST(another_sequence_is_redrawn) {
         options.last = -1;
         options.jobs = 1;
         RenderResult result;
-        assert_ok(render_study(panels, 2, &options, NULL, &result, NULL, &error), error);
+        assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
         free(result.hashes);
         for (int k = PICTURES; k <= result.last; k++) unlink(frame_path(options.directory, k));
         assert_int_equal(resume(options.directory, why), 0);
@@ -328,7 +328,7 @@ TEST(another_run_is_redrawn) {
     RenderOptions options = options_for(directory);
     options.resume = true;
     RenderResult result;
-    assert_ok(render_study(panels, 2, &options, NULL, &result, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
     assert_int_equal(result.kept, 0);
     free(result.hashes);
     runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 0;
@@ -379,20 +379,20 @@ TEST(files_that_are_not_manifests_stay) {
     for (int again = 0; again < 2; again++) {
         options.resume = again == 1;
         write_bytes(manifest_of(options.directory), foreign, sizeof foreign - 1);
-        assert_refused(render_study(panels, 2, &options, NULL, NULL, NULL, &error),
+        assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error),
                        "foreign/manifest.json: error: is not a manifest of twinbox");
         assert_file(manifest_of(options.directory), foreign);
     }
     assert_int_equal(unlink(manifest_of(options.directory)), 0);
     assert_int_equal(mkdir(manifest_of(options.directory), 0700), 0);
-    assert_false(render_study(panels, 2, &options, NULL, NULL, NULL, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(rmdir(manifest_of(options.directory)), 0);
     assert_int_equal(mkfifo(manifest_of(options.directory), 0600), 0);
-    assert_false(render_study(panels, 2, &options, NULL, NULL, NULL, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(unlink(manifest_of(options.directory)), 0);
     write_bytes(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
     assert_int_equal(symlink("../elsewhere.json", manifest_of(options.directory)), 0);
-    assert_false(render_study(panels, 2, &options, NULL, NULL, NULL, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(count_files(options.directory, ".png"), PICTURES);
 }
 

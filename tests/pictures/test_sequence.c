@@ -39,12 +39,12 @@ TEST_WITH(any_number_of_jobs_writes_the_same_files, make, destroy) {
         panels[i] = runs[i] = run_make(i == 0 ? "engine" : "momentum", 4 - i);
     }
     RenderOptions one = options_for(temporary_path("one/deep"), 1);
-    assert_ok(render_study(panels, 2, &one, NULL, NULL, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &one, NULL, NULL, &error), error);
     assert_int_equal(count_files(one.directory, ".png"), 4);
     for (int i = 0; i < 3; i++) {
         RenderOptions many = options_for(temporary_path("many"), jobs[i]);
         many.context = built_context(jobs[i] == 3 ? CONTEXT_EGL : CONTEXT_OSMESA);
-        assert_ok(render_study(panels, 2, &many, NULL, NULL, NULL, &error), error);
+        assert_ok(render_sequence(panels, 2, &many, NULL, NULL, &error), error);
         assert_same_folder(one.directory, many.directory);
     }
 }
@@ -52,7 +52,7 @@ TEST_WITH(any_number_of_jobs_writes_the_same_files, make, destroy) {
 TEST_WITH(a_sequence_holds_the_frames_of_the_renderer, make, destroy) {
     RenderOptions options = options_for(temporary_path("range"), 2);
     options.first = 3, options.last = 7;
-    assert_ok(render_study(panels, 2, &options, NULL, NULL, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     assert_int_equal(count_files(options.directory, ".png"), 5);
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
     OWN(Image) *image = image_sized(options.width, options.height);
@@ -73,7 +73,7 @@ static void assert_text(const char *path, const char *key, const char *wanted) {
 TEST_WITH(frames_tell_their_origin, make, destroy) {
     RenderOptions options = options_for(temporary_path("texts"), 1);
     options.first = options.last = FRAMES - 1;
-    assert_ok(render_study(panels, 2, &options, NULL, NULL, NULL, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     const char *path = frame_path(options.directory, FRAMES - 1);
     const char *hashes =
         printed("%016llx | %016llx", (unsigned long long)trajectory_frame_hash(panels[0], FRAMES - 1),
@@ -103,7 +103,7 @@ static bool listen_to(void *context, double done, double total) {
 TEST_WITH(progress_counts_the_frames, make, destroy) {
     Listener listener = {.stop_at = 1000};
     RenderOptions options = options_for(temporary_path("progress"), 3);
-    assert_ok(render_study(panels, 2, &options, NULL, NULL, &(Progress){listen_to, &listener}, &error), error);
+    assert_ok(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error), error);
     assert_true(listener.last == FRAMES && listener.total == FRAMES && listener.calls >= 3);
 }
 
@@ -113,7 +113,7 @@ TEST_WITH(a_sequence_can_be_stopped, make, destroy) {
     panels[0] = runs[0] = run_make("engine", 2000);
     Listener listener = {.stop_at = 5};
     RenderOptions options = options_for(temporary_path("stopped"), 3);
-    assert_false(render_study(panels, 2, &options, NULL, NULL, &(Progress){listen_to, &listener}, &error));
+    assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error));
     assert_error(error, ERROR_INTERRUPTED, "stopped");
     assert_true(count_files(options.directory, ".png") < 1000);
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
@@ -143,7 +143,7 @@ TEST_WITH(a_full_disk_is_told, make, destroy) {
     for (int i = 0; i < 2; i++) {
         error = (Error){0};
         limit_files(cases[i].bytes, SIG_IGN);
-        bool ok = render_study(panels, 2, &options, NULL, NULL, NULL, &error);
+        bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
         limit_files(RLIM_INFINITY, SIG_DFL);
         assert_false(ok);
         assert_error(error, ERROR_SYSTEM, cases[i].text);
@@ -156,7 +156,7 @@ TEST_WITH(a_full_disk_is_told, make, destroy) {
 TEST_WITH(a_killed_process_is_reported, make, destroy) {
     RenderOptions options = options_for(temporary_path("killed"), 2);
     limit_files(2000, SIG_DFL);
-    bool ok = render_study(panels, 2, &options, NULL, NULL, NULL, &error);
+    bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
     limit_files(RLIM_INFINITY, SIG_DFL);
     assert_false(ok);
     assert_error(error, ERROR_SYSTEM, "a drawing process was killed by signal");

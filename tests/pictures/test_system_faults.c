@@ -59,7 +59,7 @@ static RenderOptions options_for(const char *directory) {
 
 static bool draw(const RenderOptions *options, int frames, Error *error) {
     OWN(Trajectory) *run = run_make("engine", frames);
-    const bool done = render_study((const Trajectory *[]){run}, 1, options, NULL, NULL, NULL, error);
+    const bool done = render_sequence((const Trajectory *[]){run}, 1, options, NULL, NULL, error);
     return done;
 }
 

@@ -24,7 +24,7 @@ FIXTURE(make) {
     snprintf(folder, sizeof folder, "%s", temporary_path("frames"));
     OWN(Trajectory) *run = run_make("engine", FRAMES);
     RenderOptions options = {.width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = folder};
-    assert_ok(render_study((const Trajectory *[]){run}, 1, &options, NULL, &result, NULL, &error), error);
+    assert_ok(render_sequence((const Trajectory *[]){run}, 1, &options, &result, NULL, &error), error);
     hashes = result.hashes;
 }
 

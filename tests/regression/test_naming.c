@@ -85,7 +85,7 @@ static void read_view(Stage *stage) {
     options.first = options.last = stage->shot->frame;
     options.jobs = 1;
     assert_ok(
-        render_study((const Trajectory *const *)stage->runs, stage->shot->count, &options, NULL, NULL, NULL, &error),
+        render_sequence((const Trajectory *const *)stage->runs, stage->shot->count, &options, NULL, NULL, &error),
         error);
     strcat(path, "/manifest.json");
     assert_ok(view_read(&stage->view, path, &error), error);

@@ -37,7 +37,7 @@ static void render_into(const char *folder) {
     Error error = {0};
     const Trajectory *const panels[] = {run};
     const RenderOptions options = {.width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = folder};
-    assert_ok(render_study(panels, 1, &options, NULL, NULL, NULL, &error), error);
+    assert_ok(render_sequence(panels, 1, &options, NULL, NULL, &error), error);
     assert_ok(trajectory_write(run, in(folder, "two_boxes-engine.npz"), &error), error);
 }
 

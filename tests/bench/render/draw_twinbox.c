@@ -16,7 +16,7 @@ int main(int argc, char **argv) {
         .width = job.width, .height = job.height, .last = -1, .jobs = atoi(argv[argc - 1]), .directory = job.directory};
     const Trajectory *const panels[PANELS] = {job.runs[0], job.runs[1]};
     double start = clock_seconds();
-    if (!render_study(panels, PANELS, &options, NULL, NULL, NULL, &error)) {
+    if (!render_sequence(panels, PANELS, &options, NULL, NULL, &error)) {
         fprintf(stderr, "%s\n", error.message);
         return 3;
     }
