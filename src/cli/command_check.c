@@ -180,7 +180,7 @@ static void print_lists(FILE *out, const Scene *scene) {
 
 static bool check_draw(const Trajectory *run, const char *path, Error *error) {
     RenderOptions render = render_defaults(NULL);
-    render.look.show = LOOK_APPROACH;
+    render.look.approach = true;
     render.width = WIDTH;
     render.height = HEIGHT;
     Renderer *renderer = renderer_create(&run, 1, &render, error);

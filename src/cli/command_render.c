@@ -46,6 +46,8 @@ typedef struct Options {
 
 static OptionRead read_size, read_png, read_context, read_camera;
 
+#define SHOW_HELP(BIT, name, help, ...) " " name help ","
+
 static const Option option_table[] = {
     {"--output", 'o', "DIR", "Folder for frame_000000.png ..., manifest.json and the runs (.npz)",
      OPTION_TEXT(Options, render.directory), .needed = "-o DIR is needed"},
@@ -87,8 +89,7 @@ static const Option option_table[] = {
      "coloured by their distance from the first run's",
      OPTION_ENUM(Options, render.look.compare, look_compare_names)},
     {"--show", 0, "LIST",
-     "Any of ghosts (outlines of the first run), distance (colours), trails, contacts, impulses, velocities (arrows), "
-     "timeline (distance from the first run over time), separated by commas",
+     "Any of" SHOW_MARKS(SHOW_HELP) " separated by commas",
      OPTION_FLAGS(Options, render.look.show, look_show_names)},
     {"--labels", 0, "KIND",
      "In boxes that are large enough: mass (kg), number (of the body), name (the scene's key), or none (default)",

@@ -272,7 +272,7 @@ static int swatch_room(const Picture *picture) {
 /* Boxes coloured by their distance show their run's colour only in the timeline. */
 static int swatch_width(const Picture *picture, int run) {
     const bool none =
-        picture_colors_distance(picture, run) && !is_hollow(picture, run) && (picture->look.show & LOOK_TIMELINE) == 0;
+        picture_colors_distance(picture, run) && !is_hollow(picture, run) && (picture->look.show & SHOW_TIMELINE) == 0;
     return none ? 0 : swatch_room(picture);
 }
 

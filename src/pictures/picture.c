@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The layout of a picture, its plan, and the drawing of one moment. */
+/* A picture: its layout, its plan, and the drawing of one moment. */
 #include "pictures/picture.h"
 
 #include "base/base.h"
+#include "base/numbers.h"
+#include "engine/engine.h"
 #include "methods/methods.h"
 #include "pictures/pictures_internal.h"
 #include "pixels/gl.h"
@@ -12,25 +14,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* All sizes are relative to this, so that pictures of all resolutions look alike. For portrait pictures it follows
-   the width, or the header would not fit. */
-static double base_unit(int width, int height) { return fmin(height, UNIT_WIDTH * width); }
-
 /* In smaller pictures even the smallest font would be too large. */
 static const double MIN_TEXT_UNIT = 300;
 static const double MIN_FONT = 10;          /* per em */
 static const double TIMELINE_HEIGHT = 0.16; /* height of the curves / base unit */
 
-static void pick_fonts(Layout *layout, double unit) {
-    if (unit < MIN_TEXT_UNIT) return;
-    layout->scene = font_pick(FONT_SEMIBOLD, fmax(SCENE_FONT * unit, MIN_FONT));
-    layout->status = font_pick(FONT_REGULAR, fmax(STATUS_FONT * unit, MIN_FONT));
-    layout->title = font_pick(FONT_SEMIBOLD, fmax(TITLE_FONT * unit, MIN_FONT));
-    layout->method = font_pick(FONT_REGULAR, fmax(METHOD_FONT * unit, MIN_FONT));
-    layout->axis = font_pick(FONT_REGULAR, fmax(AXIS_FONT * unit, MIN_FONT));
-}
-
 static int pixels(double value) { return (int)rint(value); }
+static int width_of(const Rect *rect) { return rect->right - rect->left; }
+static int height_of(const Rect *rect) { return rect->bottom - rect->top; }
 
 /* One row up to three panels, otherwise two. In portrait, columns instead of rows. */
 int layout_columns(int width, int height, int panels) {
@@ -40,8 +31,8 @@ int layout_columns(int width, int height, int panels) {
 
 static Rect panel_size(const Layout *layout) {
     const Rect *area = &layout->area;
-    return (Rect){0, 0, (area->right - area->left - (layout->columns - 1) * layout->gap) / layout->columns,
-                  (area->bottom - area->top - (layout->rows - 1) * layout->row_gap) / layout->rows};
+    return (Rect){0, 0, (width_of(area) - (layout->columns - 1) * layout->gap) / layout->columns,
+                  (height_of(area) - (layout->rows - 1) * layout->row_gap) / layout->rows};
 }
 
 /* A last row that is not full is in the middle. */
@@ -61,32 +52,20 @@ void layout_shrink_panels(Layout *layout, int panels, int width, int height) {
                  layout->area.top + layout->rows * (whole.bottom - height) / 2, width, height);
 }
 
-/* Takes the rows from the bottom of the area and returns the rest. Pictures too small for text have no legend. */
-static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, int title, int axis) {
-    bool text = unit >= MIN_TEXT_UNIT;
-    int bottom = area.bottom + axis; /* of the content above the next row */
-    if (rows.timeline) {
-        int top = area.bottom - pixels(TIMELINE_HEIGHT * unit);
-        layout->timeline = (Rect){area.left, top, area.right, area.bottom};
-        layout->key_baseline = top - layout->title_rise;
-        bottom = top - (text ? title : layout->left);
-    }
-    if (rows.legend > 0 && text) {
-        layout->legend_rows = rows.legend;
-        layout->legend_pitch = pixels(LEGEND_PITCH * unit);
-        layout->legend_baseline = bottom - pixels(LEGEND_DROP * unit) - (rows.legend - 1) * layout->legend_pitch;
-        bottom -= pixels(LEGEND_ROW * unit) + (rows.legend - 1) * layout->legend_pitch;
-    }
-    area.bottom = bottom - axis;
-    return area;
-}
-
 Layout layout_make(int width, int height, int panels, int columns, LayoutRows rows) {
     Layout layout = {.width = width, .height = height};
-    double unit = base_unit(width, height);
-    bool text = unit >= MIN_TEXT_UNIT;
-    int margin = pixels(fmax(PAGE_MARGIN * unit, MIN_MARGIN));
-    pick_fonts(&layout, unit);
+    /* All sizes are relative to this, so that pictures of all resolutions look alike. For portrait pictures it follows
+       the width, or the header would not fit. */
+    const double unit = fmin(height, UNIT_WIDTH * width);
+    const bool text = unit >= MIN_TEXT_UNIT;
+    const int margin = pixels(fmax(PAGE_MARGIN * unit, MIN_MARGIN));
+    if (text) {
+        layout.scene = font_pick(FONT_SEMIBOLD, fmax(SCENE_FONT * unit, MIN_FONT));
+        layout.status = font_pick(FONT_REGULAR, fmax(STATUS_FONT * unit, MIN_FONT));
+        layout.title = font_pick(FONT_SEMIBOLD, fmax(TITLE_FONT * unit, MIN_FONT));
+        layout.method = font_pick(FONT_REGULAR, fmax(METHOD_FONT * unit, MIN_FONT));
+        layout.axis = font_pick(FONT_REGULAR, fmax(AXIS_FONT * unit, MIN_FONT));
+    }
     layout.columns = columns;
     layout.rows = (panels + columns - 1) / columns;
     layout.left = margin;
@@ -97,49 +76,164 @@ Layout layout_make(int width, int height, int panels, int columns, LayoutRows ro
     layout.hairline = unit < 1500 ? 1 : pixels(unit / 1080);
     layout.axis_drop =
         pixels(fmax(AXIS_DROP * unit, layout.hairline + layout.tick + ceil(LABEL_CAP * layout.axis.pixels)));
-    int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
+    const int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
     layout.caption_lines = rows.caption;
     layout.caption_pitch = text ? pixels(fmax(CAPTION_PITCH * unit, CAPTION_PITCH_EMS * layout.title.pixels)) : 0;
-    int title = text ? pixels(TITLE_ROW * unit) : 0, captions = title + (rows.caption - 1) * layout.caption_pitch,
-        axis = text ? pixels(AXIS_ROW * unit) : 0;
+    const int title = text ? pixels(TITLE_ROW * unit) : 0, captions = title + (rows.caption - 1) * layout.caption_pitch,
+              axis = text ? pixels(AXIS_ROW * unit) : 0;
     layout.header_lines = rows.title;
     layout.header_pitch = pixels(0.036 * unit);
-    int last_line = layout.header_baseline + (rows.title - 1) * layout.header_pitch;
-    int header = text ? last_line + pixels(HEADER_GAP * unit) : margin;
-    Rect area = {margin + gutter, header + captions, width - margin, height - pixels(PAGE_FOOT * unit) - axis};
-    if (!text) area.bottom = height - margin;
-    layout.area = place_rows(&layout, area, unit, rows, title, axis);
+    const int last_line = layout.header_baseline + (rows.title - 1) * layout.header_pitch;
+    const int header = text ? last_line + pixels(HEADER_GAP * unit) : margin;
+
+    /* The panels' area, from whose bottom timeline and legend are taken; pictures too small for text have no legend. */
+    Rect area = {margin + gutter, header + captions, width - margin,
+                 text ? height - pixels(PAGE_FOOT * unit) - axis : height - margin};
+    int bottom = area.bottom + axis; /* of the content above the next row */
+    if (rows.timeline) {
+        const int top = area.bottom - pixels(TIMELINE_HEIGHT * unit);
+        layout.timeline = (Rect){area.left, top, area.right, area.bottom};
+        layout.key_baseline = top - layout.title_rise;
+        bottom = top - (text ? title : layout.left);
+    }
+    if (rows.legend > 0 && text) {
+        layout.legend_rows = rows.legend;
+        layout.legend_pitch = pixels(LEGEND_PITCH * unit);
+        layout.legend_baseline = bottom - pixels(LEGEND_DROP * unit) - (rows.legend - 1) * layout.legend_pitch;
+        bottom -= pixels(LEGEND_ROW * unit) + (rows.legend - 1) * layout.legend_pitch;
+    }
+    area.bottom = bottom - axis;
+    layout.area = area;
     layout.gap = margin;
     layout.row_gap = text ? captions + axis : margin;
     const Rect size = panel_size(&layout);
-    place_panels(&layout, panels, layout.area.left, layout.area.top, size.right, size.bottom);
+    place_panels(&layout, panels, area.left, area.top, size.right, size.bottom);
     return layout;
 }
 
-static bool check_runs(const Trajectory *const *runs, int count, Error *error) {
-    if (count < 1 || count > RENDER_PANELS_MAX)
-        return error_input(error, "render", "the number of panels must be 1 to %d (got %d)", RENDER_PANELS_MAX, count);
-    for (int i = 1; i < count; i++)
-        if (runs[i]->dt != runs[0]->dt)
-            return error_input(error, "render",
-                               "panel %d (%s) has time steps of %g s, but the first panel has %g s; they must be equal",
-                               i + 1, runs[i]->method, (double)runs[i]->dt, (double)runs[0]->dt);
-    return true;
+/* Between the scale in these panels and that at which what falls would stay in view. */
+static double scale_in(const Layout *layout, const CameraFrame *frame) {
+    const Extent *held = &frame->held, *room = &frame->room;
+    const double width = width_of(&layout->panels[0]),
+                 high = height_of(&layout->panels[0]) / (held->top - held->bottom);
+    return sqrt(fmin(width / (held->right - held->left), high) * fmin(width / (room->right - room->left), high));
 }
 
-static bool check_size(int width, int height, Error *error) {
-    if (width >= RENDER_SIDE_MIN && height >= RENDER_SIDE_MIN && width <= RENDER_SIDE_MAX && height <= RENDER_SIDE_MAX)
-        return true;
-    return error_input(error, "render", "each side of the picture must be %d to %d pixels (got %d x %d)",
-                       RENDER_SIDE_MIN, RENDER_SIDE_MAX, width, height);
+/* A moving camera comes closer than the fixed view: it has the usual panels. */
+static Layout choose_grid(const Picture *picture, const CameraFrame *frame, int width, int height, LayoutRows rows) {
+    const int count = picture->panel_count, usual = layout_columns(width, height, count);
+    Layout best = layout_make(width, height, count, usual, rows);
+    const double usual_scale = scale_in(&best, frame);
+    if (picture->look.camera != LOOK_FIT) return best;
+    double largest = 0;
+    for (int columns = 1; columns <= count; columns++) {
+        const int lines = (count + columns - 1) / columns;
+        const int empty = lines * columns - count;
+        const Layout layout = layout_make(width, height, count, columns, rows);
+        const Rect *panel = &layout.panels[0];
+        if (empty > (count > 3) || width_of(panel) < caption_least_width(picture, false) || height_of(panel) <= 0)
+            continue;
+        const bool whole = width_of(panel) >= caption_least_width(picture, true);
+        const double scale = scale_in(&layout, frame), worth = scale / (whole ? GAIN : GAIN_WITH_CUT_NAMES);
+        if (worth <= usual_scale || worth <= largest) continue;
+        largest = worth;
+        best = layout;
+    }
+    return best;
 }
 
-static void find_largest_distance(Picture *picture) {
-    for (int i = 1; i < picture->count; i++)
-        for (int frame = 0; frame < picture->runs[i]->frames; frame++)
-            picture->largest_distance =
-                fmax(picture->largest_distance, picture_run_distance(picture, i, moment_stored(frame)));
+/* The side of a panel that is `whole` pixels long and of which the scene needs `needed`. */
+static int shrink(int whole, double needed, double share, double least) {
+    if (needed >= share * whole) return whole;
+    return (int)fmin(whole, ceil(fmax(needed / FULL_SHARE, least)));
 }
+
+void panels_arrange(Picture *picture, int width, int height, int legend) {
+    const RenderLook *look = &picture->look;
+    const int count = picture->count;
+    picture->panel_count = look->compare == LOOK_OVERLAY ? 1 : look->compare == LOOK_DIFFERENCE ? count - 1 : count;
+    LayoutRows rows = {1, 1, legend, (look->show & SHOW_TIMELINE) != 0};
+    picture->layout = layout_make(width, height, 1, 1, rows); /* for the fonts */
+    rows.title = int_min(caption_header_title(picture).count, TEXT_LINES_MAX);
+
+    /* What the camera shows: that of the runs, unless the look has another. */
+    const CameraFrame frame = look->view.width > 0      ? camera_frame_of(&look->view)
+                              : look->approach          ? camera_frame_approach(picture->runs[0])
+                              : look->view_from != NULL ? camera_frame(&look->view_from, 1)
+                                                        : camera_frame(picture->runs, count);
+    const Vec2 needs = camera_needs(&frame);
+    Layout *layout = &picture->layout;
+    for (rows.caption = 1;; rows.caption++) { /* narrow panels need more lines */
+        *layout = choose_grid(picture, &frame, width, height, rows);
+        if (look->camera == LOOK_FIT) {
+            /* The names of an overlay's runs need the whole width. */
+            const int whole = width_of(&layout->panels[0]), high = height_of(&layout->panels[0]);
+            const double scale = camera_fit(&frame, whole, high).scale,
+                         em = layout->title.glyphs != NULL ? layout->title.pixels : layout->left;
+            const int narrow = look->compare == LOOK_OVERLAY
+                                   ? whole
+                                   : shrink(whole, scale * (double)needs.x, LEAST_SHARE_X, LEAST_PANEL_WIDTH * em);
+            const int low = shrink(high, scale * (double)needs.y, LEAST_SHARE_Y, LEAST_PANEL_HEIGHT * em);
+            if (narrow < whole || low < high) layout_shrink_panels(layout, picture->panel_count, narrow, low);
+        }
+        if (caption_lines(picture) <= rows.caption) break;
+    }
+    picture->camera = camera_fit(&frame, width_of(&layout->panels[0]), height_of(&layout->panels[0]));
+    picture->grid_scale = picture->camera.scale;
+}
+
+const char *const part_names[] = {"header", "caption", "axis", "legend", "timeline"};
+
+enum { MARK_REACH = 8 }; /* pixels that the mark of the present time reaches beyond the curves, at most */
+
+/* The height of a line of text below its baseline; above, it has that of its letters. */
+static int below(const Font *font) { return font->pixels * 3 / 8; }
+
+int parts_find(const Picture *picture, Part parts[PARTS_MAX]) {
+    const Layout *layout = &picture->layout;
+    const Font *axis = &layout->axis;
+    const bool text = axis->glyphs != NULL;
+    int count = 0;
+    if (text)
+        parts[count++] = (Part){
+            PART_HEADER,
+            -1,
+            {0, 0, layout->width,
+             layout->header_baseline + (layout->header_lines - 1) * layout->header_pitch + below(&layout->scene)}};
+    for (int panel = 0; text && panel < picture->panel_count; panel++) {
+        /* Labels at an end of an axis reach beyond it by half their size. The left axis is beside the first column
+           only. */
+        const Rect *rect = &layout->panels[panel];
+        const int baseline = rect->top - layout->title_rise - (layout->caption_lines - 1) * layout->caption_pitch,
+                  line = layout->hairline, half = axis->pixels / 2;
+        parts[count++] =
+            (Part){PART_CAPTION, panel, {rect->left, baseline - layout->title.pixels, rect->right, rect->top - line}};
+        parts[count++] = (Part){PART_AXIS,
+                                panel,
+                                {rect->left - axis->pixels, rect->bottom, rect->right + line,
+                                 rect->bottom + layout->axis_drop + below(axis)}};
+        if (panel % layout->columns == 0)
+            parts[count++] = (Part){PART_AXIS, panel, {0, rect->top - half, rect->left, rect->bottom + half}};
+    }
+    if (layout->legend_baseline > 0) {
+        /* Half of the distance between rows, and a pixel for rounding, above and below the middle of the text: arrows
+           are higher than characters. */
+        const int middle = layout->legend_baseline - below(axis), half = layout->legend_pitch / 2 + 1,
+                  more = (layout->legend_rows - 1) * layout->legend_pitch;
+        parts[count++] = (Part){PART_LEGEND, -1, {0, middle - half, layout->width, middle + more + half}};
+    }
+    if (picture->curves != NULL) {
+        /* The lane above the curves keeps the mark below their top where there is text, and the row of the key is
+           above. */
+        const Rect *plot = &layout->timeline;
+        const int foot = text ? int_max(layout->axis_drop + below(axis), MARK_REACH) : MARK_REACH;
+        const int top = text ? layout->key_baseline - layout->method.pixels : plot->top - layout->left;
+        parts[count++] = (Part){PART_TIMELINE, -1, {0, top, layout->width, plot->bottom + foot}};
+    }
+    return count;
+}
+
+/* The plan. */
 
 static bool assign_colours(Picture *picture, const ColourChoices *choices, Error *error) {
     const char *methods[RENDER_PANELS_MAX];
@@ -148,42 +242,26 @@ static bool assign_colours(Picture *picture, const ColourChoices *choices, Error
 }
 
 bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, int width, int height, Error *error) {
-    if (!check_size(width, height, error) || !check_runs(runs, count, error)) return false;
+    if (width < RENDER_SIDE_MIN || height < RENDER_SIDE_MIN || width > RENDER_SIDE_MAX || height > RENDER_SIDE_MAX)
+        return error_input(error, "render", "each side of the picture must be %d to %d pixels (got %d x %d)",
+                           RENDER_SIDE_MIN, RENDER_SIDE_MAX, width, height);
+    if (count < 1 || count > RENDER_PANELS_MAX)
+        return error_input(error, "render", "the number of panels must be 1 to %d (got %d)", RENDER_PANELS_MAX, count);
     *picture = (Picture){.count = count, .theme = theme_get(LOOK_LIGHT)};
     for (int i = 0; i < count; i++) {
+        if (runs[i]->dt != runs[0]->dt)
+            return error_input(error, "render",
+                               "panel %d (%s) has time steps of %g s, but the first panel has %g s; they must be equal",
+                               i + 1, runs[i]->method, (double)runs[i]->dt, (double)runs[0]->dt);
         picture->runs[i] = runs[i];
-        if (runs[i]->frames > picture->frames) picture->frames = runs[i]->frames;
+        picture->frames = int_max(picture->frames, runs[i]->frames);
     }
     if (!assign_colours(picture, NULL, error)) return false;
     panels_arrange(picture, width, height, 0);
-    find_largest_distance(picture);
-    return true;
-}
-
-static bool plan_path(Picture *picture, Error *error) {
-    if (picture->look.camera == LOOK_FIT) return true;
-    Rect panel = picture->layout.panels[0];
-    picture->path = camera_path(picture->runs, picture->frames, picture->look.camera, &picture->events,
-                                &picture->camera, panel.right - panel.left, panel.bottom - panel.top, error);
-    if (picture->path == NULL) return false;
-    double closest = picture->camera.scale;
-    for (int frame = 0; frame < picture->frames; frame++) closest = fmax(closest, picture->path[frame].scale);
-    picture->grid_scale = sqrt(picture->camera.scale * closest);
-    return true;
-}
-
-/* The entries of the legend depend on the scales, and the scales on the room that its rows leave. So more rows may need
-   fewer: then the scales stay. */
-static bool arrange_rows(Picture *picture, const RenderOptions *options, Error *error) {
-    int needed = 0;
-    for (int rows = 0; rows <= needed; rows++) {
-        panels_arrange(picture, options->width, options->height, rows);
-        if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->camera.scale,
-                           picture->largest_distance, error))
-            return false;
-        needed = legend_rows(picture);
-    }
-    panels_arrange(picture, options->width, options->height, needed);
+    for (int i = 1; i < count; i++)
+        for (int frame = 0; frame < runs[i]->frames; frame++)
+            picture->largest_distance =
+                fmax(picture->largest_distance, picture_run_distance(picture, i, moment_stored(frame)));
     return true;
 }
 
@@ -193,13 +271,13 @@ static bool title_fits(const TextLines *lines, const char *option, Error *error)
                        lines->count, TEXT_LINES_MAX);
 }
 
-/* The titles that the options set; a scene's name is cut instead. */
-static bool titles_fit(const Picture *picture, Error *error) {
+/* Titles and captions that the options set; a scene's name is cut instead. */
+static bool texts_fit(const Picture *picture, Error *error) {
     const TextLines header = caption_header_title(picture), title = card_head(picture, MOMENT_TITLE),
                     end = card_head(picture, MOMENT_END);
     return (picture->title == NULL ||
             (title_fits(&header, "--title", error) && title_fits(&title, "--title", error))) &&
-           (picture->look.end == NULL || title_fits(&end, "--end", error));
+           (picture->look.end == NULL || title_fits(&end, "--end", error)) && captions_fit(picture, error);
 }
 
 bool picture_apply_options(Picture *picture, const RenderOptions *options, Error *error) {
@@ -216,12 +294,33 @@ bool picture_apply_options(Picture *picture, const RenderOptions *options, Error
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) {
         panels_arrange(picture, picture->layout.width, picture->layout.height, 0);
-        return titles_fit(picture, error) && captions_fit(picture, error);
+        return texts_fit(picture, error);
     }
     if (!look_check(&picture->look, picture->runs, picture->count, error)) return false;
     picture->events = events_find(picture->runs, picture->count);
-    return arrange_rows(picture, options, error) && titles_fit(picture, error) && captions_fit(picture, error) &&
-           plan_path(picture, error) && timeline_plan(picture, error);
+
+    /* The entries of the legend depend on the scales, and the scales on the room that its rows leave. So more rows may
+       need fewer: then the scales stay. */
+    int needed = 0;
+    for (int rows = 0; rows <= needed; rows++) {
+        panels_arrange(picture, options->width, options->height, rows);
+        if (!scales_choose(&picture->scales, picture->runs[0], &picture->layout, picture->camera.scale,
+                           picture->largest_distance, error))
+            return false;
+        needed = legend_rows(picture);
+    }
+    panels_arrange(picture, options->width, options->height, needed);
+    if (!texts_fit(picture, error)) return false;
+    if (picture->look.camera != LOOK_FIT) {
+        const Rect *panel = &picture->layout.panels[0];
+        picture->path = camera_path(picture->runs, picture->frames, picture->look.camera, &picture->events,
+                                    &picture->camera, width_of(panel), height_of(panel), error);
+        if (picture->path == NULL) return false;
+        double closest = picture->camera.scale;
+        for (int frame = 0; frame < picture->frames; frame++) closest = fmax(closest, picture->path[frame].scale);
+        picture->grid_scale = sqrt(picture->camera.scale * closest);
+    }
+    return timeline_plan(picture, error);
 }
 
 void picture_free(Picture *picture) {
@@ -251,7 +350,7 @@ bool picture_draws_outlines(const Picture *picture, int panel, int run) {
     const RenderLook *look = &picture->look;
     if (look->compare == LOOK_OVERLAY) return run > 0;
     return run == 0 && picture_run(picture, panel) > 0 &&
-           (look->compare == LOOK_DIFFERENCE || (look->show & LOOK_GHOSTS) != 0);
+           (look->compare == LOOK_DIFFERENCE || (look->show & SHOW_GHOSTS) != 0);
 }
 
 const BodyColors *picture_body_colors(const Picture *picture, int run) {
@@ -265,24 +364,19 @@ uint32_t picture_ghost_color(const Picture *picture, int run) {
 }
 
 bool picture_colors_distance(const Picture *picture, int run) {
-    bool enabled = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & LOOK_DISTANCE) != 0;
+    bool enabled = picture->look.compare == LOOK_DIFFERENCE || (picture->look.show & SHOW_DISTANCE) != 0;
     return enabled && run > 0;
 }
 
-static double distance_between(const Trajectory *a, const Trajectory *b, Moment moment) {
-    int bodies = a->bodies < b->bodies ? a->bodies : b->bodies;
-    double largest = 0;
-    for (int body = 0; body < bodies; body++) {
-        if (!trajectory_has(a, moment.frame, body) || !trajectory_has(b, moment.frame, body)) continue;
-        largest = fmax(largest, pose_distance(pose_at(a, moment, body), pose_at(b, moment, body)));
-    }
-    return largest;
-}
-
 double picture_run_distance(const Picture *picture, int run, Moment moment) {
-    const Trajectory *first = picture->runs[0], *other = picture->runs[run];
-    if (run == 0 || moment.frame >= first->frames || moment.frame >= other->frames) return NAN;
-    return moment.part > 0 ? distance_between(first, other, moment) : trajectory_distance(first, other, moment.frame);
+    const Trajectory *a = picture->runs[0], *b = picture->runs[run];
+    if (run == 0 || moment.frame >= a->frames || moment.frame >= b->frames) return NAN;
+    if (moment.part == 0) return trajectory_distance(a, b, moment.frame);
+    double largest = 0;
+    for (int body = 0; body < int_min(a->bodies, b->bodies); body++)
+        if (trajectory_has(a, moment.frame, body) && trajectory_has(b, moment.frame, body))
+            largest = fmax(largest, pose_distance(pose_at(a, moment, body), pose_at(b, moment, body)));
+    return largest;
 }
 
 double picture_distance(const Picture *picture, Moment moment) {
@@ -291,23 +385,29 @@ double picture_distance(const Picture *picture, Moment moment) {
     return largest;
 }
 
-static void draw_panels(const Picture *picture, Moment moment, Drawing *drawing) {
-    for (int i = 0; i < picture->panel_count; i++) panel_draw_static(picture, i, moment, drawing);
-    legend_draw(picture, drawing);
-    timeline_draw_static(picture, drawing);
-    drawing->static_shapes = drawing->shape_count;
-    caption_header(picture, moment, drawing);
-    for (int i = 0; i < picture->panel_count; i++) {
-        panel_draw_moving(picture, i, moment, drawing);
-        caption_panel(picture, i, moment, drawing);
+Events events_find(const Trajectory *const *runs, int count) {
+    Events events = {.impact = -1, .divergence = -1, .run = -1, .body = -1};
+    const Trajectory *first = runs[0];
+    char what[256];
+    for (int i = 0; i < count && events.impact < 0; i++) events.impact = trajectory_impact(runs[i]);
+    for (int i = 1; i < count; i++) {
+        if (trajectory_different_worlds(first, runs[i], what, sizeof what)) continue;
+        int frames = int_min(first->frames, runs[i]->frames);
+        if (events.divergence >= 0) frames = int_min(frames, events.divergence); /* earlier than all found so far */
+        for (int frame = 0; frame < frames; frame++)
+            for (int body = 0; body < first->bodies; body++)
+                if (trajectory_state_difference(first, runs[i], frame, body).distance > EVENTS_VISIBLE_DISTANCE) {
+                    events.divergence = frames = frame, events.run = i, events.body = body;
+                    break;
+                }
     }
-    timeline_draw_moving(picture, moment, drawing);
+    return events;
 }
 
 Camera picture_camera(const Picture *picture, Moment moment) {
-    const Rect panel = picture->layout.panels[0];
+    const Rect *panel = &picture->layout.panels[0];
     if (picture->path == NULL) return picture->camera;
-    return camera_at(picture->path, picture->frames, moment, panel.right - panel.left, panel.bottom - panel.top);
+    return camera_at(picture->path, picture->frames, moment, width_of(panel), height_of(panel));
 }
 
 void picture_draw(const Picture *picture, Moment moment, Drawing *drawing) {
@@ -317,5 +417,14 @@ void picture_draw(const Picture *picture, Moment moment, Drawing *drawing) {
     }
     Picture now = *picture;
     now.camera = picture_camera(picture, moment);
-    draw_panels(&now, moment, drawing);
+    for (int i = 0; i < now.panel_count; i++) panel_draw_static(&now, i, moment, drawing);
+    legend_draw(&now, drawing);
+    timeline_draw_static(&now, drawing);
+    drawing->static_shapes = drawing->shape_count;
+    caption_header(&now, moment, drawing);
+    for (int i = 0; i < now.panel_count; i++) {
+        panel_draw_moving(&now, i, moment, drawing);
+        caption_panel(&now, i, moment, drawing);
+    }
+    timeline_draw_moving(&now, moment, drawing);
 }

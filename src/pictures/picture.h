@@ -48,18 +48,31 @@ typedef enum LookTheme { LOOK_LIGHT, LOOK_DARK } LookTheme;
 /* What stands in boxes that move and are large enough: nothing, the number of the body, its mass in kg, its name. */
 typedef enum LookLabels { LOOK_NO_LABELS, LOOK_NUMBERS, LOOK_MASSES, LOOK_NAMES } LookLabels;
 
-/* Bits of `show`. */
-enum {
-    LOOK_GHOSTS = 1,      /* the first run's bodies as outlines in the others' panels */
-    LOOK_DISTANCE = 2,    /* bodies coloured by their distance from the first run's */
-    LOOK_TRAILS = 4,      /* paths of the centres of bodies that moved far */
-    LOOK_CONTACTS = 8,    /* contact points */
-    LOOK_IMPULSES = 16,   /* arrows: the contacts' impulses in the step */
-    LOOK_VELOCITIES = 32, /* arrows from the centres of moving bodies */
-    LOOK_TIMELINE = 64,   /* distance from the first run over time, below the panels */
-    LOOK_APPROACH =
-        128 /* where the bomb appears and its way until it strikes, in every frame; not on the command line */
-};
+/* What --show and the check boxes of a page add to the bodies, a line each: name, what --help says after it, what it
+   needs ("others": a second run; "contacts", "velocities": runs that have them), and the script in src/pictures/player
+   that draws it in a page; NULL: a page has no such box. A new one has its line at the end, its entry in legend.c and
+   player/legend.js, and is drawn where the others are: in marks.c, below or above the bodies, and in its script. */
+#define SHOW_MARKS(MARK)                                                          \
+    MARK(GHOSTS, "ghosts", " (outlines of the first run)", "others", "layout.js") \
+    MARK(DISTANCE, "distance", " (colours)", "others", "boxes.js")                \
+    MARK(TRAILS, "trails", "", "", "picture.js")                                  \
+    MARK(CONTACTS, "contacts", "", "contacts", "marks.js")                        \
+    MARK(IMPULSES, "impulses", "", "contacts", "marks.js")                        \
+    MARK(VELOCITIES, "velocities", " (arrows)", "velocities", "marks.js")         \
+    MARK(TIMELINE, "timeline", " (distance from the first run over time)", "others", NULL)
+
+/* SHOW_GHOSTS, ...: the bits of `show`, each at the place of its line. */
+#define SHOW_PLACE(NAME, ...) SHOW_PLACE_##NAME,
+#define SHOW_BIT(NAME, ...) SHOW_##NAME = 1 << SHOW_PLACE_##NAME,
+enum { SHOW_MARKS(SHOW_PLACE) SHOW_COUNT };
+enum { SHOW_MARKS(SHOW_BIT) };
+_Static_assert(SHOW_COUNT <= 31, "each mark has a bit of `show`, of which an int has the value");
+
+typedef struct ShowMark {
+    const char *name, *needs, *script;
+} ShowMark;
+
+extern const ShowMark show_marks[SHOW_COUNT];
 
 typedef struct RenderLook {
     LookCompare compare;
@@ -68,13 +81,14 @@ typedef struct RenderLook {
     const Trajectory *view_from; /* the run that the fixed camera shows; NULL: all */
     LookTheme theme;
     LookLabels labels;
-    unsigned show;                    /* LOOK_GHOSTS | ... */
+    unsigned show; /* SHOW_GHOSTS | ... */
+    bool approach; /* where the bomb appears and its way until it strikes, in every frame, instead of `show` */
     const char *costs[LOOK_RUNS_MAX]; /* cost of each run, as text; NULL: none */
     const char *end;                  /* title of the end card; NULL: a default */
     bool end_bare;                    /* the end card has no table */
 } RenderLook;
 
-/* The names used in options, in the order of the enums and bits; each list ends with NULL. */
+/* The names used in options, in the order of the enums and of SHOW_MARKS; each list ends with NULL. */
 extern const char *const look_compare_names[],
     *const look_camera_names[], *const look_theme_names[], *const look_labels_names[], *const look_show_names[];
 

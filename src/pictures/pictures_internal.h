@@ -220,6 +220,9 @@ void card_draw(const Picture *picture, Moment moment, Drawing *drawing);
 
 /* Draws boxes, filled or as outlines, into a panel and clipped to it. */
 
+/* A body's box in a panel, in these colours. */
+Shape body_shape(const Picture *picture, int panel, int run, Moment moment, int body, const BodyColors *colors);
+
 /* Draws a body of a run; the bomb with its target. */
 void body_draw(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing);
 

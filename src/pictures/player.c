@@ -260,6 +260,10 @@ static void put_data(FILE *file, const Player *player) {
     json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out of view"));
     json_put_text(&json, "arrow_note", ARROW_NOTE);
     json_put_number(&json, "arrow_note_ems", player_ems(FONT_REGULAR, ARROW_NOTE));
+    json_begin_object(&json, "shows", JSON_ONE_LINE);
+    for (int i = 0; i < SHOW_COUNT; i++)
+        if (show_marks[i].script != NULL) json_put_text(&json, show_marks[i].name, show_marks[i].needs);
+    json_end(&json);
     json_put_number(&json, "visible", EVENTS_VISIBLE_DISTANCE);
     json_put_number(&json, "ground", FRAMING_GROUND);
     json_put_number(&json, "farthest", EXTENT_FARTHEST);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers of the look: rows and letters, thickness of lines, limits, and where the colour of a band changes; chosen
    by eye. C and the script of a page that plays runs have this one table: base/tools/embed.cmake makes constants of
-   JavaScript of its lines. So each is a `static const` number that both languages write alike. Colours are in theme.c;
+   JavaScript of its lines. So each is a `static const` number that both languages write alike. Colours are in look.c;
    a page has them as data. */
 #pragma once
 

@@ -24,7 +24,7 @@ static const Dash dashes[RENDER_PANELS_MAX] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {5, 3
 static bool is_shown(const Picture *picture) { return picture->curves != NULL; }
 
 bool timeline_plan(Picture *picture, Error *error) {
-    if ((picture->look.show & LOOK_TIMELINE) == 0) return true;
+    if ((picture->look.show & SHOW_TIMELINE) == 0) return true;
     int width = picture->layout.timeline.right - picture->layout.timeline.left, points = width;
     if (points > picture->frames) points = picture->frames;
     picture->curve_points = points;

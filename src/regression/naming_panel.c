@@ -87,7 +87,7 @@ size_t panel_pixel(const Panel *panel, int x, int y) {
     return (size_t)y * (size_t)panel->naming->scene->view->width + (size_t)x;
 }
 
-/* The width of an outline, at most (pictures/parts.c). */
+/* The width of an outline, at most (pictures/bodies.c). */
 static double outline_reach(const Panel *panel) {
     const ViewRect *rect = &panel->view->rect;
     return 3 + 0.008 * fmin(rect->right - rect->left, rect->bottom - rect->top);

@@ -34,7 +34,7 @@ table() {
 0 | one/frame_000050.png | render theirs.npz --size 320x180 --frames 50 --compare split --show trails -o one
 0 | two/frame_000050.png | render theirs.npz other.npz --size 320x180 --frames 50 --compare difference --show timeline -o two
 0 | --slow: no run has a contact of the bomb with a box; nothing is slowed down | render theirs.npz --size 320x180 --frames 40 --slow 2 -o slow
-2 | 'velocities' cannot be shown: run 2 (theirs) does not have them | render ours.npz theirs.npz --show velocities -o x
+2 | 'velocities' cannot be shown: run 2 (theirs) has no velocities | render ours.npz theirs.npz --show velocities -o x
 2 | 'contacts' cannot be shown: run 1 (theirs) has no contacts | render theirs.npz --show contacts -o x
 2 | 'impulses' cannot be shown: run 1 (theirs) has no contacts | render theirs.npz --show impulses -o x
 2 | the camera cannot follow the bomb: the first run has none | render theirs.npz --camera bomb -o x

@@ -5,7 +5,6 @@ import os
 from checks import Checks
 from chromium import Chromium
 
-ALL = "ghosts", "distance", "trails", "contacts", "impulses", "velocities"
 CONTROLS = {"button", "checkbox", "radio", "combobox", "slider", "spinbutton", "link", "textbox", "listbox", "menuitem",
             "tab"}
 NAMED = CONTROLS | {"image", "img", "Canvas", "figure", "dialog", "region", "radiogroup"}
@@ -76,7 +75,7 @@ def check_looks(checks, browser, audit):
             page.resize(width, height)
             page.prefer(dark, False)
             for compare in "split", "overlay", "difference":
-                page.run("player.change({compare: $0, body: 4, frame: 40, show: new Set($1)})", compare, ALL)
+                page.run("player.change({compare: $0, body: 4, frame: 40, show: new Set(Object.keys(player.data.shows))})", compare)
                 page.settle()
                 check_text(checks, page, f"{what} {compare}")
                 check_canvas(checks, page, f"{what} {compare}")

@@ -23,13 +23,13 @@ GO_TO = """new Promise(done => {
   addEventListener("hashchange", () => done(), {once: true});
   location.hash = $0;
 })"""
-MANY = "ghosts,distance,trails,contacts,impulses,velocities"  # more than the browser's font, where it is wider, has in render's rows
+ALL = "all"  # marks that a page has: more than the browser's font, where it is wider, has in render's rows
 # scene, frame, compare, show, theme, view
 CASES = [
     ("stack", 40, "split", "", "light", ""),
     ("stack", 40, "split", "", "dark", ""),
     ("stack", 40, "split", "trails", "light", ""),
-    ("stack", 40, "split", MANY, "dark", ""),
+    ("stack", 40, "split", ALL, "dark", ""),
     ("stack", 70, "overlay", "", "light", ""),
     ("stack", 70, "overlay", "trails", "dark", "0,2,6,5"),
     ("stack", 30, "difference", "", "light", "0,3,4,3"),
@@ -90,6 +90,7 @@ def options_of(compare_by, show, theme, view, camera):
 
 def check(checks, page, files, frame, compare_by, show, theme, view, size=SIZE):
     """One moment in both: the pictures, where their panels are, and the colours inside."""
+    show = page.run("Object.keys(player.data.shows).join()") if show == ALL else show
     what = f"{os.path.basename(files[0])} frame {frame} {compare_by} {show} {theme} {view}"
     render = [word for key, value in options_of(compare_by, show, theme, view, "camera") for word in ("--" + key, value)]
     checks.twinbox("render", *files, "-o", "drawn", "--size", "x".join(map(str, size)), "--frames", frame, *render)

@@ -128,6 +128,32 @@ def check_moments(checks, page, frames):
             checks.equal(f"a click on number {i + 1} of #{part}", view(page)["frame"], frame)
 
 
+# The panels as a picture, below which the legend has one row.
+PANELS = """(() => {
+  const {panels} = player.plan(stage.clientWidth, stage.clientHeight), {left, top} = panels[0], {width, height, ...end} = panels.at(-1);
+  const part = new OffscreenCanvas(end.left + width - left, end.top + height - top).getContext("2d");
+  player.draw();
+  part.drawImage(stage, -left, -top);
+  return part.canvas.convertToBlob().then(blob => blob.arrayBuffer()).then(bytes => crypto.subtle.digest("SHA-256", bytes))
+    .then(hash => [left, top, end.left, end.top, width, height, ...new Uint8Array(hash)].join());
+})()"""
+
+
+def check_marks_are_drawn(checks, page):
+    """Each mark changes pixels of the panels, beside another one: not only the legend."""
+    def panel_with(*show):
+        page.run("player.change({frame: 40, body: -1, compare: 'split', show: new Set($0), playing: false})", show)
+        page.wait("player.ready(40)")
+        page.settle()
+        return page.run(PANELS)
+    marks = page.run("Object.keys(player.data.shows)")
+    for name in marks:
+        other = "trails" if name != "trails" else "contacts"
+        checks.true(f"{name} is drawn in panels", panel_with(name, other) != panel_with(other))
+    page.run("player.change({show: new Set()})")
+    page.settle()
+
+
 def check_buttons(checks, page):
     """Each control changes the view, and shows it when a key has changed it."""
     page.run("player.change({frame: 10, body: -1, compare: 'split', show: new Set(), playing: false})")
@@ -135,7 +161,7 @@ def check_buttons(checks, page):
     for name in "overlay", "difference", "split":
         page.click(*page.middle(f"#compare-{name}"))
         checks.equal(f"radio button {name}", view(page)["compare"], name)
-    for name in "ghosts", "distance", "trails", "contacts", "impulses", "velocities":
+    for name in page.run("Object.keys(player.data.shows)"):
         page.click(*page.middle(f"#show-{name}"))
         checks.equal(f"check box {name}", view(page)["show"], [name])
         page.click(*page.middle(f"#show-{name}"))
@@ -277,6 +303,7 @@ def main():
         check_words(checks, page, loaded)
         check_mouse(checks, page, FRAMES)
         check_buttons(checks, page)
+        check_marks_are_drawn(checks, page)
         measured = Measured(checks, page, loaded, METHODS)
         for run, frame, body in (0, 16, 3), (1, 20.5, 10), (2, 75, 11), (1, 0, 1), measured.most_friction():
             measured.check(run, frame, body)

@@ -25,7 +25,7 @@ HASHES = """(async () => {
 FINITE = "Object.values(player.view.camera).every(x => typeof x === 'string' || Number.isFinite(x))"
 # Every frame with everything shown, near and far: drawing must not throw, nor leave the canvas empty.
 DRAW_ALL = """(async () => {
-  const shows = ["ghosts", "distance", "trails", "contacts", "impulses", "velocities"], frames = player.data.frames;
+  const shows = Object.keys(player.data.shows), frames = player.data.frames;
   for (const compare of ["split", "overlay", "difference"])
     for (const frame of new Set([0, (frames - 1) / 2 + 0.25, frames - 1].map(frame => Math.min(frame, frames - 1)))) {
       await player.load(frame);

@@ -4,7 +4,7 @@
 #include "pictures/render.h"
 #include "runs.h"
 
-enum { FRAMES = 40, RUNS = 3, WIDTH = 420, HEIGHT = 300, ALL_SHOWN = 127 };
+enum { FRAMES = 40, RUNS = 3, WIDTH = 420, HEIGHT = 300, ALL_SHOWN = (1 << SHOW_COUNT) - 1 };
 
 static Trajectory *runs[RUNS];
 static const Trajectory *panels[RUNS];

@@ -138,8 +138,8 @@ TEST_WITH(letters_of_films_are_clear, make, destroy) {
     static const int sizes[][2] = {{480, 320}, {640, 360}, {1280, 720}, {1920, 1080}, {720, 1280}};
     static const Moment moments[] = {{MOMENT_STORED, 60, 0, 1, 1}, {MOMENT_BETWEEN, 33, 2, 4, 4}},
                         cards[] = {{MOMENT_TITLE, 0, 0, 1, 1}, {MOMENT_END, 75, 0, 1, 1}};
-    const unsigned of_one = LOOK_TRAILS | LOOK_CONTACTS | LOOK_IMPULSES | LOOK_VELOCITIES,
-                   shown[] = {0, of_one, of_one | LOOK_GHOSTS | LOOK_DISTANCE | LOOK_TIMELINE};
+    const unsigned of_one = SHOW_TRAILS | SHOW_CONTACTS | SHOW_IMPULSES | SHOW_VELOCITIES,
+                   shown[] = {0, of_one, of_one | SHOW_GHOSTS | SHOW_DISTANCE | SHOW_TIMELINE};
     int faults = 0;
     for (size_t size = 0; size < sizeof sizes / sizeof *sizes; size++)
         for (int count = 1; count <= RUNS; count++) {

@@ -25,8 +25,8 @@ static bool has_room_for_its_rows(const Trajectory *const *runs, const RenderLoo
 
 TEST(the_layout_has_the_rows_that_are_drawn) {
     static const RenderLook looks[] = {
-        {.show = LOOK_CONTACTS | LOOK_IMPULSES | LOOK_VELOCITIES},
-        {.compare = LOOK_DIFFERENCE, .show = LOOK_TRAILS | LOOK_VELOCITIES | LOOK_CONTACTS}};
+        {.show = SHOW_CONTACTS | SHOW_IMPULSES | SHOW_VELOCITIES},
+        {.compare = LOOK_DIFFERENCE, .show = SHOW_TRAILS | SHOW_VELOCITIES | SHOW_CONTACTS}};
     Trajectory *runs[2] = {run_make("engine", 60), run_make("engine", 60)};
     run_position(runs[1], 59, FIRST_BOX)->x += 1;
     for (int frame = 0; frame < 60; frame++) runs[0]->velocity[frame * RUN_BODIES + FIRST_BOX].x = 3;

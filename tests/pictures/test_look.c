@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of each look: required runs, and positions of poses, cameras, colours and curves. */
 #include "made.h"
+#include "files.h"
 #include "owned_drawings.h"
 
 #include "look_runs.h"
@@ -64,7 +65,7 @@ TEST_WITH(each_compare_has_its_panels, make, destroy) {
 
 /* With a fixed camera only the timeline takes room. */
 TEST_WITH(curves_are_the_largest_distances, make, destroy) {
-    OWN(Picture) picture = picture_with_look(3, &(RenderLook){.show = LOOK_TIMELINE});
+    OWN(Picture) picture = picture_with_look(3, &(RenderLook){.show = SHOW_TIMELINE});
     assert_int_equal(picture.curve_points, FRAMES);
     for (int frame = 0; frame < FRAMES; frame++) {
         assert_near(picture.curves[FRAMES + frame], trajectory_distance(runs[0], runs[1], frame), 1e-6);
@@ -131,7 +132,7 @@ TEST_WITH(colors_of_distance_are_even_in_lightness, make, destroy) {
 
 TEST_WITH(distances_have_their_place_on_the_scale, make, destroy) {
     Scales scales;
-    OWN(Picture) picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
+    OWN(Picture) picture = picture_with_look(2, &(RenderLook){.show = SHOW_IMPULSES});
     assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 0.5, &error), error);
     assert_int_equal(scales.last_decade, 0);
     assert_false(scales.exceeded);
@@ -144,11 +145,11 @@ TEST_WITH(distances_have_their_place_on_the_scale, make, destroy) {
     assert_true(scales.exceeded && scales.last_decade == 1);
 }
 
-static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
+static uint64_t hash_of(const RenderLook *look, int width, int height, Moment moment) {
     Error error = {0};
-    RenderOptions options = {.width = 800, .height = 450, .look = *look};
-    Renderer *renderer = renderer_create(panels, count, &options, &error);
-    OWN(Image) *image = image_sized(800, 450);
+    RenderOptions options = {.width = width, .height = height, .look = *look};
+    Renderer *renderer = renderer_create(panels, 2, &options, &error);
+    OWN(Image) *image = image_sized(width, height);
     const bool *changed;
     assert_ok(renderer != NULL, error);
     assert_ok(renderer_draw_next(renderer, moment, image, &changed, &error), error);
@@ -157,15 +158,33 @@ static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
     return hash;
 }
 
+/* In a picture without a legend, as it is too small for text; in pages, by the script that the table names (a browser
+   sees it drawn: controls.py). */
+TEST_WITH(every_mark_is_drawn_in_frames_and_pages, make, destroy) {
+    const Moment moment = moment_stored(25);
+    const uint64_t plain = hash_of(&(RenderLook){0}, 320, 200, moment);
+    for (int i = 0; i < SHOW_COUNT; i++) {
+        const ShowMark *mark = &show_marks[i];
+        assert_string_equal(look_show_names[i], mark->name);
+        if (hash_of(&(RenderLook){.show = 1u << i}, 320, 200, moment) == plain)
+            fail_msg("%s is not drawn in frames", mark->name);
+        if (mark->script == NULL) continue;
+        char path[4096], use[64];
+        snprintf(path, sizeof path, SOURCE_DIR "/src/pictures/player/%s", mark->script);
+        snprintf(use, sizeof use, "shows(\"%s\")", mark->name);
+        FREED char *script = text_of(path);
+        if (strstr(script, use) == NULL) fail_msg("%s has no %s", mark->script, use);
+    }
+}
+
 /* Each option changes the picture, and so do costs and the text of the end card. */
 TEST_WITH(every_option_changes_the_picture, make, destroy) {
     const Moment moment = moment_stored(25), end = {MOMENT_END, FRAMES - 1, 0, 1, 1};
-    uint64_t plain = hash_of(&(RenderLook){0}, 2, moment);
-    for (int bit = 0; bit < 7; bit++) assert_true(hash_of(&(RenderLook){.show = 1u << bit}, 2, moment) != plain);
-    assert_true(hash_of(&(RenderLook){.theme = LOOK_DARK}, 2, moment) != plain);
-    assert_true(hash_of(&(RenderLook){.costs = {NULL, "8 s"}}, 2, moment) != plain);
-    assert_true(hash_of(&(RenderLook){0}, 2, (Moment){MOMENT_STORED, 25, 0, 4, 4}) != plain); /* slow motion */
-    assert_true(hash_of(&(RenderLook){.end = "Over"}, 2, end) != hash_of(&(RenderLook){0}, 2, end));
+    const uint64_t plain = hash_of(&(RenderLook){0}, 800, 450, moment);
+    assert_true(hash_of(&(RenderLook){.theme = LOOK_DARK}, 800, 450, moment) != plain);
+    assert_true(hash_of(&(RenderLook){.costs = {NULL, "8 s"}}, 800, 450, moment) != plain);
+    assert_true(hash_of(&(RenderLook){0}, 800, 450, (Moment){MOMENT_STORED, 25, 0, 4, 4}) != plain); /* slow motion */
+    assert_true(hash_of(&(RenderLook){.end = "Over"}, 800, 450, end) != hash_of(&(RenderLook){0}, 800, 450, end));
 }
 
 RUN_TESTS(NULL, NULL)

@@ -45,10 +45,10 @@ static void assert_followed(const RenderLook *look, int count, int width, int he
 
 TEST_WITH(every_look_is_the_same_whole_or_followed, make, destroy) {
     static const RenderLook looks[] = {
-        {.show = LOOK_GHOSTS | LOOK_CONTACTS},
-        {.show = LOOK_DISTANCE | LOOK_VELOCITIES, .theme = LOOK_DARK},
-        {.show = LOOK_TRAILS | LOOK_IMPULSES},
-        {.show = LOOK_TIMELINE, .theme = LOOK_DARK},
+        {.show = SHOW_GHOSTS | SHOW_CONTACTS},
+        {.show = SHOW_DISTANCE | SHOW_VELOCITIES, .theme = LOOK_DARK},
+        {.show = SHOW_TRAILS | SHOW_IMPULSES},
+        {.show = SHOW_TIMELINE, .theme = LOOK_DARK},
         {.compare = LOOK_OVERLAY},
         {.compare = LOOK_DIFFERENCE, .theme = LOOK_DARK},
         {.compare = LOOK_OVERLAY, .camera = LOOK_DIVERGENCE, .show = ALL_SHOWN},

@@ -193,7 +193,7 @@ TEST(the_view_leads_to_the_bodies) {
 
 TEST(the_view_names_the_files_of_the_runs) {
     RenderOptions options = options_for(temporary_path("named"));
-    options.look.show = LOOK_GHOSTS;
+    options.look.show = SHOW_GHOSTS;
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     json_t *manifest = json_load_file(manifest_of(options.directory), JSON_REJECT_DUPLICATES, NULL);
     const json_t *panel = json_array_get(json_object_get(json_object_get(manifest, "view"), "panels"), 1);

@@ -13,7 +13,7 @@ static Picture picture_of(double metres) {
     Error error = {0};
     const RenderOptions options = {.width = 1280,
                                    .height = 720,
-                                   .look = {.show = LOOK_CONTACTS | LOOK_IMPULSES, .view = {0, 1, metres, metres / 2}}};
+                                   .look = {.show = SHOW_CONTACTS | SHOW_IMPULSES, .view = {0, 1, metres, metres / 2}}};
     assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
     return picture;

@@ -26,11 +26,11 @@ static const Shot shots[] = {
     {"a", "stack", {"engine"}, 1, 20, 640, 360, {0}},
     {"b", "stack", {"engine", "momentum:k=20"}, 2, 60, 1280, 720, {.theme = LOOK_DARK}},
     {"c", "pyramid", {"engine"}, 1, 30, 1280, 720, {0}},
-    {"d", "pyramid_settled", {"engine", "momentum:k=20"}, 2, 70, 960, 540, {.show = LOOK_TIMELINE}},
+    {"d", "pyramid_settled", {"engine", "momentum:k=20"}, 2, 70, 960, 540, {.show = SHOW_TIMELINE}},
     {"e", "single", {"engine"}, 1, 40, 320, 180, {0}},
     {"f", "stability/arch", {"engine"}, 1, 60, 800, 450, {0}},
     {"g", "stability/card_house", {"engine"}, 1, 30, 800, 600, {.theme = LOOK_DARK}},
-    {"h", "stack", {"engine", "momentum:k=20", "momentum:k=5"}, 3, 90, 1920, 1080, {.show = LOOK_GHOSTS}},
+    {"h", "stack", {"engine", "momentum:k=20", "momentum:k=5"}, 3, 90, 1920, 1080, {.show = SHOW_GHOSTS}},
 };
 enum { SHOTS = sizeof shots / sizeof shots[0] };
 

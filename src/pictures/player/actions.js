@@ -44,7 +44,7 @@ const is_left_out = run => data.live && (!run.made_of || run.elsewhere || /^\s*e
 ui["copy-link"].onclick = () => copy(location.href.split("#")[0] + link_text(), "Link");
 /* Options that compare leave out the runs that cannot be compared, too. */
 ui["copy-command"].onclick = () => {
-  const {compare, show} = view, compares = compare !== "split" || show.has("ghosts") || show.has("distance");
+  const compares = view.compare !== "split" || [...view.show].some(look => data.shows[look] === "others");
   const options = [["frames", number_of(view.frame)], ...shown("camera"), ["theme", theme_name(), "light"]];
   const found = runs.filter(run => !is_left_out(run) && (run.compared || !compares)), left = runs.filter(run => !found.includes(run));
   copy([...new Set(found.map(simulation)), "twinbox render ", found.map(file_of).join(" "), " -o frame ",

@@ -1,4 +1,4 @@
-/* Boxes, filled or as outlines: src/pictures/parts.c. Its numbers in capitals are those of src/pictures/style.h. */
+/* Boxes, filled or as outlines: src/pictures/bodies.c. Its numbers in capitals are those of src/pictures/style.h. */
 
 /* Of colours "#rrggbb", in whole numbers as in C. */
 const channels = colour => [1, 3, 5].map(at => parseInt(colour.slice(at, at + 2), 16));

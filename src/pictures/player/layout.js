@@ -1,4 +1,4 @@
-/* Where a picture has its panels and texts: src/pictures/picture.c and panel.c, in CSS pixels. Where text would be
+/* Where a picture has its panels and texts: src/pictures/picture.c, in CSS pixels. Where text would be
    smaller than 12 pixels, it and its rows keep that size; larger pictures have the layout of `render`. */
 const {abs, ceil, cos, floor, hypot, log10, max, min, round, sin, trunc} = Math;
 

@@ -1,4 +1,4 @@
-/* What colours and lengths mean, below the panels: src/pictures/theme.c. An entry is a row of parts: texts, and samples with a
+/* What colours and lengths mean, below the panels: src/pictures/legend.c. An entry is a row of parts: texts, and samples with a
    width that draw themselves, given the middle of the text and its baseline. */
 
 function entries() {

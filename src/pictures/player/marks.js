@@ -1,4 +1,4 @@
-/* Trails below the bodies, contacts and arrows above: src/pictures/parts.c, panel.c and src/pixels/drawing.c. */
+/* Trails below the bodies, contacts and arrows above: src/pictures/marks.c and src/pixels/drawing.c. */
 
 /* The largest 1, 2 or 5 times a power of ten that is at most `most`. */
 function round_number(most) {

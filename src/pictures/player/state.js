@@ -1,7 +1,7 @@
 /* The state of the page, its elements and its colours. */
 const COMPARES = ["split", "overlay", "difference"], THEMES = ["auto", "light", "dark"], FIT = {kind: "fit"};
 const LABELLINGS = ["none", "number", "mass", "name"];
-const SHOWS = ["ghosts", "distance", "trails", "contacts", "impulses", "velocities"];
+const SHOWS = Object.keys(data.shows); /* each with what it needs: SHOW_MARKS in src/pictures/picture.h */
 const PARTS = {split: "", overlay: "ghosts", difference: "ghosts distance"}; /* which are no choice there */
 const view = {
   frame: 0, playing: false, speed: 1, slow: false, compare: "split", show: new Set(), body: -1, run: 0, camera: FIT,
@@ -72,10 +72,10 @@ function apply_theme() {
 
 /* Why a look cannot be had; "" if it can. */
 function refused(look) {
-  const need = {impulses: "contacts", mass: "masses", name: "names"}[look] ?? look, lacking = runs.findIndex(run => run[need] === false);
+  const needs = {...data.shows, overlay: "others", difference: "others", mass: "masses", name: "names"};
+  const need = needs[look], lacking = runs.findIndex(run => run[need] === false);
   if (lacking >= 0) return `${names[lacking]} has no ${need}`;
-  const compares = !/split|trails|contacts|velocities|none|number|masses|names/.test(need);
-  return compares && others.length === 0 ? "no run compares with the first" : "";
+  return need === "others" && others.length === 0 ? "no run compares with the first" : "";
 }
 
 /* Shows what the pointer is at, and all that changed, with the next picture of the screen. */
