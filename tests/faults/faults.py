@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs commands of twinbox with one failing call each (shim.c), and judges what they do.
+"""Runs commands of twinbox in which one call fails, or kills or interrupts them (shim.c), and judges what they do.
 
-    faults.py TWINBOX SOURCES [--call CALL]... [--every] [--sample K] [--jobs N] [--case NAME]...
+    faults.py TWINBOX SOURCES [--call CALL]... [--every] [--sample K] [--kills] [--most N] [--jobs N] [--case NAME]...
 
 A run with a fault must either do what the run without does (the same status, output and files), or end with exit status 3,
 a message, every old file intact, and no file left over. Short moves and interrupted reads and writes must not be noticed.
+--kills: a run is killed, or gets SIGTERM, which must give exit status 130, before calls that are spread evenly over its renames,
+writes, unlinks and fsyncs. No final name may hold another file than before or at the end. Then the same command, or its --resume,
+must end with the files of an undisturbed run, hidden and temporary ones, too.
 Prints each finding, and counts; exit status 1: there are findings."""
 import argparse
 import collections
 import concurrent.futures
+import ctypes
 import fnmatch
 import hashlib
 import os
@@ -18,17 +22,16 @@ import struct
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import zlib
 
-from cases import LONG, PREPARATION, SHORT
+from cases import CASES, PREPARED
 
 CALLS = ["malloc", "libmalloc", "open", "read", "write", "fsync", "rename", "unlink", "readdir", "close", "stat", "mkdir",
          "process", "wait"]
 MODES = {"malloc": ["fail", "rest"], "read": ["fail", "short", "eintr"], "write": ["fail", "rest", "short", "eintr"],
          "wait": ["eintr"]}
-ALL_MODES = {mode for modes in MODES.values() for mode in modes}
+KILLED = ["rename", "write", "unlink", "fsync"]
 # What the message of a failure names.
 NO_THREAD = "Resource temporarily unavailable"
 REASONS = {"malloc": ["memory"], "libmalloc": ["memory", NO_THREAD], "open": ["Too many open files"],
@@ -36,6 +39,7 @@ REASONS = {"malloc": ["memory"], "libmalloc": ["memory", NO_THREAD], "open": ["T
 # A stream keeps no reason; a process that cannot write its report has none.
 UNNAMED = ["standard output: error: cannot write", "-: error: cannot write",
            "a drawing process failed without an error message"]
+ENDS = {".html": b"</html>", ".xml": b"</testsuite>", ".png": b"IEND\xaeB`\x82", ".svg": b"</svg>", ".pdf": b"%%EOF"}
 HUNG = 120  # s
 
 Result = collections.namedtuple("Result", "status out err files counts struck place strays")
@@ -45,134 +49,130 @@ def snapshot(folder):
     """Every file, hidden ones too, by its contents; folders have contents None."""
     files = {}
     for root, folders, names in os.walk(folder):
-        inside = os.path.relpath(root, folder)
-        for name in folders:
-            files[os.path.normpath(os.path.join(inside, name))] = None
-        for name in names:
+        for name in folders + names:
             path = os.path.join(root, name)
-            with open(path, "rb") as file:
-                files[os.path.normpath(os.path.join(inside, name))] = hashlib.sha1(file.read()).hexdigest()
+            inside = os.path.relpath(path, folder)
+            if name in folders:
+                files[inside] = None
+            else:
+                with open(path, "rb") as file:
+                    files[inside] = hashlib.sha1(file.read()).hexdigest()
     return files
 
 
+def form(path):
+    """What is equal of a file with times: that it is whole, and the number of its lines if it is a table."""
+    with open(path, "rb") as file:
+        data = file.read()
+    ending = os.path.splitext(path)[1]
+    whole = data.rstrip().endswith(ENDS.get(ending, b"")) and (ending != ".csv" or data.endswith(b"\n"))
+    return data.count(b"\n") if whole and ending == ".csv" else whole
+
+
+def end_group(group, patience):
+    """Whether processes of the run are left after it; they get some seconds. Orphans belong to this process (subreaper)."""
+    for _ in range(int(100 * patience)):
+        try:
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        except ChildProcessError:
+            pass
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return False
+        time.sleep(0.01)
+    os.killpg(group, signal.SIGKILL)
+    return True
+
+
 class Bench:
-    """Runs one case again and again, each time in the same state of a folder."""
+    """Runs one case again and again, each time in the same state of a folder. One per process."""
 
     def __init__(self, program, sources, prepared, case):
-        self.program, self.sources, self.case = program, sources, case
-        self.prepared = prepared
+        self.program, self.sources, self.prepared, self.case = program, sources, prepared, case
         self.folder = tempfile.mkdtemp(prefix="faults-")
+        self.top = os.path.join(self.folder, "run")
+        self.work = os.path.join(self.top, "work")
         self.state = None
-        self.start = None
-        self.work = os.path.join(self.folder, "run", "work")
-        self.counts = os.path.join(self.folder, "counts")
-
-    def begin(self):
-        """Kills a first run of the case, and keeps what it leaves as the state to begin with."""
-        if self.run(f"{self.case.killed}:kill").status == -signal.SIGKILL:
-            start = os.path.join(self.folder, "start")
-            shutil.copytree(self.work, start)
-            self.start = start
-            self.state = None
-
-    def close(self):
-        shutil.rmtree(self.folder)
+        # What differs between runs without faults (times) is compared by its form alone.
+        self.restore()
+        first = self.run("malloc:0:fail", sites=os.path.join(self.folder, "sites"))
+        if first.status not in (0, 1):
+            raise SystemExit(f"{case.name}: exit status {first.status}: {first.err}")
+        self.restore()
+        self.wanted = self.run("malloc:0:fail")
+        self.timed = {path: form(os.path.join(self.top, path)) for path, digest in self.wanted.files.items()
+                      if first.files.get(path) != digest}
+        self.timed_output = case.says_how or first.out != self.wanted.out
+        with open(os.path.join(self.folder, "sites")) as file:
+            self.sites = [line.split() for line in file]
 
     def restore(self):
-        top = os.path.dirname(self.work)
-        if self.state is not None and snapshot(top) == self.state:
+        if self.state is not None and snapshot(self.top) == self.state:
             return
-        shutil.rmtree(top, ignore_errors=True)
-        os.makedirs(os.path.join(top, "tmp"))
-        if self.start is not None:
-            shutil.copytree(self.start, self.work)
-        else:
-            os.mkdir(self.work)
-            for name in self.case.inputs:
-                new, _, old = name.partition("=")
-                source, target = os.path.join(self.prepared, old or new), os.path.join(self.work, new)
-                (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
-        self.state = snapshot(top)
+        shutil.rmtree(self.top, ignore_errors=True)
+        os.makedirs(os.path.join(self.top, "tmp"))
+        os.mkdir(self.work)
+        for name in self.case.inputs:
+            new, _, old = name.partition("=")
+            source, target = os.path.join(self.prepared, old or new), os.path.join(self.work, new)
+            (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
+        self.state = snapshot(self.top)
 
-    def run(self, fault, sites=None):
-        self.restore()
-        if os.path.exists(self.counts):
-            os.remove(self.counts)
+    def run(self, fault, arguments=None, sites=None):
+        counts = os.path.join(self.folder, "counts")
+        if os.path.exists(counts):
+            os.remove(counts)
         # Libraries leak where their own memory runs out.
         leaks = 0 if fault.startswith("libmalloc") else 1
-        environment = {"PATH": os.environ["PATH"], "OMP_NUM_THREADS": "1",
-                       "TMPDIR": os.path.join(self.folder, "run", "tmp"),
+        environment = {"PATH": os.environ["PATH"], "OMP_NUM_THREADS": "1", "TMPDIR": os.path.join(self.top, "tmp"),
                        "LD_PRELOAD": os.path.join(os.path.dirname(self.program), "tests", "libfault_shim.so"),
-                       "TWINBOX_FAULT": fault, "TWINBOX_FAULT_COUNTS": self.counts,
+                       "TWINBOX_FAULT": fault, "TWINBOX_FAULT_COUNTS": counts,
                        "ASAN_OPTIONS": f"exitcode=99:verify_asan_link_order=0:detect_leaks={leaks}",
                        "LSAN_OPTIONS": f"suppressions={self.sources}/tests/known_leaks.txt:print_suppressions=0"}
         if sites:
             environment["TWINBOX_FAULT_SITES"] = sites
-        arguments = self.case.arguments.replace("SCENES", os.path.join(self.sources, "scenes")).split()
-        with open(os.path.join(self.folder, "out"), "w+b") as out, open(os.path.join(self.folder, "err"), "w+b") as err:
-            process = subprocess.Popen([self.program, *arguments], cwd=self.work, stdin=subprocess.DEVNULL, stdout=out,
+        words = (arguments or self.case.arguments).replace("SCENES", os.path.join(self.sources, "scenes")).split()
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            process = subprocess.Popen([self.program, *words], cwd=self.work, stdin=subprocess.DEVNULL, stdout=out,
                                        stderr=err, env=environment, start_new_session=True)
             try:
                 status = process.wait(HUNG)
             except subprocess.TimeoutExpired:
                 status = "hangs"
-            strays = self.end_group(process.pid, status)
+            # ffmpeg ends some time after those that were killed.
+            strays = end_group(process.pid, 0 if status == "hangs" else HUNG if status == -signal.SIGKILL else 0.5)
             out.seek(0)
             err.seek(0)
             texts = out.read(), err.read().decode(errors="replace")
-        with open(self.counts, "rb") as file:
+        with open(counts, "rb") as file:
             numbers = struct.unpack(f"<{len(CALLS) + 2}Q", file.read(8 * (len(CALLS) + 2)))
-        return Result(status, *texts, snapshot(os.path.dirname(self.work)), dict(zip(CALLS, numbers)), numbers[-2],
-                      numbers[-1], strays)
-
-    @staticmethod
-    def end_group(group, status):
-        """Whether processes of the run are left after it; they get half a second."""
-        for _ in range(0 if status == "hangs" else 50):
-            try:
-                os.killpg(group, 0)
-            except ProcessLookupError:
-                return False
-            time.sleep(0.01)
-        try:
-            os.killpg(group, signal.SIGKILL)
-        except ProcessLookupError:
-            return False
-        return True
-
-
-class Judge:
-    """Knows what a case does without faults; what differs between two such runs (times) is not compared."""
-
-    def __init__(self, bench):
-        self.bench = bench
-        sites = os.path.join(bench.folder, "sites")
-        bench.run("malloc:0:fail", sites)
-        self.reference, again = bench.run("malloc:0:fail"), bench.run("malloc:0:fail")
-        self.before = bench.state
-        if self.reference.status not in (0, 1):
-            raise SystemExit(f"{bench.case.name}: exit status {self.reference.status}: {self.reference.err}")
-        self.timed = {path for path, digest in self.reference.files.items() if again.files.get(path) != digest}
-        self.timed_output = bench.case.says_how or self.reference.out != again.out
-        with open(sites) as file:
-            self.sites = [line.split() for line in file]
+        return Result(status, *texts, snapshot(self.top), dict(zip(CALLS, numbers)), *numbers[-2:], strays)
 
     def is_journal(self, path):
-        return any(fnmatch.fnmatch(path, f"work/{journal}") for journal in self.bench.case.journals)
+        return any(fnmatch.fnmatch(path, f"work/{journal}") for journal in self.case.journals)
 
     def done(self, result):
         """None if the run did what it does without faults."""
-        wanted = self.reference
+        wanted = self.wanted
         if result.status != wanted.status:
             return f"exit status {result.status}: {result.err.strip()[-200:] or 'no message'}"
         if result.out != wanted.out and not self.timed_output:
             return f"exit status {result.status}, but other output"
-        for path in sorted(result.files.keys() | wanted.files.keys()):
+        return self.ended(result)
+
+    def ended(self, result):
+        """None if its files are those of a run without faults."""
+        for path in sorted(result.files.keys() | self.wanted.files.keys()):
             if path not in result.files:
                 return f"exit status {result.status}, but no {path}"
-            if path not in wanted.files:
+            if path not in self.wanted.files:
                 return f"exit status {result.status}, but {path} is left over"
-            if result.files[path] != wanted.files[path] and path not in self.timed:
+            if path in self.timed:
+                if form(os.path.join(self.top, path)) != self.timed[path]:
+                    return f"exit status {result.status}, but {path} is not whole"
+            elif result.files[path] != self.wanted.files[path]:
                 return f"exit status {result.status}, but {path} differs"
         return None
 
@@ -185,116 +185,110 @@ class Judge:
         named = any(reason in result.err for reason in [*REASONS.get(call, [""]), *UNNAMED])
         if not named or "Success" in result.err or "No error" in result.err:
             return f"another reason: {result.err.strip()[-200:]}"
-        for path, digest in self.before.items():
-            if path not in result.files and path in self.reference.files and not self.is_journal(f"{path}.part"):
+        for path in self.state:
+            if path not in result.files and path in self.wanted.files and not self.is_journal(f"{path}.part"):
                 return f"{path} is lost"
         for path, digest in result.files.items():
-            if digest in (self.before.get(path, ""), self.reference.files.get(path, "")) or path in self.timed:
-                continue
-            if self.is_journal(path):
-                continue
-            if digest is None and path.startswith("work/"):
-                continue  # a folder
-            if call == "unlink" and path not in self.before:
-                continue
-            return f"{path} is damaged" if path in self.before else f"{path} is left over"
+            old = digest in (self.state.get(path, ""), self.wanted.files.get(path, "")) or path in self.timed
+            folder = digest is None and path.startswith("work/")
+            if not (old or folder or self.is_journal(path) or (call == "unlink" and path not in self.state)):
+                return f"{path} is damaged" if path in self.state else f"{path} is left over"
         return None
 
-    def judge(self, result, call, mode):
+    def fault(self, call, n, mode):
+        """The result of a run with this fault, and what is wrong with it, or None."""
+        self.restore()
+        result = self.run(f"{call}:{n}:{mode}")
         if result.strays:
-            return "processes are left over"
+            return result, "processes are left over"
         different = self.done(result)
         if different is None or not result.struck:
-            return None
-        if mode == "short" or (mode == "eintr" and call in ("read", "write", "wait")):
-            return different
-        return different if result.status == self.reference.status else self.refused(result, call)
+            return result, None
+        if mode != "short" and not (mode == "eintr" and call in ("read", "write", "wait")):
+            different = different if result.status == self.wanted.status else self.refused(result, call)
+        return result, different
 
+    def kill(self, call, n, mode):
+        """The same of a run that is killed or interrupted, and continued."""
+        self.restore()
+        result = self.run(f"{call}:{n}:{mode}")
+        # Where another order of threads calls less often, it ends undisturbed.
+        if result.status not in (self.wanted.status, -signal.SIGKILL if mode == "kill" else 130):
+            return result, f"exit status {result.status}: {result.err.strip()[-200:]}"
+        if result.status == self.wanted.status:
+            return result, None
+        for path, digest in result.files.items():
+            early = mode == "term" and path == f"work/{self.case.early}"
+            old = digest in (self.state.get(path, ""), self.wanted.files.get(path))
+            if path in self.wanted.files and not (early or old or self.timed.get(path) == form(os.path.join(self.top, path))):
+                return result, f"{path} is half-written"
+        again = self.run("malloc:0:fail", self.case.resume)
+        if again.status != self.wanted.status:
+            return result, f"continued: exit status {again.status}: {again.err.strip()[-200:]}"
+        return result, self.ended(again)
 
-def places(program, addresses):
-    """Functions of the program by the address that a call returns to."""
-    known = [address for address in addresses if address]
-    if not known:
-        return {}
-    lines = subprocess.run(["addr2line", "-f", "-s", "-e", program, *[hex(address - 1) for address in known]],
-                           capture_output=True, text=True, check=False).stdout.splitlines()
-    return {address: f"{name} {line}".replace(" ??:?", "") for address, name, line in zip(known, lines[::2], lines[1::2])}
-
-
-class Driver:
-    def __init__(self, options):
-        self.options = options
-        self.program, self.sources = os.path.abspath(options.program), os.path.abspath(options.sources)
-        self.tally = collections.Counter()
-        self.lock = threading.Lock()
-        self.prepared = tempfile.mkdtemp(prefix="faults-")
-
-    def prepare(self):
-        for line in PREPARATION:
-            arguments = line.replace("SCENES", os.path.join(self.sources, "scenes")).split()
-            done = subprocess.run([self.program, *arguments], cwd=self.prepared, capture_output=True, text=True, check=False)
-            if done.returncode not in (0, 1):
-                raise SystemExit(f"{line}: {done.stderr}")
-
-    def numbers(self, judge, call, mode):
+    def numbers(self, call, mode, options):
         """Which calls of a kind are to fail: all, or the first from each place. Of these, one in K, not always the first."""
-        if judge.bench.case in SHORT and (call == "malloc" or (self.options.every and call != "write")):
-            numbers = range(1, judge.reference.counts[call] + 1)
+        if self.case.short and (call == "malloc" or (options.every and call != "write")):
+            numbers = range(1, self.wanted.counts[call] + 1)
         else:
-            numbers = [int(n) for kind, n, _ in judge.sites if kind == call]
-        step = self.options.sample * judge.bench.case.sample
-        return numbers[zlib.crc32(f"{judge.bench.case.name} {call} {mode}".encode()) % step :: step]
+            numbers = [int(n) for kind, n in self.sites if kind == call]
+        step = options.sample * self.case.sample
+        return numbers[zlib.crc32(f"{self.case.name} {call} {mode}".encode()) % step :: step]
 
-    def try_fault(self, judge, call, n, mode):
-        """What a fault showed, or None."""
-        result = judge.bench.run(f"{call}:{n}:{mode}")
-        finding = judge.judge(result, call, mode)
-        kind = "found" if finding else "unreached" if not result.struck else "refused" if result.status == 3 else "harmless"
-        with self.lock:
-            self.tally[call, mode, kind] += 1
-        return (call, n, mode, result.place, finding) if finding else None
+    def kills(self, most):
+        """About so many calls: of each kind the first, the last and some between, or one in the middle. SIGTERM at every second."""
+        kinds = sorted((kind for kind in KILLED if self.wanted.counts[kind] > 0), key=self.wanted.counts.get)
+        points = []
+        for place, kind in enumerate(kinds):
+            count = self.wanted.counts[kind]
+            taken = min(count, max(1, (most - len(points)) // (len(kinds) - place)))
+            points += [(kind, 1 + (i * (count - 1) // (taken - 1) if taken > 1 else count // 2)) for i in range(taken)]
+        return [(*point, "kill") for point in points] + [(*point, "term") for point in points[::2]]
 
-    def try_case(self, case):
-        begun = time.monotonic()
-        bench = Bench(self.program, self.sources, self.prepared, case)
-        try:
-            if case.killed:
-                bench.begin()
-            judge = Judge(bench)
-            faults = [(call, n, mode) for call in self.options.call or CALLS
-                      for mode in MODES.get(call, ["fail"]) if mode in (self.options.mode or ALL_MODES)
-                      for n in self.numbers(judge, call, mode)]
-            findings = [finding for fault in faults if (finding := self.try_fault(judge, *fault))]
-        finally:
-            bench.close()
-        with self.lock:
-            self.print_case(case, findings, time.monotonic() - begun)
 
-    def print_case(self, case, findings, seconds):
-        place = places(self.program, {finding[3] for finding in findings})
-        for call, n, mode, address, finding in sorted(findings):
-            print(f"{case.name}: {call}:{n}:{mode} in {place.get(address, 'a library')}: {finding}")
-        print(f"{case.name}: {len(findings)} findings, {seconds:.0f} s", flush=True)
+def try_case(program, sources, prepared, case, options):
+    """Its counts of outcomes, and lines about it."""
+    # PR_SET_CHILD_SUBREAPER: the workers of a killed process belong to this one.
+    ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)
+    begun = time.monotonic()
+    bench = Bench(program, sources, prepared, case)
+    faults = bench.kills(options.most or case.most) if options.kills else [
+        (call, n, mode) for call in options.call or CALLS for mode in MODES.get(call, ["fail"])
+        if not options.mode or mode in options.mode for n in bench.numbers(call, mode, options)]
+    tally, lines = collections.Counter(), []
+    for call, n, mode in faults:
+        result, finding = (bench.kill if options.kills else bench.fault)(call, n, mode)
+        met = result.status in (-signal.SIGKILL, 130) if options.kills else result.struck
+        kind = "found" if finding else "unreached" if not met else "harmless" if result.status == bench.wanted.status else "refused"
+        tally[call, mode, kind] += 1
+        if finding:
+            lines.append(f"{case.name}: {call}:{n}:{mode} in {place(program, result.place)}: {finding}")
+    shutil.rmtree(bench.folder)
+    return tally, [*lines, f"{case.name}: {len(lines)} findings, {time.monotonic() - begun:.0f} s"]
 
-    def report(self):
-        print(f"{'call':10} {'mode':6} {'tried':>7} {'refused':>8} {'harmless':>9} {'findings':>9}")
-        for call, mode in sorted({key[:2] for key in self.tally}, key=lambda key: (CALLS.index(key[0]), key[1])):
-            kinds = [self.tally[call, mode, kind] for kind in ("refused", "harmless", "found")]
-            print(f"{call:10} {mode:6} {sum(kinds):7} {kinds[0]:8} {kinds[1]:9} {kinds[2]:9}")
-        findings = sum(count for key, count in self.tally.items() if key[2] == "found")
-        print(f"{sum(self.tally.values())} faults, {findings} findings")
-        return 1 if findings else 0
 
-    def run(self):
-        cases = [case for case in SHORT + LONG if not self.options.case or case.name in self.options.case]
-        try:
-            self.prepare()
-            with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
-                for done in [pool.submit(self.try_case, case) for case in cases]:
-                    done.result()
-        finally:
-            shutil.rmtree(self.prepared)
-        return self.report()
+def place(program, address):
+    """The function of the program to which a call returns."""
+    if not address:
+        return "a library"
+    return " ".join(subprocess.run(["addr2line", "-f", "-s", "-e", program, hex(address - 1)], capture_output=True, text=True,
+                                   check=False).stdout.split())
+
+
+def prepare(program, sources, folder, name):
+    """Makes the input, after those that its commands name."""
+    if os.path.exists(os.path.join(folder, name)):
+        return
+    for command in PREPARED[name].replace("SCENES", os.path.join(sources, "scenes")).split(" && "):
+        words = command.split()
+        for word in words:
+            if word in PREPARED and word != name:
+                prepare(program, sources, folder, word)
+        done = subprocess.run(["sh", "-c", command[3:]] if words[0] == "sh" else [program, *words, "-q"], cwd=folder,
+                              stdout=subprocess.DEVNULL, check=False)
+        if done.returncode not in (0, 1):
+            sys.exit(f"{command}: exit status {done.returncode}")
 
 
 def main():
@@ -305,12 +299,33 @@ def main():
     parser.add_argument("--mode", action="append")
     parser.add_argument("--every", action="store_true")
     parser.add_argument("--sample", type=int, default=1)
+    parser.add_argument("--kills", action="store_true")
+    parser.add_argument("--most", type=int)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--case", action="append")
     options = parser.parse_args()
     if options.call == ["system"]:
         options.call = [call for call in CALLS if not call.endswith("malloc")]
-    sys.exit(Driver(options).run())
+    program, sources = os.path.abspath(options.program), os.path.abspath(options.sources)
+    cases = [case for case in CASES if case.name in (options.case or [case.name]) and (case.most or not options.kills)]
+    tally = collections.Counter()
+    with tempfile.TemporaryDirectory(prefix="faults-") as prepared, \
+         concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
+        for case in cases:
+            for name in case.inputs:
+                prepare(program, sources, prepared, name.rpartition("=")[2])
+        for job in concurrent.futures.as_completed([pool.submit(try_case, program, sources, prepared, case, options)
+                                                    for case in cases]):
+            counts, lines = job.result()
+            tally += counts
+            print("\n".join(lines), flush=True)
+    print(f"{'call':10} {'mode':6} {'tried':>7} {'refused':>8} {'harmless':>9} {'findings':>9}")
+    for call, mode in sorted({key[:2] for key in tally}, key=lambda key: (CALLS.index(key[0]), key[1])):
+        kinds = [tally[call, mode, kind] for kind in ("refused", "harmless", "found")]
+        print(f"{call:10} {mode:6} {sum(kinds):7} {kinds[0]:8} {kinds[1]:9} {kinds[2]:9}")
+    findings = sum(count for key, count in tally.items() if key[2] == "found")
+    print(f"{tally.total()} faults, {findings} findings")
+    sys.exit(1 if findings or not tally else 0)
 
 
 if __name__ == "__main__":
