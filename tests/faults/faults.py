@@ -153,6 +153,13 @@ class Bench:
     def is_journal(self, path):
         return any(fnmatch.fnmatch(path, f"work/{journal}") for journal in self.case.journals)
 
+    def lost(self, result):
+        """None if no old file is gone that the run would have renewed; what a journal renews may be gone meanwhile."""
+        for path in self.state:
+            if path not in result.files and path in self.wanted.files and not self.is_journal(f"{path}.part"):
+                return f"{path} is lost"
+        return None
+
     def done(self, result):
         """None if the run did what it does without faults."""
         wanted = self.wanted
@@ -185,9 +192,8 @@ class Bench:
         named = any(reason in result.err for reason in [*REASONS.get(call, [""]), *UNNAMED])
         if not named or "Success" in result.err or "No error" in result.err:
             return f"another reason: {result.err.strip()[-200:]}"
-        for path in self.state:
-            if path not in result.files and path in self.wanted.files and not self.is_journal(f"{path}.part"):
-                return f"{path} is lost"
+        if lost := self.lost(result):
+            return lost
         for path, digest in result.files.items():
             old = digest in (self.state.get(path, ""), self.wanted.files.get(path, "")) or path in self.timed
             folder = digest is None and path.startswith("work/")
@@ -217,6 +223,8 @@ class Bench:
             return result, f"exit status {result.status}: {result.err.strip()[-200:]}"
         if result.status == self.wanted.status:
             return result, None
+        if lost := self.lost(result):
+            return result, lost
         for path, digest in result.files.items():
             early = mode == "term" and path == f"work/{self.case.early}"
             old = digest in (self.state.get(path, ""), self.wanted.files.get(path))

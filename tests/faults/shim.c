@@ -4,16 +4,16 @@
    TWINBOX_FAULT=CALL:N:MODE   strikes the N-th call (from 1; 0: none) of a kind, counted over all processes of a run:
      malloc    allocations by our own code (malloc, calloc, realloc, aligned_alloc, strdup, strndup)
      libmalloc allocations by libraries that the program is linked with; not those of the OpenGL driver and the loader
-     open      open, openat, opendir, fdopendir, fopen, mkstemp, tmpfile
+     open      open, openat, opendir, fdopendir, fopen, mkstemp
      read      read, pread, fread, fgets
      write     write, pwrite, send, fflush, and what prints to a stream (but stderr)
-     fsync     fsync, fdatasync, syncfs
-     rename    rename, renameat, link, linkat
+     fsync     fsync
+     rename    rename, renameat, linkat
      unlink    unlink, unlinkat, remove, rmdir
      readdir   readdir
      close     close, closedir, fclose
      stat      stat, lstat, fstat, fstatat, access, readlink, realpath
-     mkdir     mkdir, mkdirat, mkdtemp
+     mkdir     mkdir, mkdirat
      process   fork, posix_spawnp, pipe, socketpair, pthread_create, dup, dup2
      wait      poll, waitpid (always EINTR)
    MODE fail: the call fails with the usual errno. rest: so do all later ones. eintr: it fails with EINTR. short: it
@@ -31,7 +31,6 @@
 #include <errno.h>
 #include <execinfo.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <link.h>
 #include <poll.h>
 #include <pthread.h>
@@ -338,7 +337,6 @@ CALL(DIR *, opendir, open, NULL, (const char *path), (path))
 CALL(DIR *, fdopendir, open, NULL, (int file), (file))
 CALL(int, mkstemp, open, -1, (char *path), (path))
 CALL(FILE *, fopen, open, NULL, (const char *restrict path, const char *restrict how), (path, how))
-CALL(FILE *, tmpfile, open, NULL, (void), ())
 
 /* Half of the bytes in mode short. */
 #define MOVING(NAME, KIND, PARAMETERS, ARGUMENTS)               \
@@ -356,12 +354,9 @@ MOVING(pwrite, write, (int file, const void *data, size_t size, off_t at), (file
 MOVING(send, write, (int file, const void *data, size_t size, int how), (file, data, size, how))
 
 CALL(int, fsync, fsync, -1, (int file), (file))
-CALL(int, fdatasync, fsync, -1, (int file), (file))
-CALL(int, syncfs, fsync, -1, (int file), (file))
 
 CALL(int, rename, rename, -1, (const char *from, const char *to), (from, to))
 CALL(int, renameat, rename, -1, (int from_at, const char *from, int to_at, const char *to), (from_at, from, to_at, to))
-CALL(int, link, rename, -1, (const char *from, const char *to), (from, to))
 CALL(int, linkat, rename, -1, (int from_at, const char *from, int to_at, const char *to, int how),
      (from_at, from, to_at, to, how))
 
@@ -371,7 +366,6 @@ CALL(int, remove, unlink, -1, (const char *path), (path))
 CALL(int, rmdir, unlink, -1, (const char *path), (path))
 
 CALL(struct dirent *, readdir, readdir, NULL, (DIR * directory), (directory))
-CALL(int, nftw, readdir, -1, (const char *path, __nftw_func_t visit, int files, int how), (path, visit, files, how))
 
 /* Also a close that fails has closed. */
 #define CLOSING(TYPE, NAME)                            \
@@ -396,7 +390,6 @@ CALL(char *, realpath, stat, NULL, (const char *restrict path, char *restrict ta
 
 CALL(int, mkdir, mkdir, -1, (const char *path, mode_t mode), (path, mode))
 CALL(int, mkdirat, mkdir, -1, (int at, const char *path, mode_t mode), (at, path, mode))
-CALL(char *, mkdtemp, mkdir, NULL, (char *path), (path))
 
 CALL(int, pipe, process, -1, (int ends[2]), (ends))
 CALL(int, socketpair, process, -1, (int domain, int type, int protocol, int ends[2]), (domain, type, protocol, ends))
