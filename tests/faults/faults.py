@@ -271,7 +271,8 @@ def try_case(program, sources, prepared, case, options):
         kind = "found" if finding else "unreached" if not met else "harmless" if result.status == bench.wanted.status else "refused"
         tally[call, mode, kind] += 1
         if finding:
-            lines.append(f"{case.name}: {call}:{n}:{mode} in {place(program, result.place)}: {finding}")
+            where = "" if options.kills else f" in {place(program, result.place)}"
+            lines.append(f"{case.name}: {call}:{n}:{mode}{where}: {finding}")
     shutil.rmtree(bench.folder)
     return tally, [*lines, f"{case.name}: {len(lines)} findings, {time.monotonic() - begun:.0f} s"]
 
