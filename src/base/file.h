@@ -157,53 +157,8 @@ int standard_output(void);
 /* Whether standard output is the file of this status: /dev/stdout may be a regular file. */
 bool standard_output_is(const struct stat *status);
 
-/* Files that get their name when they are whole. Before, they have none where the file system can do that; otherwise,
-   and for the moment in which one replaces a file, the name is `.twinbox-MACHINE-PID-....tmp` and the file is locked by
-   flock(): so a file that a killed process left can be told from one in use, also in a folder that machines share.
-   Functions set errno when they fail. */
-
-typedef struct TemporaryFile {
-    int at;              /* the open directory that names are relative to, or AT_FDCWD */
-    int file;            /* open for reading and writing */
-    char name[PATH_MAX]; /* "": none */
-} TemporaryFile;
-
-/* Opens an empty file in the folder of path. */
-bool temporary_open(TemporaryFile *temporary, int at, const char *path);
-
-/* Opens one that never gets a name, after a sweep. Returns the file, or -1. */
-int temporary_nameless(const char *path);
-
-/* Gives it the name `path`, instead of a file that has it; EEXIST from temporary_link() if there is one. */
-bool temporary_rename(TemporaryFile *temporary, const char *path);
-bool temporary_link(TemporaryFile *temporary, const char *path);
-
-/* Removes a temporary name; the file lasts until it is closed. */
-bool temporary_remove_name(TemporaryFile *temporary);
-
-/* The same, and closes the file. Leaves errno unchanged. */
-void temporary_close(TemporaryFile *temporary);
-
-/* Removes what killed processes of this machine left in the folder of path: once for each folder, as it reads the whole
-   of it. Best effort: nothing depends on it. */
-void temporary_sweep(int at, const char *path);
-
-/* The folder for temporary files: TMPDIR, or /tmp. */
-const char *temporary_files_folder(void);
-
-/* Files, which take long to make, and folders that only one process at a time writes. */
-
-typedef struct FileReservation {
-    TemporaryFile lock; /* beside the file; what a killed process left is removed as other temporary files are */
-} FileReservation;
-
-/* One file at a time. ERROR_SYSTEM names the process that has reserved it. Pipes and devices are not reserved. The
-   reservation must last until file_release(), or until the program ends. */
-bool file_reserve(FileReservation *reservation, const char *path, Error *error);
-bool file_release(FileReservation *reservation, Error *error);
-
 /* Makes the folder where missing, and reserves it until this process ends: by an advisory lock on the folder itself, so
-   that no file is left when the process is killed. Calls after the first have no effect. Waits shortly for the children
-   of a process that has ended. ERROR_SYSTEM names the process that has the folder. Where the file system has no locks,
-   nothing is reserved. */
+   that no file is left when the process is killed. Calls after the first have no effect. Waits for some seconds, as
+   children of a process that has ended may still write; then ERROR_SYSTEM. Where the file system has no locks, nothing
+   is reserved. */
 bool folder_reserve(const char *folder, Error *error);

@@ -225,29 +225,19 @@ static bool machine_start(Process *process, const char *const *argv, int child_i
                         code == ENOENT ? "; is its package installed?" : "");
 }
 
-/* In the folder for temporary files, for which tmpfile() has no choice. */
-static FILE *open_output(void) {
-    char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s/output", temporary_files_folder()) >= PATH_MAX) {
-        errno = ENAMETOOLONG;
-        return NULL;
-    }
-    const int file = temporary_nameless(path);
-    FILE *output = file >= 0 ? fdopen(file, "r+") : NULL;
-    if (output == NULL && file >= 0) close(file);
-    return output;
-}
-
 bool process_start(Process *process, const char *const *argv, Error *error) {
     /* A socket, not a pipe: a write to a pipe without a reader raises SIGPIPE in the whole program. */
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) return error_system(error, argv[0], "%s", strerror(errno));
     fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    *process = (Process){.name = argv[0], .input = ends[0], .output = open_output()};
-    bool ok = process->output != NULL ? machine_start(process, argv, ends[1], error)
-                                      : error_system(error, argv[0], "no temporary file in %s: %s",
-                                                     temporary_files_folder(), strerror(errno));
+    const int draft = file_draft("-", error); /* in the folder for temporary files, for which tmpfile() has no choice */
+    *process = (Process){.name = argv[0], .input = ends[0], .output = draft >= 0 ? fdopen(draft, "r+") : NULL};
+    if (process->output == NULL && draft >= 0) {
+        error_system(error, argv[0], "%s", strerror(errno));
+        close(draft);
+    }
+    const bool ok = process->output != NULL && machine_start(process, argv, ends[1], error);
     close(ends[1]);
     if (ok) return true;
     close(process->input);

@@ -72,14 +72,12 @@ static void print_rows(const Options *options, const Dataset *dataset) {
 }
 
 static bool record_dataset(const Options *options, Error *error) {
-    FileReservation reservation;
-    if (!file_reserve(&reservation, options->output, error)) return false;
     Dataset *dataset = dataset_record(&options->dataset, progress_bar_begin("recording launches"), error);
     progress_bar_end();
     const bool ok = dataset != NULL && dataset_write(dataset, options->output, error);
     if (ok) print_rows(options, dataset);
     dataset_destroy(dataset);
-    return file_release(&reservation, error) && ok;
+    return ok;
 }
 
 bool command_dataset(int argc, char **argv, Error *error) {

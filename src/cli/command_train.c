@@ -342,8 +342,5 @@ bool command_train(int argc, char **argv, Error *error) {
     char command[TRAIN_COMMAND_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);
-    FileReservation reservation;
-    if (!file_reserve(&reservation, request.output, error)) return false;
-    const bool done = train_kind(&request, error);
-    return file_release(&reservation, error) && done;
+    return train_kind(&request, error);
 }

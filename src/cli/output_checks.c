@@ -18,7 +18,8 @@ enum { KIND_SIZE = 64 };
 static bool try_folder(const char *folder, const char *path, Error *error) {
     char inside[PATH_MAX];
     if (!file_path(inside, sizeof inside, error, "%sfile", folder)) return false;
-    const int file = temporary_nameless(inside);
+    Error failure = {0};
+    const int file = file_draft(inside, &failure);
     if (file < 0) return error_system(error, path, "cannot write: %s", file_make_cause(inside, errno));
     close(file);
     return true;

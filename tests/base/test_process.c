@@ -45,7 +45,7 @@ TEST(output_is_kept_in_tmpdir) {
     assert_int_equal(setenv("TMPDIR", "/nonexistent", 1), 0);
     assert_false(process_start(&process, (const char *const[]){"true", NULL}, &error));
     unsetenv("TMPDIR");
-    assert_error(error, ERROR_SYSTEM, "true: error: no temporary file in /nonexistent: No such file or directory");
+    assert_error(error, ERROR_SYSTEM, "/nonexistent/draft: error: cannot write: its folder does not exist");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -26,7 +26,7 @@ ulimit -S -f unlimited
 equal "files of a simulation beyond the limit" "$(ls run.npz 2>/dev/null)" ""
 equal "files of a render beyond the limit" "$(names limited)" ""
 
-# The folder of another process, which is named. `flock` locks it as twinbox does.
+# The folder of another process. `flock` locks it as twinbox does.
 mkdir taken
 flock --no-fork taken sleep 60 &
 holder=$!
@@ -34,29 +34,10 @@ wait_for grep "FLOCK .* $holder " /proc/locks
 for command in "render $(small)" "chart $scenes/stack.yaml --quick --methods engine" \
     "stability --scenes $scenes --study stack_height --methods engine" "paper --quick --scenes $scenes"; do
     run 3 $command -o taken
-    complains "taken: error: another process ($holder) is writing into this folder; wait until it ends, or choose another name"
+    complains "taken: error: another process is writing into this folder; wait until it ends, or choose another name"
 done
 kill $holder
 wait $holder 2>/dev/null
 equal "files in the other's folder" "$(names taken)" ""
 
-# The network that another process trains.
-run 0 dataset "$scenes/single.yaml" -o pairs.npz --bomb-x=-2:2:1
-mkdir nets
-"$twinbox" train pairs.npz -o nets/net.npz --iterations 1000000 >/dev/null 2>&1 &
-holder=$!
-wait_for grep "FLOCK .* $holder " /proc/locks
-run 3 train pairs.npz -o nets/net.npz --iterations 1
-complains "nets/net.npz: error: another process ($holder) is making this file; wait until it ends, or choose another name"
-run 0 train pairs.npz -o nets/other.npz --iterations 1
-kill -9 $holder
-wait $holder 2>/dev/null
-run 0 train pairs.npz -o nets/net.npz --iterations 1
-equal "files beside networks" "$(names nets)" "net.npz other.npz "
-
-# What a killed process left goes with the next file in the folder.
-run 0 render $(small) -o taken
-touch taken/.twinbox-0123456789abcdef.tmp
-run 0 render $(small) -o taken --resume
-equal "files after a kill" "$(names taken)" "$(names whole)"
 finish
