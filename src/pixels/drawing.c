@@ -262,22 +262,27 @@ void stroke_arrow(Drawing *drawing, Point from, Point to, bool truncated, const 
     draw_arrow(drawing, from, to, head, truncated, t, style->color, clip);
 }
 
+double dash_left(const double parts[4], double travelled, bool *on) {
+    double at = fmod(travelled, parts[0] + parts[1] + parts[2] + parts[3]);
+    int part = 0;
+    while (part < 3 && at >= parts[part]) at -= parts[part++];
+    *on = part % 2 == 0;
+    return fmax(parts[part] - at, 0.01);
+}
+
 void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, const Rect *clip) {
     const double t = line->thickness,
                  parts[] = {line->dash.on * t, line->dash.off * t, line->dash.on2 * t, line->dash.off2 * t};
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), done = 0;
-    double period = parts[0] + parts[1] + parts[2] + parts[3];
     if (!isfinite(length)) return;
-    if (!(period > 0)) {
+    if (!(parts[0] + parts[1] + parts[2] + parts[3] > 0)) {
         stroke_line(drawing, from, to, t, line->color, clip);
         return;
     }
     for (int i = 0; i < MAX_DASHES && done < length; i++) {
-        double at = fmod(line->travelled, period);
-        int part = 0;
-        while (part < 3 && at >= parts[part]) at -= parts[part++];
-        double step = fmin(fmax(parts[part] - at, 0.01), length - done), end = done + step;
-        if (part % 2 == 0)
+        bool on;
+        double step = fmin(dash_left(parts, line->travelled, &on), length - done), end = done + step;
+        if (on)
             stroke_line(drawing, (Point){from.x + dx * done / length, from.y + dy * done / length},
                         (Point){from.x + dx * end / length, from.y + dy * end / length}, t, line->color, clip);
         done = end;

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lines of text, and bitmaps of glyphs that are not in the atlas, from their outlines.
-
-   Exact coverage, by signed areas: each piece of an outline within a pixel adds the area between it and the pixel's
-   right side, and its height to all pixels farther right. */
+/* Lines of text, and bitmaps of glyphs that are not in the atlas, from their outlines. */
 #include "pixels/gl.h"
 #include "pixels/pixels_internal.h"
-#include "pixels/png.h"
+#include "pixels/raster.h"
 #include "pixels/type.h"
 
 #include <math.h>
@@ -20,88 +17,65 @@ static const double OUTLINE_UNIT = 64; /* per pixel, of FontGlyph.advance and of
 typedef struct Tracer {
     OutlineTracer outline;
     double scale, left, top;
-    double x0, y0, x1, y1; /* bounds */
-    double *areas;         /* [height][width + 2] */
-    int width, height;
+    Raster raster;
 } Tracer;
 
 /* Rounded as FreeType does, so that both kinds of glyphs in a word have equally sharp edges. */
 static double round_to_grid(double pixels) { return floor(pixels * OUTLINE_UNIT + 0.5) / OUTLINE_UNIT; }
 
-static Point font_place(const OutlineTracer *outline, const OutlineStep *step) {
+static Point place(const OutlineTracer *outline, const OutlineStep *step) {
     const Tracer *tracer = (const Tracer *)outline;
     return (Point){round_to_grid(step->x * tracer->scale) - tracer->left,
                    tracer->top - round_to_grid(step->y * tracer->scale)};
 }
 
-static void font_widen(OutlineTracer *outline, Point from, Point to) {
-    Tracer *tracer = (Tracer *)outline;
-    tracer->x0 = fmin(tracer->x0, fmin(from.x, to.x)), tracer->x1 = fmax(tracer->x1, fmax(from.x, to.x));
-    tracer->y0 = fmin(tracer->y0, fmin(from.y, to.y)), tracer->y1 = fmax(tracer->y1, fmax(from.y, to.y));
-}
-
-/* The part of a line within a row, from left to right; `rise` has the sign of its direction. */
-static void add_in_row(const Tracer *tracer, int row, double x0, double x1, double rise) {
-    double *areas = tracer->areas + (size_t)row * (size_t)(tracer->width + 2);
-    for (int x = (int)x0; x0 < x1 || x == (int)x0; x++) {
-        const double end = fmin(x + 1, x1), share = x1 > x0 ? (end - x0) / (x1 - x0) : 1, part = rise * share;
-        const double right = (x0 + end) / 2 - x;
-        areas[x] += part * (1 - right);
-        areas[x + 1] += part * right;
-        rise -= part;
-        x0 = end;
-        if (x0 >= x1) return;
-    }
-}
-
-static void add_line(OutlineTracer *outline, Point from, Point to) {
-    const Tracer *tracer = (const Tracer *)outline;
-    const double sign = from.y < to.y ? 1 : -1;
-    const Point high = sign > 0 ? from : to, low = sign > 0 ? to : from;
-    if (from.y == to.y) return;
-    const double slope = (low.x - high.x) / (low.y - high.y);
-    for (int row = (int)high.y; row < tracer->height && row < low.y; row++) {
-        const double y0 = fmax(row, high.y), y1 = fmin(row + 1, low.y);
-        const double a = high.x + slope * (y0 - high.y), b = high.x + slope * (y1 - high.y);
-        const double x0 = fmin(fmax(fmin(a, b), 0), tracer->width), x1 = fmin(fmax(fmax(a, b), 0), tracer->width);
-        add_in_row(tracer, row, x0, x1, sign * (y1 - y0));
-    }
+/* Only the bounds. */
+static void widen(OutlineTracer *outline, Point from, Point to) {
+    Raster *raster = &((Tracer *)outline)->raster;
+    raster->x0 = fmin(raster->x0, fmin(from.x, to.x)), raster->x1 = fmax(raster->x1, fmax(from.x, to.x));
+    raster->y0 = fmin(raster->y0, fmin(from.y, to.y)), raster->y1 = fmax(raster->y1, fmax(from.y, to.y));
 }
 
 FontGlyph glyph_metrics(const Typeface *face, const Glyph *glyph, int pixels) {
-    Tracer tracer = {.outline = {font_place, font_widen, PARTS}, .scale = (double)pixels / type_units};
+    Tracer tracer = {.outline = {place, widen, PARTS}, .scale = (double)pixels / type_units};
+    Raster *bounds = &tracer.raster;
     FontGlyph metrics = {.code = glyph->code};
     metrics.advance = (short)floor(OUTLINE_UNIT * glyph->advance * tracer.scale + 0.5);
     if (glyph->steps == 0) return metrics;
-    tracer.x0 = tracer.y0 = HUGE_VAL, tracer.x1 = tracer.y1 = -HUGE_VAL;
+    bounds->x0 = bounds->y0 = HUGE_VAL, bounds->x1 = bounds->y1 = -HUGE_VAL;
     outline_trace(&tracer.outline, face, glyph);
-    metrics.left = (short)floor(tracer.x0), metrics.top = (short)-floor(tracer.y0);
-    metrics.width = (short)(ceil(tracer.x1) - floor(tracer.x0));
-    metrics.height = (short)(ceil(tracer.y1) - floor(tracer.y0));
+    metrics.left = (short)floor(bounds->x0), metrics.top = (short)-floor(bounds->y0);
+    metrics.width = (short)(ceil(bounds->x1) - floor(bounds->x0));
+    metrics.height = (short)(ceil(bounds->y1) - floor(bounds->y0));
     return metrics;
 }
 
-bool glyph_draw(const Typeface *face, const Glyph *glyph, int pixels, const FontGlyph *metrics, uint8_t *bitmap) {
-    const int width = metrics->width, height = metrics->height;
-    Tracer tracer = {.outline = {font_place, add_line, PARTS},
+static void add_line(OutlineTracer *outline, Point from, Point to) {
+    raster_add(&((Tracer *)outline)->raster, from, to);
+}
+
+typedef struct Bitmap {
+    uint8_t *alpha;
+    int width;
+} Bitmap;
+
+static void put_row(void *context, int left, int y, const double *shares, int count) {
+    const Bitmap *bitmap = context;
+    uint8_t *row = bitmap->alpha + (size_t)y * (size_t)bitmap->width + left;
+    for (int x = 0; x < count; x++) row[x] = (uint8_t)((int)(shares[x] * LEVELS + 0.5) * LEVEL);
+}
+
+bool glyph_draw(const Typeface *face, const Glyph *glyph, int pixels, const FontGlyph *metrics, uint8_t *alpha) {
+    Bitmap bitmap = {alpha, metrics->width};
+    Tracer tracer = {.outline = {place, add_line, PARTS},
                      .scale = (double)pixels / type_units,
                      .left = metrics->left,
-                     .top = metrics->top,
-                     .width = width,
-                     .height = height};
-    if (width == 0 || height == 0) return true;
-    tracer.areas = calloc((size_t)height * (size_t)(width + 2), sizeof *tracer.areas);
-    if (tracer.areas == NULL) return false;
+                     .top = metrics->top};
     outline_trace(&tracer.outline, face, glyph);
-    for (int y = 0; y < height; y++) {
-        double area = 0;
-        for (int x = 0; x < width; x++) {
-            area += tracer.areas[y * (width + 2) + x];
-            bitmap[y * width + x] = (uint8_t)((int)(fmin(fabs(area), 1) * LEVELS + 0.5) * LEVEL);
-        }
-    }
-    free(tracer.areas);
-    return true;
+    raster_fill(&tracer.raster, &(Rect){0, 0, metrics->width, metrics->height}, put_row, &bitmap);
+    const bool ok = !tracer.raster.failed;
+    raster_free(&tracer.raster);
+    return ok;
 }
 
 enum { PEN_UNIT = 64 }; /* pen positions are in 1/64 pixel, so that rounding errors of glyphs do not accumulate */
@@ -139,32 +113,29 @@ static int next_advance(const Font *font, const char **text) {
     return next_glyph(font, text, &outline).advance;
 }
 
-static int font_advance(const Font *font, const char *text) {
-    int pen = 0;
-    while (font->glyphs != NULL && *text != '\0') pen += next_advance(font, &text);
-    return pen;
-}
-
 static int to_pixels(int pen) { return (pen + PEN_UNIT - 1) / PEN_UNIT; }
 
-int font_width(const Font *font, const char *text) { return to_pixels(font_advance(font, text)); }
-
-static void draw_bitmap(Drawing *drawing, const Font *font, const Glyph *outline, const FontGlyph *glyph,
-                        uint32_t *index) {
-    uint8_t *bitmap = drawing_add_bitmap(drawing, (size_t)glyph->width * (size_t)glyph->height, index);
-    if (bitmap != NULL && !glyph_draw(font->face, outline, font->pixels, glyph, bitmap)) drawing->failed = true;
+int font_width(const Font *font, const char *text) {
+    int pen = 0;
+    while (font->glyphs != NULL && *text != '\0') pen += next_advance(font, &text);
+    return to_pixels(pen);
 }
 
 /* Adds the characters before `end` and returns the pen. */
-static int add_font(Drawing *drawing, const Font *font, const char *text, const char *end, int x, int baseline,
-                    uint32_t color) {
+static int add_before(Drawing *drawing, const Font *font, const char *text, const char *end, int x, int baseline,
+                      uint32_t color) {
     int pen = 0;
     while (text < end) {
         const Glyph *outline;
         const FontGlyph glyph = next_glyph(font, &text, &outline);
         int left = x + (pen + PEN_UNIT / 2) / PEN_UNIT + glyph.left;
         GlyphInstance instance = {{left, baseline - glyph.top, glyph.width, glyph.height}, glyph.offset, color};
-        if (outline != NULL) draw_bitmap(drawing, font, outline, &glyph, &instance.bitmap);
+        if (outline != NULL) {
+            const size_t size = (size_t)glyph.width * (size_t)glyph.height;
+            uint8_t *bitmap = drawing_add_bitmap(drawing, size, &instance.bitmap);
+            if (bitmap != NULL && !glyph_draw(font->face, outline, font->pixels, &glyph, bitmap))
+                drawing->failed = true;
+        }
         if (glyph.width > 0) drawing_add_glyph(drawing, &instance);
         pen += glyph.advance;
     }
@@ -173,7 +144,7 @@ static int add_font(Drawing *drawing, const Font *font, const char *text, const 
 
 int font_add(Drawing *drawing, const Font *font, const char *text, int x, int baseline, uint32_t color) {
     if (font->glyphs == NULL) return x;
-    return add_font(drawing, font, text, text + strlen(text), x, baseline, color);
+    return add_before(drawing, font, text, text + strlen(text), x, baseline, color);
 }
 
 int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x, int baseline, int max_width,
@@ -184,6 +155,6 @@ int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x
     const char *end = text, *next = text;
     while (*next != '\0' && (pen += next_advance(font, &next)) <= room) end = next;
     while (end > text && end[-1] == ' ') end--;
-    int end_x = add_font(drawing, font, text, end, x, baseline, color);
+    int end_x = add_before(drawing, font, text, end, x, baseline, color);
     return font_add(drawing, font, ELLIPSIS, end_x, baseline, color);
 }

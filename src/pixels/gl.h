@@ -183,6 +183,9 @@ typedef struct DashedLine {
 } DashedLine;
 void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, const Rect *clip);
 
+/* What is left of the dash (`on`) or gap at this place of a line, at least 0.01. parts: a Dash in pixels, not all 0. */
+double dash_left(const double parts[4], double travelled, bool *on);
+
 /* An OpenGL context without a display: OSMesa or EGL's surfaceless platform. A build has one of them or both (Mesa
    dropped OSMesa in 25.1). Both are loaded at run time, so the program runs if one is missing. Nothing is drawn to the
    context's own surface: the canvas has a framebuffer, so both run the same code. */
