@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts of a picture: numbers, names, lines, the header. */
+/* Texts of a picture: numbers, names, lines, the header, and the lines above a panel. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "methods/methods.h"
 #include "methods/names.h"
 #include "pictures/pictures_internal.h"
@@ -23,17 +24,13 @@ bool caption_check(const char *text, const char *where, Error *error) {
    0. */
 static const char LONGEST_DISTANCE[] = "0.00";
 
-static size_t count_characters(const char *text) {
-    size_t count = 0;
-    for (; *text != '\0'; count++) utf8_next(&text);
-    return count;
-}
-
 /* Pads a number on the left to the width of the longest one, so that text does not move between frames. */
 static void pad(char *number, size_t size, const char *text, const char *longest) {
     size_t used = 0;
-    for (size_t i = count_characters(text); i < count_characters(longest); i++)
-        used += (size_t)snprintf(number + used, size - used, "%s", FIGURE_SPACE);
+    int missing = 0;
+    for (const char *at = longest; *at != '\0'; missing++) utf8_next(&at);
+    for (const char *at = text; *at != '\0'; missing--) utf8_next(&at);
+    for (; missing > 0; missing--) used += (size_t)snprintf(number + used, size - used, "%s", FIGURE_SPACE);
     snprintf(number + used, size - used, "%s", text);
 }
 
@@ -54,25 +51,6 @@ CaptionItem caption_distance_item(const char *label, double metres) {
     snprintf(item.label, sizeof item.label, "%s", label);
     caption_distance(text, sizeof text, metres);
     pad(item.number, sizeof item.number, text, LONGEST_DISTANCE);
-    return item;
-}
-
-static CaptionItem caption_frame_item(const Picture *picture, int frame) {
-    CaptionItem item = {.label = "frame "};
-    char text[32], longest[32];
-    snprintf(text, sizeof text, "%d", frame);
-    snprintf(longest, sizeof longest, "%d", picture->frames - 1);
-    pad(item.number, sizeof item.number, text, longest);
-    return item;
-}
-
-static CaptionItem caption_time_item(const Picture *picture, Moment moment) {
-    CaptionItem item = {.label = "t = ", .unit = " s"};
-    double dt = (double)picture->runs[0]->dt;
-    char text[64], longest[64];
-    snprintf(text, sizeof text, "%.3f", (moment.frame + moment_fraction(moment)) * dt);
-    snprintf(longest, sizeof longest, "%.3f", (picture->frames - 1) * dt);
-    pad(item.number, sizeof item.number, text, longest);
     return item;
 }
 
@@ -107,15 +85,11 @@ void caption_method(const Picture *picture, int run, char name[CAPTION_TEXT_SIZE
 }
 
 /* The last part, the method's description, is the one that gets cut short. */
-static void caption_join(char *text, size_t size, const char *part) {
-    if (part != NULL && part[0] != '\0') text_join(text, size, "; ", "%s", part);
-}
-
 void caption_notes(const Picture *picture, int run, const char *note, char *text, size_t size) {
+    const char *const parts[] = {picture->notes[run], picture->look.costs[run], note};
     text[0] = '\0';
-    caption_join(text, size, picture->notes[run]);
-    caption_join(text, size, picture->look.costs[run]);
-    caption_join(text, size, note);
+    for (int i = 0; i < 3; i++)
+        if (parts[i] != NULL && parts[i][0] != '\0') text_join(text, size, "; ", "%s", parts[i]);
 }
 
 int caption_name_draw(const Picture *picture, const Font *font, const char *name, int x, int baseline, int room,
@@ -124,16 +98,13 @@ int caption_name_draw(const Picture *picture, const Font *font, const char *name
     return font_add_fitting(drawing, fitting, name, x, baseline, room, picture->theme->ink);
 }
 
-static int sum_up_to(const int *widths, int count, int most) {
-    int sum = 0;
-    for (int i = 0; i < count; i++) sum += widths[i] < most ? widths[i] : most;
-    return sum;
-}
-
 int caption_fair_width(const int *widths, int count, int room) {
-    int most = room;
-    while (most > 0 && sum_up_to(widths, count, most) > room) most--;
-    return most;
+    for (int most = room; most > 0; most--) {
+        int sum = 0;
+        for (int i = 0; i < count; i++) sum += int_min(widths[i], most);
+        if (sum <= room) return most;
+    }
+    return int_min(room, 0);
 }
 
 /* Bytes of the first `length` of a text without the spaces at their end. */
@@ -142,7 +113,7 @@ static size_t without_spaces(const char *text, size_t length) {
     return length;
 }
 
-static bool caption_fits(const Font *font, const char *text, size_t length, int room) {
+static bool fits(const Font *font, const char *text, size_t length, int room) {
     char line[CAPTION_TEXT_SIZE];
     snprintf(line, sizeof line, "%.*s", (int)length, text);
     return font_width(font, line) <= room;
@@ -154,7 +125,7 @@ static size_t line_length(const Font *font, const char *text, int room) {
     for (const char *next = text; *next != '\0';) {
         type_next_code(&next);
         const size_t length = (size_t)(next - text);
-        if (!caption_fits(font, text, without_spaces(text, length), room)) break;
+        if (!fits(font, text, without_spaces(text, length), room)) break;
         characters = length;
         if (*next == ' ' || *next == '\0' || next[-1] == ':' || next[-1] == ',') words = length;
     }
@@ -164,14 +135,10 @@ static size_t line_length(const Font *font, const char *text, int room) {
     return (size_t)(next - text);
 }
 
-/* If no word fits beside the numbers, the text begins below them. */
-static bool begins_below(const Font *font, const char *text, int first, int others) {
-    const size_t word = strcspn(text, " :,");
-    return !caption_fits(font, text, word, first) && first < others && caption_fits(font, text, word, others);
-}
-
+/* If no word fits beside the numbers of the first line, the text begins below them. */
 TextLines text_lines(const Font *font, const char *text, int first, int others) {
-    TextLines result = {.count = begins_below(font, text, first, others)};
+    const size_t word = strcspn(text, " :,");
+    TextLines result = {.count = !fits(font, text, word, first) && first < others && fits(font, text, word, others)};
     do {
         const size_t length = line_length(font, text, result.count == 0 ? first : others);
         const bool last = result.count >= TEXT_LINES_MAX - 1;
@@ -195,29 +162,6 @@ void caption_title(const Picture *picture, char title[CAPTION_TEXT_SIZE]) {
 
 bool caption_is_pair(const Picture *picture) { return picture->count == 2 && picture->panel_count == 2; }
 
-/* "slow motion 1/4, interpolated poses"; false in real time without interpolation. A film of a given length may differ
-   from real time by half a picture. */
-static bool describe_speed(Moment moment, char *text, size_t size) {
-    const double least = 0.01;
-    char speed[48] = "";
-    if (moment.slow > 1 + least)
-        snprintf(speed, sizeof speed, moment.slow == rint(moment.slow) ? "slow motion 1/%.3g" : "%.3g times slower",
-                 moment.slow);
-    if (moment.slow < 1 - least) snprintf(speed, sizeof speed, "%.3g times faster", 1 / moment.slow);
-    snprintf(text, size, "%s%s%s", speed, speed[0] != '\0' && moment.parts > 1 ? ", " : "",
-             moment.parts > 1 ? "interpolated poses" : "");
-    return text[0] != '\0';
-}
-
-/* Shown during the whole slow motion, also in stored frames: otherwise the text would flicker. */
-static void draw_slow(const Picture *picture, Moment moment, int x, int right, int baseline, Drawing *drawing) {
-    const Layout *layout = &picture->layout;
-    char text[96];
-    if (!describe_speed(moment, text, sizeof text)) return;
-    x += layout->status.pixels;
-    font_add_fitting(drawing, &layout->status, text, x, baseline, right - x, picture->theme->ink_soft);
-}
-
 enum { HEADER_ITEMS = 3 };
 
 typedef struct HeaderItems {
@@ -228,9 +172,19 @@ typedef struct HeaderItems {
 
 static HeaderItems header_items(const Picture *picture, Moment moment) {
     const Layout *layout = &picture->layout;
+    const double dt = (double)picture->runs[0]->dt;
     HeaderItems header = {.left = layout->right,
-                          .items = {caption_time_item(picture, moment), caption_frame_item(picture, moment.frame),
+                          .items = {{.label = "t = ", .unit = " s"},
+                                    {.label = "frame "},
                                     caption_distance_item("distance ", picture_distance(picture, moment))}};
+    char text[64], longest[64];
+    snprintf(text, sizeof text, "%.3f", (moment.frame + moment_fraction(moment)) * dt);
+    snprintf(longest, sizeof longest, "%.3f", (picture->frames - 1) * dt);
+    pad(header.items[0].number, sizeof header.items[0].number, text, longest);
+    snprintf(text, sizeof text, "%d", moment.frame);
+    snprintf(longest, sizeof longest, "%d", picture->frames - 1);
+    pad(header.items[1].number, sizeof header.items[1].number, text, longest);
+
     const int count = caption_is_pair(picture) ? HEADER_ITEMS : HEADER_ITEMS - 1, gap = layout->status.pixels * 5 / 4;
     for (int i = 0; i < count; i++) {
         const int left = header.left - caption_item_width(&layout->status, &header.items[i]);
@@ -264,5 +218,293 @@ void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
         end = font_add_fitting(drawing, &layout->scene, title.lines[i], layout->left, baseline, right - layout->left,
                                picture->theme->ink);
     }
-    draw_slow(picture, moment, end, right, baseline, drawing);
+
+    /* "slow motion 1/4, interpolated poses": during the whole slow motion, also in stored frames, or the text would
+       flicker. A film of a given length may differ from real time by half a picture. */
+    const double least = 0.01;
+    char speed[48] = "", text[96];
+    if (moment.slow > 1 + least)
+        snprintf(speed, sizeof speed, moment.slow == rint(moment.slow) ? "slow motion 1/%.3g" : "%.3g times slower",
+                 moment.slow);
+    if (moment.slow < 1 - least) snprintf(speed, sizeof speed, "%.3g times faster", 1 / moment.slow);
+    snprintf(text, sizeof text, "%s%s%s", speed, speed[0] != '\0' && moment.parts > 1 ? ", " : "",
+             moment.parts > 1 ? "interpolated poses" : "");
+    end += layout->status.pixels;
+    font_add_fitting(drawing, &layout->status, text, end, baseline, right - end, picture->theme->ink_soft);
+}
+
+/* Above a panel. */
+
+enum { OVERLAY_LINES = 6 }; /* with more, an overlay has names only */
+
+static bool is_hollow(const Picture *picture, int run) { return picture->look.compare == LOOK_OVERLAY && run > 0; }
+
+/* Of the swatch and the space after it. */
+static int swatch_room(const Picture *picture) {
+    const int pixels = picture->layout.title.pixels;
+    return pixels * 3 / 4 + pixels / 2;
+}
+
+/* Boxes coloured by their distance show their run's colour only in the timeline. */
+static int swatch_width(const Picture *picture, int run) {
+    const bool none =
+        picture_colors_distance(picture, run) && !is_hollow(picture, run) && (picture->look.show & SHOW_TIMELINE) == 0;
+    return none ? 0 : swatch_room(picture);
+}
+
+static int panel_width(const Picture *picture) {
+    return picture->layout.panels[0].right - picture->layout.panels[0].left;
+}
+
+static bool has_distance(const Picture *picture, int run) { return run > 0 && !caption_is_pair(picture); }
+
+/* Of a run's distance, with its word, and the space before it. */
+static int distance_width(const Picture *picture, int run) {
+    const CaptionItem distance = caption_distance_item("distance ", 0);
+    const Font *font = &picture->layout.method;
+    return has_distance(picture, run) ? caption_item_width(font, &distance) + font->pixels : 0;
+}
+
+/* Whether distances have a line of their own, nearest to the panels: beside the name of some run there is no room. */
+static bool distances_below(const Picture *picture) {
+    if (picture->look.compare == LOOK_OVERLAY) return false;
+    for (int panel = 0; panel < picture->panel_count; panel++) {
+        const int run = picture_run(picture, panel);
+        char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
+        caption_method(picture, run, name, note);
+        if (has_distance(picture, run) &&
+            swatch_room(picture) + font_width(&picture->layout.title, name) + distance_width(picture, run) >
+                panel_width(picture))
+            return true;
+    }
+    return false;
+}
+
+static int distance_beside(const Picture *picture, int run) {
+    return distances_below(picture) ? 0 : distance_width(picture, run);
+}
+
+int caption_least_width(const Picture *picture, bool whole) {
+    const Layout *layout = &picture->layout;
+    int least = 0;
+    for (int run = 0; run < picture->count; run++) {
+        char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
+        caption_method(picture, run, name, note);
+        if (!whole) snprintf(name + method_name_head(name), 4, "\xE2\x80\xA6"); /* an ellipsis */
+        const int width = swatch_room(picture) + font_width(whole ? &layout->title : &layout->axis, name) +
+                          (whole && has_distance(picture, run) ? font_width(&layout->method, "0.00 m") : 0);
+        if (width > least) least = width;
+    }
+    return least;
+}
+
+/* The name of a run, on one line in the larger font, or in the smaller one on as many as it needs. */
+typedef struct Name {
+    const Font *font;
+    TextLines text;
+} Name;
+
+static Name lay_out_name(const Picture *picture, int run) {
+    const Layout *layout = &picture->layout;
+    const int room = panel_width(picture) - swatch_width(picture, run), first = room - distance_beside(picture, run);
+    char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
+    caption_method(picture, run, name, note);
+    const TextLines lines = text_lines(&layout->title, name, first, room);
+    if (lines.count == 1) return (Name){&layout->title, lines};
+    return (Name){&layout->axis, text_lines(&layout->axis, name, first, room)};
+}
+
+static void notes_of(const Picture *picture, int run, char text[4 * CAPTION_TEXT_SIZE]) {
+    char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
+    caption_method(picture, run, name, note);
+    caption_notes(picture, run, note, text, 4 * CAPTION_TEXT_SIZE);
+}
+
+/* From the left of a panel to the end of the first line of a name, and a space. */
+static int name_width(const Picture *picture, int run, const Name *name) {
+    return swatch_width(picture, run) + font_width(name->font, name->text.lines[0]) + picture->layout.title.pixels / 2;
+}
+
+/* Where the notes of all panels are: beside the names or on a line below, in this font; NULL: no panel has notes. */
+typedef struct Notes {
+    const Font *font;
+    bool beside;
+} Notes;
+
+/* With room for a swatch, which a page always has. Beside a name, there is also room for a number of bodies out of
+   view: nothing depends on the frame, so that no text moves. */
+static bool has_room(const Picture *picture, int run, Notes notes) {
+    const Layout *layout = &picture->layout;
+    const Name name = lay_out_name(picture, run);
+    const int swatch = swatch_room(picture), beside = swatch - swatch_width(picture, run) +
+                                                      name_width(picture, run, &name) + distance_beside(picture, run) +
+                                                      font_width(&layout->method, "00 out of view") +
+                                                      layout->title.pixels / 2;
+    char text[4 * CAPTION_TEXT_SIZE];
+    notes_of(picture, run, text);
+    if (text[0] == '\0') return true;
+    return (!notes.beside || name.text.count == 1) &&
+           font_width(notes.font, text) + (notes.beside ? beside : swatch) <= panel_width(picture);
+}
+
+static Notes place_notes(const Picture *picture) {
+    const Font *const fonts[] = {&picture->layout.method, &picture->layout.axis};
+    for (int i = 0; i < 4; i++) {
+        const Notes notes = {fonts[i % 2], i < 2};
+        int fit = 0;
+        while (fit < picture->panel_count && has_room(picture, picture_run(picture, fit), notes)) fit++;
+        if (fit == picture->panel_count) return notes;
+    }
+    return (Notes){NULL, false};
+}
+
+/* Where the runs of an overlay are in the lines above it, from the left; with or without notes. Returns the number of
+   lines. */
+static int place_runs(const Picture *picture, bool notes, int lefts[RENDER_PANELS_MAX], int lines[RENDER_PANELS_MAX]) {
+    const Layout *layout = &picture->layout;
+    const int gap = layout->title.pixels / 2;
+    int x = 0, line = 0;
+    for (int run = 0; run < picture->count; run++) {
+        char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], text[4 * CAPTION_TEXT_SIZE];
+        caption_method(picture, run, name, note);
+        notes_of(picture, run, text);
+        const int width = swatch_width(picture, run) + font_width(&layout->title, name) + distance_width(picture, run) +
+                          (notes && text[0] != '\0' ? gap + font_width(&layout->method, text) : 0);
+        if (x > 0 && x + width > panel_width(picture)) x = 0, line++;
+        lefts[run] = x, lines[run] = line;
+        x += width + 3 * gap;
+    }
+    return line + 1;
+}
+
+int caption_lines(const Picture *picture) {
+    int most = 1, lefts[RENDER_PANELS_MAX], lines[RENDER_PANELS_MAX];
+    if (picture->layout.title.glyphs == NULL) return 1;
+    if (picture->look.compare == LOOK_OVERLAY) {
+        most = place_runs(picture, true, lefts, lines);
+        return most <= OVERLAY_LINES ? most : place_runs(picture, false, lefts, lines);
+    }
+    const Notes notes = place_notes(picture);
+    for (int panel = 0; panel < picture->panel_count; panel++) {
+        const int names = lay_out_name(picture, picture_run(picture, panel)).text.count;
+        if (names > most) most = names < TEXT_LINES_MAX ? names : TEXT_LINES_MAX;
+    }
+    return most + (notes.font != NULL && !notes.beside) + distances_below(picture);
+}
+
+bool captions_fit(const Picture *picture, Error *error) {
+    for (int run = 0; run < picture->count && picture->layout.title.glyphs != NULL; run++) {
+        const int lines = lay_out_name(picture, run).text.count;
+        if (picture->captions[run] != NULL && lines > TEXT_LINES_MAX)
+            return error_input(error, "--caption",
+                               "the text needs %d lines in panels of this size, but at most %d fit: %s", lines,
+                               TEXT_LINES_MAX, picture->captions[run]);
+    }
+    return true;
+}
+
+static int draw_swatch(const Picture *picture, int run, int x, int baseline, Drawing *drawing) {
+    const int width = swatch_width(picture, run);
+    if (width > 0)
+        body_draw_swatch(picture, run, is_hollow(picture, run), x, baseline, picture->layout.title.pixels, drawing);
+    return x + width;
+}
+
+static void draw_overlay(const Picture *picture, Moment moment, const Rect *rect, int baseline, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    const int gap = layout->title.pixels / 2;
+    int lefts[RENDER_PANELS_MAX], lines[RENDER_PANELS_MAX];
+    const bool notes = place_runs(picture, true, lefts, lines) <= OVERLAY_LINES;
+    if (!notes) place_runs(picture, false, lefts, lines);
+    for (int run = 0; run < picture->count; run++) {
+        char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], text[4 * CAPTION_TEXT_SIZE];
+        const int line = baseline + lines[run] * layout->caption_pitch;
+        int x = draw_swatch(picture, run, rect->left + lefts[run], line, drawing);
+        caption_method(picture, run, name, note);
+        notes_of(picture, run, text);
+        const int room = rect->right - x - distance_width(picture, run);
+        x = caption_name_draw(picture, &layout->title, name, x, line, room, drawing) + gap;
+        if (run > 0) {
+            const CaptionItem distance = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
+            caption_item_draw(picture, &layout->method, &distance, x, line, drawing);
+            x += distance_width(picture, run);
+        }
+        if (notes && font_width(&layout->method, text) <= rect->right - x)
+            font_add(drawing, &layout->method, text, x, line, picture->theme->ink_soft);
+    }
+}
+
+/* The part of a line that is free. */
+typedef struct Line {
+    int left, right, baseline;
+} Line;
+
+/* What a panel does not show must be stated: at the right of the first line with room, or else in the panel's upper
+   right corner, on its colour. */
+static void draw_state(const Picture *picture, int panel, Moment moment, const Line lines[2], Drawing *drawing) {
+    const Font *font = &picture->layout.method, *small = &picture->layout.axis;
+    const bool ended = moment.frame >= picture->runs[picture_run(picture, panel)]->frames;
+    const int unseen = panel_count_out_of_view(picture, panel, moment);
+    char text[64] = "ended";
+    if (unseen > 0) snprintf(text, sizeof text, "%d out of view%s", unseen, ended ? ", ended" : "");
+    if (unseen == 0 && !ended) return;
+    const int wide = font_width(font, text);
+    for (int i = 0; i < 2; i++) {
+        if (wide > lines[i].right - lines[i].left) continue;
+        font_add(drawing, font, text, lines[i].right - wide, lines[i].baseline, picture->theme->ink_soft);
+        return;
+    }
+    const Rect *rect = &picture->layout.panels[panel];
+    const int inset = small->pixels / 2, width = font_width(small, text), x = rect->right - inset - width;
+    const double half_width = width / 2.0 + 2, half_height = small->pixels / 2.0 + 2;
+    const Shape ground = {.x = x - 2 + half_width,
+                          .y = rect->top + inset + half_height,
+                          .half_width = half_width,
+                          .half_height = half_height,
+                          .cosine = 1,
+                          .fill = picture->theme->panel};
+    drawing_add_shape(drawing, &ground, rect); /* above the boxes, as shapes are */
+    font_add(drawing, small, text, x, rect->top + inset + small->pixels, picture->theme->ink_soft);
+}
+
+void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    const Rect *rect = &layout->panels[panel];
+    const int run = picture_run(picture, panel), more = (layout->caption_lines - 1) * layout->caption_pitch;
+    const int baseline = rect->top - layout->title_rise - more;
+    if (layout->title.glyphs == NULL) return;
+    if (picture->look.compare == LOOK_OVERLAY) {
+        draw_overlay(picture, moment, rect, baseline, drawing);
+        return;
+    }
+    const Notes notes = place_notes(picture);
+    const Name name = lay_out_name(picture, run);
+    const int x = draw_swatch(picture, run, rect->left, baseline, drawing);
+    int last = baseline;
+    for (int i = 0; i < name.text.count && i < TEXT_LINES_MAX; i++) {
+        last = baseline + i * layout->caption_pitch;
+        font_add_fitting(drawing, name.font, name.text.lines[i], x, last, rect->right - x, picture->theme->ink);
+    }
+    const bool below = distances_below(picture);
+    Line beside = {rect->left + name_width(picture, run, &name), rect->right, baseline},
+         lowest = {below ? x : rect->right, rect->right, rect->top - layout->title_rise};
+    if (notes.font != NULL) {
+        char text[4 * CAPTION_TEXT_SIZE];
+        notes_of(picture, run, text);
+        const int end = font_add(drawing, notes.font, text, notes.beside ? beside.left : x,
+                                 notes.beside ? last : last + layout->caption_pitch, picture->theme->ink_soft);
+        if (notes.beside) beside.left = end + layout->title.pixels / 2;
+    }
+    if (has_distance(picture, run)) {
+        const CaptionItem item = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
+        const int width = caption_item_width(&layout->method, &item);
+        if (width <= rect->right - rect->left)
+            caption_item_draw(picture, &layout->method, &item, below ? x : rect->right - width,
+                              below ? lowest.baseline : baseline, drawing);
+        if (below)
+            lowest.left += distance_width(picture, run);
+        else
+            beside.right -= distance_width(picture, run);
+    }
+    draw_state(picture, panel, moment, (const Line[]){beside, lowest}, drawing);
 }
