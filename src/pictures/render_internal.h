@@ -85,8 +85,9 @@ void manifest_print_line(FILE *out, const void *line);
 /* Bytes of the longest line of a picture. */
 enum { MANIFEST_LINE_SIZE = 640 };
 
-/* A process that draws a range of pictures. Processes rather than threads, as Mesa rasterises one screen at a time
-   per process. */
+/* Distributes pictures over processes and reads their reports. Processes rather than threads, as Mesa rasterises one
+   screen at a time per process. They are forked before any OpenGL context is created: a context does not survive a
+   fork. */
 
 typedef struct WorkerJob {
     const Picture *picture;
@@ -96,20 +97,8 @@ typedef struct WorkerJob {
     int first, last;    /* pictures, inclusive */
 } WorkerJob;
 
-/* What a worker writes to its pipe: one report per picture, or a final one with an error. */
-typedef struct WorkerReport {
-    Error error; /* ERROR_NONE: the picture is finished */
-    int index;
-    bool kept; /* the file is of an earlier call */
-    PictureHashes hashes;
-} WorkerReport;
-
-/* Distributes pictures over worker processes and reads their reports. Workers are forked before any OpenGL context is
-   created: a context does not survive a fork. */
-
 /* Draws or keeps the pictures of the job, by as many processes as its options say, and adds them to its manifest. Then
-   the files are safely on the disk. *kept: how many were kept; may be NULL. ERROR_INTERRUPTED if progress requests a
-   stop. */
+   the files are safely on the disk. *kept: how many were kept. ERROR_INTERRUPTED if progress requests a stop. */
 bool workers_draw(const WorkerJob *job, int *kept, const Progress *progress, Error *error);
 
 /* The part of renderer.c that the workers of a sequence use. */

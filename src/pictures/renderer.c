@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void renderer_add(FrameTexts *texts, const char *key, const char *value) {
+static void add(FrameTexts *texts, const char *key, const char *value) {
     texts->entries[texts->count++] = (ImageText){key, value};
 }
 
@@ -34,14 +34,14 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) 
     }
     snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
     frame_part_text(texts->part, sizeof texts->part, moment);
-    renderer_add(texts, "Scene", picture->runs[0]->scene);
-    renderer_add(texts, "Method", texts->methods);
-    renderer_add(texts, "Frame", texts->frame);
-    if (moment.kind == MOMENT_BETWEEN) renderer_add(texts, "Part", texts->part);
-    if (moment.kind == MOMENT_TITLE) renderer_add(texts, "Card", "title");
-    if (moment.kind == MOMENT_END) renderer_add(texts, "Card", "end");
-    renderer_add(texts, "State", texts->states);
-    renderer_add(texts, "Software", "twinbox");
+    add(texts, "Scene", picture->runs[0]->scene);
+    add(texts, "Method", texts->methods);
+    add(texts, "Frame", texts->frame);
+    if (moment.kind == MOMENT_BETWEEN) add(texts, "Part", texts->part);
+    if (moment.kind == MOMENT_TITLE) add(texts, "Card", "title");
+    if (moment.kind == MOMENT_END) add(texts, "Card", "end");
+    add(texts, "State", texts->states);
+    add(texts, "Software", "twinbox");
 }
 
 /* A context and what is drawn in it. */
@@ -51,21 +51,16 @@ typedef struct Painter {
     Canvas *canvas;
 } Painter;
 
-static void renderer_trace(const Context *context) {
-    enum { RENDERER = 0x1F01 /* GL_RENDERER */ };
-    const GlFunction found = context->kind->find(context->state, "glGetString");
-    const unsigned char *(*get_string)(unsigned);
-    memcpy(&get_string, &found, sizeof get_string);
-    const unsigned char *name = get_string != NULL ? get_string(RENDERER) : NULL;
-    trace_line("OpenGL by %s: %s", context->kind->name, name != NULL ? (const char *)name : "no name");
-}
-
 /* painter_close() also after a failure. */
 static bool painter_open(Painter *painter, ContextChoice choice, int width, int height, bool traced, Error *error) {
+    enum { RENDERER = 0x1F01 /* GL_RENDERER */ };
     Context *context = &painter->context;
     if (!context_create(context, choice, error) || !gl_load(&painter->gl, context->kind->find, context->state, error))
         return false;
-    if (traced) renderer_trace(context);
+    if (traced) {
+        const unsigned char *name = painter->gl.GetString(RENDERER);
+        trace_line("OpenGL by %s: %s", context->kind->name, name != NULL ? (const char *)name : "no name");
+    }
     painter->canvas = canvas_create(&painter->gl, width, height, error);
     return painter->canvas != NULL;
 }
@@ -85,17 +80,14 @@ struct Renderer {
     bool *changed;           /* [height] */
 };
 
-static bool set_up(Renderer *renderer, const RenderOptions *options, Error *error) {
-    renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
-    if (renderer->changed == NULL) return error_memory(error, "render");
-    return painter_open(&renderer->painter, options->context, options->width, options->height, true, error);
-}
-
 Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {
     Renderer *renderer = calloc(1, sizeof *renderer);
     if (renderer == NULL) return error_memory(error, "render"), NULL;
     renderer->picture = *picture;
-    if (set_up(renderer, options, error)) return renderer;
+    renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
+    if ((renderer->changed != NULL || error_memory(error, "render")) &&
+        painter_open(&renderer->painter, options->context, options->width, options->height, true, error))
+        return renderer;
     renderer_destroy(renderer);
     return NULL;
 }
@@ -114,13 +106,13 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
 }
 
 /* `changed` NULL: paint everything. */
-static bool renderer_paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
+static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
     return context_make_current(&renderer->painter.context, error) &&
            canvas_paint(renderer->painter.canvas, &renderer->drawing, renderer->picture.theme->page, changed, image,
                         error);
 }
 
-static bool renderer_compose(Renderer *renderer, Moment moment, Error *error) {
+static bool compose(Renderer *renderer, Moment moment, Error *error) {
     const int frame = moment.frame;
     if (frame < 0 || frame >= renderer->picture.frames)
         return error_input(error, "render", "there is no frame %d; the frames are 0 to %d", frame,
@@ -132,7 +124,7 @@ static bool renderer_compose(Renderer *renderer, Moment moment, Error *error) {
 
 bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
     renderer->in_sync = false;
-    return renderer_compose(renderer, moment_stored(frame), error) && renderer_paint(renderer, NULL, image, error);
+    return compose(renderer, moment_stored(frame), error) && paint(renderer, NULL, image, error);
 }
 
 bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error) {
@@ -142,10 +134,10 @@ bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const b
     renderer->drawing = renderer->before;
     renderer->before = before;
     *changed = renderer->changed;
-    if (!renderer_compose(renderer, moment, error)) return false;
+    if (!compose(renderer, moment, error)) return false;
     bool part = in_sync && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
     if (!part) memset(renderer->changed, true, (size_t)image->height);
-    renderer->in_sync = renderer_paint(renderer, part ? renderer->changed : NULL, image, error);
+    renderer->in_sync = paint(renderer, part ? renderer->changed : NULL, image, error);
     return renderer->in_sync;
 }
 
@@ -168,18 +160,16 @@ struct Still {
     Image *on_white;
 };
 
-static bool still_set_up(Still *still, int width, int height, Error *error) {
+Still *still_create(int width, int height, Error *error) {
     if (width < 1 || height < 1 || width > RENDER_SIDE_MAX || height > RENDER_SIDE_MAX)
         return error_input(error, "render", "each side of the picture must be 1 to %d pixels (got %d x %d)",
-                           RENDER_SIDE_MAX, width, height);
-    return (still->on_white = image_create(width, height, error)) != NULL &&
-           painter_open(&still->painter, CONTEXT_AUTO, width, height, false, error);
-}
-
-Still *still_create(int width, int height, Error *error) {
+                           RENDER_SIDE_MAX, width, height),
+               NULL;
     Still *still = calloc(1, sizeof *still);
     if (still == NULL) return error_memory(error, "render"), NULL;
-    if (still_set_up(still, width, height, error)) return still;
+    still->on_white = image_create(width, height, error);
+    if (still->on_white != NULL && painter_open(&still->painter, CONTEXT_AUTO, width, height, false, error))
+        return still;
     still_destroy(still);
     return NULL;
 }
@@ -192,44 +182,35 @@ void still_destroy(Still *still) {
     free(still);
 }
 
-/* A picture of one panel without margins, in the requested colours. */
-static Picture renderer_plan(const Still *still, const StillShot *shot) {
-    Picture picture = {.count = 1, .frames = shot->run->frames, .camera = shot->camera};
+bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error) {
+    /* A picture of one panel without margins, in the requested colours. */
+    Picture picture = {.count = 1, .frames = shot->run->frames, .camera = shot->camera, .theme = theme_get(LOOK_LIGHT)};
     picture.layout.panels[0] = (Rect){0, 0, still->on_white->width, still->on_white->height};
     picture.runs[0] = shot->run;
     picture.colours[0].light = shot->colours;
-    picture.theme = theme_get(LOOK_LIGHT);
-    return picture;
-}
 
-static void draw_bodies(const Picture *picture, const StillShot *shot, Drawing *drawing) {
     const Moment moment = moment_stored(shot->frame);
-    if ((shot->parts & STILL_FIXED) != 0) body_draw_all(picture, 0, 0, moment, true, drawing);
-    if ((shot->parts & STILL_MOVING) == 0) return;
-    body_draw_all(picture, 0, 0, moment, false, drawing);
-    if (shot->run->bomb >= 0) body_draw(picture, 0, 0, moment, shot->run->bomb, drawing);
-}
-
-/* Computes colour and alpha of a pixel from its values on black and on white. */
-static void take_alpha(uint8_t *black, const uint8_t *white) {
-    int alpha = 255 - (white[1] - black[1]);
-    for (int i = 0; i < 3; i++) {
-        int colour = alpha > 0 ? (black[i] * 255 + alpha / 2) / alpha : 0;
-        black[i] = (uint8_t)(colour < 255 ? colour : 255);
-    }
-    black[3] = (uint8_t)(alpha < 255 ? alpha : 255);
-}
-
-bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error) {
-    const Picture picture = renderer_plan(still, shot);
     Drawing *drawing = &still->drawing;
     drawing_clear(drawing);
-    draw_bodies(&picture, shot, drawing);
+    if ((shot->parts & STILL_FIXED) != 0) body_draw_all(&picture, 0, 0, moment, true, drawing);
+    if ((shot->parts & STILL_MOVING) != 0) {
+        body_draw_all(&picture, 0, 0, moment, false, drawing);
+        if (shot->run->bomb >= 0) body_draw(&picture, 0, 0, moment, shot->run->bomb, drawing);
+    }
     if (!context_make_current(&still->painter.context, error) ||
         !canvas_paint(still->painter.canvas, drawing, 0x000000, NULL, image, error) ||
         !canvas_paint(still->painter.canvas, drawing, 0xFFFFFF, NULL, still->on_white, error))
         return false;
-    for (size_t i = 0; i < 4 * (size_t)image->width * (size_t)image->height; i += 4)
-        take_alpha(image->pixels + i, still->on_white->pixels + i);
+
+    /* Colour and alpha of a pixel follow from its values on black and on white. */
+    for (size_t at = 0; at < 4 * (size_t)image->width * (size_t)image->height; at += 4) {
+        uint8_t *black = image->pixels + at;
+        const int alpha = 255 - (still->on_white->pixels[at + 1] - black[1]);
+        for (int i = 0; i < 3; i++) {
+            const int colour = alpha > 0 ? (black[i] * 255 + alpha / 2) / alpha : 0;
+            black[i] = (uint8_t)(colour < 255 ? colour : 255);
+        }
+        black[3] = (uint8_t)(alpha < 255 ? alpha : 255);
+    }
     return true;
 }

@@ -1,105 +1,144 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Processes that draw the pictures of a sequence, and the one that hears from them. */
+/* The files of a sequence: processes draw them, and one hears from these. */
 #include "base/base.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/machine.h"
+#include "base/numbers.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pictures/render_internal.h"
 #include "pixels/png.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* State of a worker. */
-typedef struct WorkerProcess {
-    const WorkerJob *job;
-    Renderer *renderer;
-    Image *image;
-    uint64_t *rows; /* [height] hashes of the image */
-    FrameSink sink;
-    FrameTexts texts;
-} WorkerProcess;
+/* Bytes; far more than the largest picture file. */
+static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 
-static bool workers_send(int pipe, const WorkerReport *report) { return file_write_all(pipe, report, sizeof *report); }
+void sink_frame_name(char name[SINK_NAME_SIZE], int index) { snprintf(name, SINK_NAME_SIZE, "frame_%06d.png", index); }
 
-/* Whether the file of an earlier call exists with unchanged bytes. */
-static bool is_unchanged(const WorkerProcess *worker, int index, PictureHashes *hashes) {
-    const Manifest *manifest = worker->job->manifest;
-    if (!manifest->known[index - manifest->first]) return false;
-    *hashes = manifest->hashes[index - manifest->first];
-    return sink_frame_is(worker->job->options->directory, index, hashes->file);
+bool sink_frame_path(char *path, size_t size, const char *directory, int index) {
+    char name[SINK_NAME_SIZE];
+    sink_frame_name(name, index);
+    return snprintf(path, size, "%s/%s", directory, name) < (int)size;
 }
 
-static bool workers_prepare(WorkerProcess *worker, Error *error) {
-    const RenderOptions *options = worker->job->options;
-    worker->renderer = renderer_create_planned(worker->job->picture, options, error);
-    if (worker->renderer == NULL) return false;
-    worker->image = image_create(options->width, options->height, error);
-    worker->rows = calloc((size_t)options->height, sizeof *worker->rows);
-    return worker->image != NULL && (worker->rows != NULL || error_memory(error, "render"));
+bool sink_frame_is(const char *directory, int index, uint64_t hash) {
+    char path[PATH_MAX];
+    size_t size;
+    if (!sink_frame_path(path, sizeof path, directory, index)) return false;
+    char *data = file_read(path, MAX_FILE_SIZE, &size, &(Error){0});
+    const bool same = data != NULL && hash_xxh3(data, size) == hash;
+    free(data);
+    return same;
 }
 
-static bool draw_one(WorkerProcess *worker, Moment moment, int index, PictureHashes *hashes, Error *error) {
-    const bool *changed;
-    /* Created on demand: possibly every picture is kept. */
-    if (worker->renderer == NULL && !workers_prepare(worker, error)) return false;
-    frame_texts_fill(&worker->texts, worker->job->picture, moment);
-    if (!renderer_draw_next(worker->renderer, moment, worker->image, &changed, error) ||
-        !worker->sink.write(worker->sink.context, index, worker->image, changed, worker->texts.entries,
-                            worker->texts.count, &hashes->file, error))
+bool sink_open(FrameSink *sink, const char *directory, int width, int height, PngEffort effort, Error *error) {
+    *sink = (FrameSink){.directory = directory, .encoder = png_encoder_create(width, height, effort, error)};
+    return sink->encoder != NULL;
+}
+
+bool sink_write(FrameSink *sink, int index, const Image *image, const bool *changed, const ImageText *texts, int count,
+                uint64_t *hash, Error *error) {
+    char path[PATH_MAX];
+    const uint8_t *data;
+    size_t size;
+    if (!sink_frame_path(path, sizeof path, sink->directory, index))
+        return error_input(error, sink->directory, "the name is too long");
+    if (!png_encode(sink->encoder, image, changed, texts, count, &data, &size, error) ||
+        !file_write_soon(path, data, size, error))
         return false;
-    hashes->pixels = image_hash_next(worker->image, changed, worker->rows);
+    *hash = hash_xxh3(data, size);
+    if (sink->end == 0) sink->first = index;
+    sink->end = index + 1;
     return true;
 }
 
-static bool draw_all(WorkerProcess *worker, int pipe, Error *error) {
-    const WorkerJob *job = worker->job;
-    for (int index = job->first; index <= job->last; index++) {
-        WorkerReport report = {.index = index};
-        report.kept = is_unchanged(worker, index, &report.hashes);
-        if (!report.kept && !draw_one(worker, moments_at(job->plan, index), index, &report.hashes, error)) return false;
-        if (!workers_send(pipe, &report)) return false; /* the parent has ended or cancelled */
-    }
-    return true;
-}
-
-/* A signal is for the parent, also one that timeout(1), a terminal or a scheduler sends to the whole group: the parent
-   then closes the pipes, and the worker ends between two frames and leaves no partial file. */
-static void prepare_process(void) {
-    signal(SIGINT, SIG_IGN);
-    signal(SIGTERM, SIG_IGN);
-    signal(SIGHUP, SIG_IGN);
-    signal(SIGPIPE, SIG_IGN);
-}
-
-static bool draw_to_sink(WorkerProcess *worker, int pipe, Error *error) {
-    const RenderOptions *options = worker->job->options;
-    if (!sink_open_png(&worker->sink, options->directory, options->width, options->height,
-                       options->small ? PNG_SMALL : PNG_FAST, error))
-        return false;
-    bool drawn = draw_all(worker, pipe, error);
-    return worker->sink.close(worker->sink.context, error) && drawn;
-}
-
-/* Draws the pictures of the job; ends early if the pipe is closed. Runs in its own process and changes its
-   environment. Returns true if all pictures are finished. */
-static bool worker_run(const WorkerJob *job, int pipe) {
-    WorkerReport end = {.index = -1};
-    WorkerProcess worker = {.job = job};
-    prepare_process();
-    bool ok = draw_to_sink(&worker, pipe, &end.error);
-    if (end.error.kind != ERROR_NONE) workers_send(pipe, &end);
-    image_destroy(worker.image);
-    renderer_destroy(worker.renderer);
-    free(worker.rows);
+/* Once, at the end: syncing many files takes hardly longer than one. */
+bool sink_close(FrameSink *sink, Error *error) {
+    char path[PATH_MAX];
+    bool ok = true;
+    for (int index = sink->first; ok && index < sink->end; index++)
+        ok = sink_frame_path(path, sizeof path, sink->directory, index) && file_sync(path, error);
+    ok = ok && (sink->end == 0 || file_sync(sink->directory, error));
+    png_encoder_destroy(sink->encoder);
     return ok;
 }
+
+/* A process that draws. */
+
+/* What it writes to its pipe: one report per picture, or a final one with an error. */
+typedef struct Report {
+    Error error; /* ERROR_NONE: the picture is finished */
+    int index;
+    bool kept; /* the file is of an earlier call */
+    PictureHashes hashes;
+} Report;
+
+/* Draws or keeps the pictures and reports each; ends early if the pipe is closed: then the parent has ended or
+   cancelled. */
+static bool draw(const WorkerJob *job, FrameSink *sink, int pipe, Error *error) {
+    const RenderOptions *options = job->options;
+    const Manifest *manifest = job->manifest;
+    Renderer *renderer = NULL; /* created on demand: possibly every picture is kept */
+    Image *image = NULL;
+    uint64_t *rows = NULL; /* [height] hashes of the image */
+    FrameTexts texts;
+    bool ok = true;
+    for (int index = job->first; ok && index <= job->last; index++) {
+        const Moment moment = moments_at(job->plan, index);
+        Report report = {.index = index, .hashes = manifest->hashes[index - manifest->first]};
+        report.kept =
+            manifest->known[index - manifest->first] && sink_frame_is(options->directory, index, report.hashes.file);
+        if (!report.kept && renderer == NULL) {
+            renderer = renderer_create_planned(job->picture, options, error);
+            image = renderer != NULL ? image_create(options->width, options->height, error) : NULL;
+            rows = calloc((size_t)options->height, sizeof *rows);
+            ok = image != NULL && (rows != NULL || error_memory(error, "render"));
+        }
+        if (ok && !report.kept) {
+            const bool *changed;
+            frame_texts_fill(&texts, job->picture, moment);
+            ok = renderer_draw_next(renderer, moment, image, &changed, error) &&
+                 sink_write(sink, index, image, changed, texts.entries, texts.count, &report.hashes.file, error);
+            if (ok) report.hashes.pixels = image_hash_next(image, changed, rows);
+        }
+        ok = ok && file_write_all(pipe, &report, sizeof report);
+    }
+    renderer_destroy(renderer);
+    image_destroy(image);
+    free(rows);
+    return ok;
+}
+
+/* Runs in its own process and changes its environment. Returns true if all pictures are finished. */
+static bool work(const WorkerJob *job, int pipe) {
+    const RenderOptions *options = job->options;
+    Report end = {.index = -1};
+    FrameSink sink;
+    /* A signal is for the parent, also one that timeout(1), a terminal or a scheduler sends to the whole group: the
+       parent then closes the pipes, and the worker ends between two frames and leaves no partial file. */
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+    for (int i = 0; i < 4; i++) signal(signals[i], SIG_IGN);
+    bool ok = sink_open(&sink, options->directory, options->width, options->height,
+                        options->small ? PNG_SMALL : PNG_FAST, &end.error);
+    if (ok) {
+        ok = draw(job, &sink, pipe, &end.error);
+        ok = sink_close(&sink, &end.error) && ok;
+    }
+    if (end.error.kind != ERROR_NONE) file_write_all(pipe, &end, sizeof end);
+    return ok;
+}
+
+/* The process that hears. */
 
 typedef struct Worker {
     pid_t process; /* 0 after it has ended */
@@ -114,38 +153,28 @@ typedef struct Crew {
     Manifest *manifest;
 } Crew;
 
-/* The child closes the pipes of the workers forked before it; otherwise they would stay open after the parent's end. */
-static void run_child(const Crew *crew, int index, const WorkerJob *job, int pipe) {
-    for (int i = 0; i < index; i++) close(crew->workers[i].pipe);
-    bool ok = worker_run(job, pipe);
-    _exit(ok ? 0 : 1);
-}
-
-static bool start_worker(Crew *crew, int index, const WorkerJob *job, Error *error) {
-    int ends[2];
-    if (pipe(ends) != 0) return error_system(error, "render", "cannot create a pipe: %s", strerror(errno));
-    pid_t process = fork();
-    if (process == 0) {
-        close(ends[0]);
-        run_child(crew, index, job, ends[1]);
-    }
-    close(ends[1]);
-    if (process < 0) {
-        close(ends[0]);
-        return error_system(error, "render", "cannot start a process: %s", strerror(errno));
-    }
-    crew->workers[index] = (Worker){process, ends[0]};
-    crew->listening++;
-    return true;
-}
-
 /* Each worker gets consecutive pictures; the counts differ by at most one. */
 static bool start_workers(Crew *crew, const WorkerJob *all, Error *error) {
-    WorkerJob job = *all;
     for (int i = 0; i < crew->jobs; i++) {
+        WorkerJob job = *all;
         job.first = all->first + (int)((long long)crew->total * i / crew->jobs);
         job.last = all->first + (int)((long long)crew->total * (i + 1) / crew->jobs) - 1;
-        if (!start_worker(crew, i, &job, error)) return false;
+        int ends[2];
+        if (pipe(ends) != 0) return error_system(error, "render", "cannot create a pipe: %s", strerror(errno));
+        const pid_t process = fork();
+        if (process == 0) {
+            /* The pipes of the workers forked before it would stay open after the parent's end. */
+            close(ends[0]);
+            for (int k = 0; k < i; k++) close(crew->workers[k].pipe);
+            _exit(work(&job, ends[1]) ? 0 : 1);
+        }
+        close(ends[1]);
+        if (process < 0) {
+            close(ends[0]);
+            return error_system(error, "render", "cannot start a process: %s", strerror(errno));
+        }
+        crew->workers[i] = (Worker){process, ends[0]};
+        crew->listening++;
     }
     return true;
 }
@@ -171,7 +200,7 @@ static void await_end(Worker *worker, Error *error) {
 }
 
 static bool listen_to(Crew *crew, Worker *worker, Error *error) {
-    WorkerReport report;
+    Report report;
     const ssize_t size = file_read_all(worker->pipe, &report, sizeof report);
     if (size == sizeof report && report.error.kind == ERROR_NONE) {
         crew->done++;
@@ -202,25 +231,19 @@ static bool wait_for_workers(Crew *crew, const Progress *progress, Error *error)
            error_system(error, "render", "%d of %d pictures were not reported", crew->total - crew->done, crew->total);
 }
 
-/* After an error, close all pipes first, then wait for the workers. */
-static void end_all(Crew *crew) {
-    Error ignored = {0};
-    if (crew->workers == NULL) return;
-    for (int i = 0; i < crew->jobs; i++) stop_listening(crew, &crew->workers[i]);
-    for (int i = 0; i < crew->jobs; i++) await_end(&crew->workers[i], &ignored);
-}
-
 bool workers_draw(const WorkerJob *job, int *kept, const Progress *progress, Error *error) {
     Crew crew = {.total = job->last - job->first + 1, .manifest = job->manifest};
-    crew.jobs = job->options->jobs < crew.total ? job->options->jobs : crew.total;
+    crew.jobs = int_min(job->options->jobs, crew.total);
     crew.workers = calloc((size_t)crew.jobs, sizeof *crew.workers);
     crew.polls = calloc((size_t)crew.jobs, sizeof *crew.polls);
     for (int i = 0; crew.workers != NULL && i < crew.jobs; i++) crew.workers[i].pipe = -1;
     bool ok = (crew.workers != NULL && crew.polls != NULL) || error_memory(error, "render");
     ok = ok && start_workers(&crew, job, error) && wait_for_workers(&crew, progress, error);
-    end_all(&crew);
+    /* After an error, all pipes are closed first, and then the workers end. */
+    for (int i = 0; crew.workers != NULL && i < crew.jobs; i++) stop_listening(&crew, &crew.workers[i]);
+    for (int i = 0; crew.workers != NULL && i < crew.jobs; i++) await_end(&crew.workers[i], &(Error){0});
     free(crew.workers);
     free(crew.polls);
-    if (kept != NULL) *kept = crew.kept;
+    *kept = crew.kept;
     return ok;
 }

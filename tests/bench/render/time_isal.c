@@ -74,9 +74,8 @@ static bool compress_rows(IsalSink *sink, size_t *size, Error *error) {
     return true;
 }
 
-static bool write_isal(void *context, int frame, const Image *image, const bool *changed, const ImageText *texts,
+static bool write_isal(IsalSink *sink, int frame, const Image *image, const bool *changed, const ImageText *texts,
                        int count, uint64_t *hash, Error *error) {
-    IsalSink *sink = context;
     char path[512];
     size_t compressed, size = IDAT_AT;
     (void)texts, (void)count;
@@ -91,8 +90,7 @@ static bool write_isal(void *context, int frame, const Image *image, const bool 
     return file_write_soon(path, sink->file, size, error);
 }
 
-static bool close_isal(void *context, Error *error) {
-    IsalSink *sink = context;
+static bool close_isal(IsalSink *sink, Error *error) {
     char path[512];
     bool ok = true;
     for (int frame = sink->first; ok && frame < sink->behind; frame++) {
@@ -106,7 +104,7 @@ static bool close_isal(void *context, Error *error) {
     return ok;
 }
 
-static bool open_isal(FrameSink *frames, IsalSink *sink, const Job *job, Error *error) {
+static bool open_isal(IsalSink *sink, const Job *job, Error *error) {
     size_t rows_size = (size_t)job->height * (3 * (size_t)job->width + 1), room = rows_size + rows_size / 8 + 1024;
     *sink = (IsalSink){.directory = job->directory, .rows_size = rows_size, .room = room};
     sink->rows = malloc(rows_size);
@@ -119,7 +117,6 @@ static bool open_isal(FrameSink *frames, IsalSink *sink, const Job *job, Error *
     put_number(header + 12, (size_t)job->height);
     memcpy(header + 16, "\x08\x02\0\0\0", 5); /* 8 bits, RGB, the only methods, not interlaced */
     close_chunk(header, "IHDR", 13);
-    *frames = (FrameSink){write_isal, close_isal, sink};
     return true;
 }
 
@@ -131,14 +128,15 @@ static bool draw_range(const Picture *picture, const Job *job, bool own, int fir
     uint64_t hash;
     Renderer *renderer = renderer_create_planned(picture, &options, error);
     Image *image = renderer == NULL ? NULL : image_create(job->width, job->height, error);
-    if (image == NULL || !(own ? sink_open_png(&frames, job->directory, job->width, job->height, PNG_FAST, error)
-                               : open_isal(&frames, &isal, job, error)))
+    if (image == NULL || !(own ? sink_open(&frames, job->directory, job->width, job->height, PNG_FAST, error)
+                               : open_isal(&isal, job, error)))
         return false;
     bool ok = true;
     for (int frame = first; ok && frame < behind; frame++)
         ok = renderer_draw_next(renderer, moment_stored(frame), image, &changed, error) &&
-             frames.write(frames.context, frame, image, changed, NULL, 0, &hash, error);
-    ok = frames.close(frames.context, error) && ok;
+             (own ? sink_write(&frames, frame, image, changed, NULL, 0, &hash, error)
+                  : write_isal(&isal, frame, image, changed, NULL, 0, &hash, error));
+    ok = (own ? sink_close(&frames, error) : close_isal(&isal, error)) && ok;
     image_destroy(image);
     renderer_destroy(renderer);
     return ok;
