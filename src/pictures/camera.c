@@ -50,30 +50,6 @@ static double min_size(const Trajectory *run, int body, int width, int height) {
     return BODY_SIDES * side / (width < height ? width : height);
 }
 
-static void target_bomb(View *views, const Trajectory *run, int frames, const View *whole, int width, int height) {
-    double size = fmax(BOMB_VIEW * whole->size, min_size(run, run->bomb, width, height));
-    View target = *whole;
-    for (int frame = 0; frame < frames; frame++) {
-        if (frame < run->frames && trajectory_has(run, frame, run->bomb)) {
-            Vec2 at = run->position[trajectory_at(run, frame, run->bomb)];
-            if (fabs((double)at.x) < EXTENT_FARTHEST && fabs((double)at.y) < EXTENT_FARTHEST)
-                target = close_view(whole, (double)at.x, (double)at.y, size, height);
-        }
-        views[frame] = target;
-    }
-}
-
-static void target_divergence(View *views, const Trajectory *run, int frames, const Events *events, const View *whole,
-                              int width, int height) {
-    int first = events->divergence - (int)rint(LEAD_TIME / (double)run->dt);
-    int last = events->divergence + (int)rint(HOLD_TIME / (double)run->dt);
-    Vec2 at = run->position[trajectory_at(run, events->divergence, events->body)];
-    double size = min_size(run, events->body, width, height);
-    for (int frame = 0; frame < frames; frame++)
-        views[frame] =
-            frame < first || frame > last ? *whole : close_view(whole, (double)at.x, (double)at.y, size, height);
-}
-
 /* Frames before the first and after the last repeat these two. */
 static void average(View *to, const View *from, int frames, int reach) {
     for (int frame = 0; frame < frames; frame++) {
@@ -87,17 +63,12 @@ static void average(View *to, const View *from, int frames, int reach) {
     }
 }
 
-static void camera_smooth(View *views, View *spare, int frames, double steps) {
-    double reach = fmin(fmin(steps / 2, frames), MAX_REACH);
-    for (int i = 0; i < PASSES; i++) {
-        average(spare, views, frames, (int)rint(reach));
-        memcpy(views, spare, (size_t)frames * sizeof *views);
-    }
-}
-
 Camera *camera_path(const Trajectory *const *runs, int frames, LookCamera kind, const Events *events, const Camera *fit,
                     int width, int height, Error *error) {
-    View *views = calloc((size_t)frames, 2 * sizeof *views), whole = view_of(fit, width, height);
+    const Trajectory *run = runs[0];
+    const double dt = (double)run->dt;
+    View *views = calloc((size_t)frames, 2 * sizeof *views);
+    const View whole = view_of(fit, width, height);
     Camera *path = calloc((size_t)frames, sizeof *path);
     if (views == NULL || path == NULL) {
         free(views);
@@ -105,12 +76,36 @@ Camera *camera_path(const Trajectory *const *runs, int frames, LookCamera kind, 
         error_memory(error, "render");
         return NULL;
     }
+
+    /* The view that is wanted in each frame: near the bomb, or near the divergence for some time around it. */
     for (int frame = 0; frame < frames; frame++) views[frame] = whole;
-    if (kind == LOOK_BOMB && runs[0]->bomb >= 0) target_bomb(views, runs[0], frames, &whole, width, height);
-    if (kind == LOOK_DIVERGENCE && events->divergence >= 0)
-        target_divergence(views, runs[0], frames, events, &whole, width, height);
-    double smoothing = kind == LOOK_BOMB ? BOMB_SMOOTHING : SMOOTHING;
-    camera_smooth(views, views + frames, frames, smoothing / (double)runs[0]->dt);
+    if (kind == LOOK_BOMB && run->bomb >= 0) {
+        const double size = fmax(BOMB_VIEW * whole.size, min_size(run, run->bomb, width, height));
+        View target = whole;
+        for (int frame = 0; frame < frames; frame++) {
+            const bool there = frame < run->frames && trajectory_has(run, frame, run->bomb);
+            const Vec2 at = there ? run->position[trajectory_at(run, frame, run->bomb)] : vec2(0, 0);
+            if (there && fabs((double)at.x) < EXTENT_FARTHEST && fabs((double)at.y) < EXTENT_FARTHEST)
+                target = close_view(&whole, (double)at.x, (double)at.y, size, height);
+            views[frame] = target;
+        }
+    }
+    if (kind == LOOK_DIVERGENCE && events->divergence >= 0) {
+        const int first = events->divergence - (int)rint(LEAD_TIME / dt),
+                  last = events->divergence + (int)rint(HOLD_TIME / dt);
+        const Vec2 at = run->position[trajectory_at(run, events->divergence, events->body)];
+        const double size = min_size(run, events->body, width, height);
+        for (int frame = first > 0 ? first : 0; frame < frames && frame <= last; frame++)
+            views[frame] = close_view(&whole, (double)at.x, (double)at.y, size, height);
+    }
+
+    View *spare = views + frames;
+    const double steps = (kind == LOOK_BOMB ? BOMB_SMOOTHING : SMOOTHING) / dt;
+    const int reach = (int)rint(fmin(fmin(steps / 2, frames), MAX_REACH));
+    for (int i = 0; i < PASSES; i++) {
+        average(spare, views, frames, reach);
+        memcpy(views, spare, (size_t)frames * sizeof *views);
+    }
     for (int frame = 0; frame < frames; frame++) path[frame] = camera_of(&views[frame], width, height);
     free(views);
     return path;
@@ -122,11 +117,6 @@ Camera camera_at(const Camera *path, int frames, Moment moment, int width, int h
     const double fraction = moment_fraction(moment);
     View between = {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y), a.size + fraction * (b.size - a.size)};
     return camera_of(&between, width, height);
-}
-
-static double nice_scale(double scale) {
-    if (scale >= WHOLE_SCALE) return floor(scale);
-    return scale >= 1 ? floor(scale * SCALE_PARTS) / SCALE_PARTS : scale;
 }
 
 static Camera look_at(double x, double y, double scale, int width, int height) {
@@ -141,7 +131,11 @@ Camera camera_fit(const CameraFrame *frame, int width, int height) {
     const Extent *held = &frame->held, *room = &frame->room;
     const double high = held->top - held->bottom, largest = fmin(width / (held->right - held->left), height / high);
     const double all = width / (frame->action.right - frame->action.left);
-    const double scale = nice_scale(fmin(largest, fmax(all, LEAST_SCALE * largest)));
+    double scale = fmin(largest, fmax(all, LEAST_SCALE * largest));
+    if (scale >= WHOLE_SCALE)
+        scale = floor(scale);
+    else if (scale >= 1)
+        scale = floor(scale * SCALE_PARTS) / SCALE_PARTS;
     if (frame->set) return look_at(frame->middle, (held->bottom + held->top) / 2, scale, width, height);
     /* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less
        than ground. */

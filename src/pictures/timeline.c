@@ -21,8 +21,6 @@ static const double TOLERANCE = 0.2;                 /* pixels; largest deviatio
 static const Dash dashes[RENDER_PANELS_MAX] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {5, 3, 0, 0},
                                                {1, 2, 0, 0}, {7, 2, 1, 2}, {3, 2, 3, 5}};
 
-static bool is_shown(const Picture *picture) { return picture->curves != NULL; }
-
 bool timeline_plan(Picture *picture, Error *error) {
     if ((picture->look.show & SHOW_TIMELINE) == 0) return true;
     int width = picture->layout.timeline.right - picture->layout.timeline.left, points = width;
@@ -119,19 +117,13 @@ static void draw_distance_axis(const Picture *picture, Drawing *drawing) {
     }
 }
 
-/* s between two labels on the axis. */
-static double time_step(const Picture *picture) {
-    const Rect *plot = &picture->layout.timeline;
-    const double duration = (picture->frames - 1) * (double)picture->runs[0]->dt;
-    const double least = TICK_SPACING * picture->layout.axis.pixels * duration / (plot->right - plot->left);
-    return round_up(fmax(least, 1e-3));
-}
-
 static void draw_time_axis(const Picture *picture, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Rect *plot = &layout->timeline;
     if (layout->axis.glyphs == NULL) return;
-    double step = time_step(picture), dt = (double)picture->runs[0]->dt;
+    const double dt = (double)picture->runs[0]->dt, duration = (picture->frames - 1) * dt;
+    const double least = TICK_SPACING * layout->axis.pixels * duration / (plot->right - plot->left),
+                 step = round_up(fmax(least, 1e-3)); /* s between two labels */
     int baseline = plot->bottom + layout->axis_drop, unit = plot->right - font_width(&layout->axis, "s");
     font_add(drawing, &layout->axis, "s", unit, baseline, picture->theme->ink_soft);
     for (int i = 0; i < MAX_TICKS && i * step / dt <= picture->frames - 1 + 1e-6; i++) {
@@ -158,76 +150,65 @@ static void draw_event(const Picture *picture, int frame, const char *name, int 
         font_add(drawing, &layout->axis, name, left, plot->top + layout->axis.pixels * 9 / 8, picture->theme->ink);
 }
 
-/* The name of the earlier event must not reach the later one's line. */
-static void draw_events(const Picture *picture, Drawing *drawing) {
-    int impact = picture->events.impact, divergence = picture->events.divergence, end = picture->layout.timeline.right;
-    int x_impact = impact < 0 ? end : (int)x_at(picture, impact),
-        x_divergence = divergence < 0 ? end : (int)x_at(picture, divergence);
-    if (impact >= 0) draw_event(picture, impact, "impact", impact < divergence ? x_divergence : end, drawing);
-    if (divergence >= 0) draw_event(picture, divergence, "1 mm apart", divergence <= impact ? x_impact : end, drawing);
-}
-
 /* Lengths in the key of a sample line and of the spaces after it and after its name. */
 typedef struct KeySpacing {
     int sample, before, gap;
 } KeySpacing;
 
-/* All of the key but the names. */
-static int key_lines(const KeySpacing *spacing, int count) {
-    return count * (spacing->sample + spacing->before) + (count - 1) * spacing->gap;
-}
-
-/* The first of these titles that leaves `needed` pixels of the row; its width with the space after it. */
-static int title_curves(const Picture *picture, char title[2 * CAPTION_TEXT_SIZE], int needed) {
-    static const char *const formats[] = {"Largest distance from %s", "Distance from %s"};
-    const Layout *layout = &picture->layout;
-    char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
-    caption_method(picture, 0, name, note);
-    for (int i = 0; i < 2; i++) {
-        snprintf(title, 2 * CAPTION_TEXT_SIZE, formats[i], name);
-        const int width = font_width(&layout->method, title) + 2 * layout->method.pixels;
-        if (width + needed <= layout->right - layout->timeline.left) return width;
-    }
-    title[0] = '\0';
-    return 0;
-}
-
 /* The title of the curves if there is room, and a sample line with the name of each run. */
 static void draw_key(const Picture *picture, Drawing *drawing) {
+    static const char *const formats[] = {"Largest distance from %s", "Distance from %s"};
     const Layout *layout = &picture->layout;
     const Font *font = &layout->method;
     const Rect clip = {0, 0, layout->width, layout->height};
     const int em = font->pixels, count = picture->count - 1, baseline = layout->key_baseline;
     KeySpacing spacing = {em * 5 / 2, em / 2, em * 3 / 2};
-    char names[RENDER_PANELS_MAX][CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], title[2 * CAPTION_TEXT_SIZE];
-    int widths[RENDER_PANELS_MAX], sum = 0, x = layout->timeline.left, room = layout->right - x;
+    char names[RENDER_PANELS_MAX][CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], title[2 * CAPTION_TEXT_SIZE] = "";
+    int widths[RENDER_PANELS_MAX], sum = 0, x = layout->timeline.left, room = layout->right - x, start = x;
     if (font->glyphs == NULL) return;
-    for (int i = 0; i < count; i++) {
-        caption_method(picture, i + 1, names[i], note);
-        sum += widths[i] = font_width(font, names[i]);
+    for (int i = 0; i <= count; i++) {
+        caption_method(picture, i, names[i], note);
+        widths[i] = font_width(font, names[i]);
+        if (i > 0) sum += widths[i];
     }
-    const int start = x + title_curves(picture, title, sum + key_lines(&spacing, count));
-    if (sum + key_lines(&spacing, count) > room) spacing = (KeySpacing){em * 3 / 2, em / 3, em * 2 / 3};
-    const int most = caption_fair_width(widths, count, layout->right - start - key_lines(&spacing, count));
+    int lines = count * (spacing.sample + spacing.before) + (count - 1) * spacing.gap; /* all but the names */
+    for (int i = 0; i < 2 && start == x; i++) {
+        snprintf(title, sizeof title, formats[i], names[0]);
+        const int width = font_width(font, title) + 2 * em;
+        if (width + sum + lines <= room) start = x + width;
+    }
+    if (start == x) title[0] = '\0';
+    if (sum + lines > room) {
+        spacing = (KeySpacing){em * 3 / 2, em / 3, em * 2 / 3};
+        lines = count * (spacing.sample + spacing.before) + (count - 1) * spacing.gap;
+    }
+    const int most = caption_fair_width(widths + 1, count, layout->right - start - lines);
     font_add(drawing, font, title, x, baseline, picture->theme->ink_soft);
     x = start;
-    for (int i = 0; i < count; i++) {
-        DashedLine line = {thickness(picture), 0, picture_body_colors(picture, i + 1)->fill, dashes[i + 1]};
+    for (int i = 1; i <= count; i++) {
+        DashedLine line = {thickness(picture), 0, picture_body_colors(picture, i)->fill, dashes[i]};
         const double y = baseline - em * 0.36;
         stroke_dashed(drawing, (Point){x, y}, (Point){x + spacing.sample, y}, &line, &clip);
         x += spacing.sample + spacing.before;
-        x = caption_name_draw(picture, font, names[i], x, baseline, widths[i] < most ? widths[i] : most, drawing);
+        x = caption_name_draw(picture, font, names[i], x, baseline, int_min(widths[i], most), drawing);
         x += spacing.gap;
     }
 }
 
 void timeline_draw_static(const Picture *picture, Drawing *drawing) {
-    if (!is_shown(picture)) return;
+    if (picture->curves == NULL) return;
     const Rect *plot = &picture->layout.timeline;
     int line = picture->layout.hairline;
     drawing_add_rect(drawing, *plot, picture->theme->panel);
     draw_distance_axis(picture, drawing);
-    draw_events(picture, drawing);
+    /* The name of the earlier event must not reach the later one's line. */
+    const int impact = picture->events.impact, divergence = picture->events.divergence;
+    if (impact >= 0)
+        draw_event(picture, impact, "impact", impact < divergence ? (int)x_at(picture, divergence) : plot->right,
+                   drawing);
+    if (divergence >= 0)
+        draw_event(picture, divergence, "1 mm apart", divergence <= impact ? (int)x_at(picture, impact) : plot->right,
+                   drawing);
     drawing_add_rect(drawing, (Rect){plot->left, plot->bottom, plot->right, plot->bottom + line},
                      picture->theme->frame);
     draw_time_axis(picture, drawing);
@@ -236,7 +217,7 @@ void timeline_draw_static(const Picture *picture, Drawing *drawing) {
 }
 
 void timeline_draw_moving(const Picture *picture, Moment moment, Drawing *drawing) {
-    if (!is_shown(picture)) return;
+    if (picture->curves == NULL) return;
     const Rect *plot = &picture->layout.timeline;
     double x = x_at(picture, moment.frame + moment_fraction(moment)), radius = 1.6 * thickness(picture);
     const Rect clip = {plot->left - 8, plot->top - 8, plot->right + 8, plot->bottom + 8};

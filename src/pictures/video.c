@@ -75,19 +75,6 @@ static const VideoFormat *find_format(const char *path) {
     return NULL;
 }
 
-/* Creates a missing folder now, so that an error appears before the drawing. */
-static bool check_destination(const char *path, Error *error) {
-    struct stat status;
-    char folder[PATH_MAX];
-    size_t length = strlen(path), folder_length = file_folder_length(path);
-    if (length >= PATH_MAX) return error_input(error, path, "the name is too long");
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is not a regular file");
-    snprintf(folder, sizeof folder, "%.*s", folder_length > 0 ? (int)folder_length : 1, folder_length > 0 ? path : ".");
-    if (access(folder, W_OK) == 0) return true;
-    if (errno == ENOENT) return file_make_directory(folder, error);
-    return error_system(error, path, "cannot write there: %s", strerror(errno));
-}
-
 bool video_check_format(const char *path, int width, int height, Error *error) {
     const VideoFormat *format = find_format(path);
     if (format == NULL) return error_input(error, path, "the name of a video must end in .mp4, .webm or .gif");
@@ -96,7 +83,16 @@ bool video_check_format(const char *path, int width, int height, Error *error) {
 }
 
 bool video_check(const char *path, int width, int height, Error *error) {
-    return video_check_format(path, width, height, error) && check_destination(path, error);
+    struct stat status;
+    char folder[PATH_MAX] = ".";
+    const size_t length = file_folder_length(path);
+    if (!video_check_format(path, width, height, error)) return false;
+    if (strlen(path) >= PATH_MAX) return error_input(error, path, "the name is too long");
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is not a regular file");
+    if (length > 0) snprintf(folder, sizeof folder, "%.*s", (int)length, path);
+    if (access(folder, W_OK) == 0) return true;
+    if (errno != ENOENT) return error_system(error, path, "cannot write there: %s", strerror(errno));
+    return file_make_directory(folder, error); /* a missing folder now, so that an error appears before the drawing */
 }
 
 bool video_check_programs(Error *error) {
@@ -129,28 +125,22 @@ static bool find_size(const VideoOptions *options, int *width, int *height, Erro
     return true;
 }
 
-static bool check_frame(const VideoOptions *options, int index, const Image *image, int width, int height,
-                        Error *error) {
-    if (image->width != width || image->height != height)
-        return error_input(error, options->directory, "frame %d is %dx%d, but the first is %dx%d", index, image->width,
-                           image->height, width, height);
-    if (options->hashes != NULL && image_hash(image) != options->hashes[index - options->first].pixels)
-        return error_input(error, options->directory, "the pixels of frame %d differ from those drawn", index);
-    return true;
-}
-
 /* Consumes a picture; false if it needs no more. */
 typedef bool WriteFrame(void *context, const Image *image);
 
-/* Passes every stride-th picture to `write_frame`, after checking its size and pixels. Sets *stopped if it returned
-   false. */
-static bool video_feed(const VideoOptions *options, int stride, int width, int height, WriteFrame *write_frame,
-                       void *context, bool *stopped, const Progress *progress, Error *error) {
+/* Passes every stride-th picture to `write`, after checking its size and pixels. Sets *stopped if it returned false. */
+static bool feed(const VideoOptions *options, int stride, int width, int height, WriteFrame *write, void *context,
+                 bool *stopped, const Progress *progress, Error *error) {
     *stopped = false;
     for (int index = options->first; !*stopped && index <= options->last; index += stride) {
         Image *image = read_frame(options, index, error);
-        bool ok = image != NULL && check_frame(options, index, image, width, height, error);
-        if (ok) *stopped = !write_frame(context, image);
+        bool ok = image != NULL;
+        if (ok && (image->width != width || image->height != height))
+            ok = error_input(error, options->directory, "frame %d is %dx%d, but the first is %dx%d", index,
+                             image->width, image->height, width, height);
+        if (ok && options->hashes != NULL && image_hash(image) != options->hashes[index - options->first].pixels)
+            ok = error_input(error, options->directory, "the pixels of frame %d differ from those drawn", index);
+        if (ok) *stopped = !write(context, image);
         image_destroy(image);
         if (!ok) return false;
         if (!progress_report(progress, index - options->first + 1, options->last - options->first + 1))
@@ -165,12 +155,12 @@ typedef struct Arguments {
     int count;
 } Arguments;
 
-static void video_add(Arguments *arguments, const char *const *more) {
+static void add(Arguments *arguments, const char *const *more) {
     for (; *more != NULL; more++) arguments->list[arguments->count++] = *more;
     arguments->list[arguments->count] = NULL;
 }
 
-#define ADD(arguments, ...) video_add((arguments), (const char *const[]){__VA_ARGS__, NULL})
+#define ADD(arguments, ...) add((arguments), (const char *const[]){__VA_ARGS__, NULL})
 
 /* State of one encoding. */
 typedef struct Encoding {
@@ -196,68 +186,43 @@ static bool write_raw(void *context, const Image *image) {
     return process_write(&target->process, target->rgb, 3 * pixels);
 }
 
-/* An encoder keeps the frames that it looks ahead, and more for each thread. Of frames larger than full HD it keeps no
-   more pixels than it may of full HD, in as many threads on every machine; otherwise 3840x2160 takes 1.7 GB with two
-   cores. */
-static void bound_memory(Arguments *arguments, const Encoding *encoding, char ahead[16]) {
-    enum { FULL_HD = 1920 * 1080, AHEAD_LEAST = 2 };
-    const long pixels = (long)encoding->width * encoding->height;
-    if (encoding->format->ahead == NULL || pixels <= FULL_HD) return;
-    const long frames = encoding->format->ahead_frames * (long)FULL_HD / pixels;
-    snprintf(ahead, 16, "%ld", frames > AHEAD_LEAST ? frames : AHEAD_LEAST);
-    ADD(arguments, encoding->format->ahead, ahead, "-threads", "4");
-}
-
-/* A key frame at least each second: players seek from one to the next. A GIF has none. */
-static void seek_by_seconds(Arguments *arguments, const Encoding *encoding, char most[16]) {
-    if (encoding->format->ahead == NULL) return;
-    snprintf(most, 16, "%.0f", fmax(1, floor(encoding->options->frame_rate / encoding->stride)));
-    ADD(arguments, "-g", most);
-}
-
 /* Feeds all pictures to an ffmpeg with these further arguments. */
 static bool run_ffmpeg(const Encoding *encoding, const char *const *format_arguments, const char *output,
                        Error *error) {
+    enum { FULL_HD = 1920 * 1080, AHEAD_LEAST = 2 };
+    const VideoFormat *format = encoding->format;
+    const long pixels = (long)encoding->width * encoding->height;
     char size[32], rate[32], ahead[16], seconds[16];
     Arguments arguments = {0};
     snprintf(size, sizeof size, "%dx%d", encoding->width, encoding->height);
     snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->stride);
     ADD(&arguments, "ffmpeg", "-y", "-v", "error", "-f", "rawvideo", "-pixel_format", "rgb24");
     ADD(&arguments, "-video_size", size, "-framerate", rate, "-i", "-");
-    video_add(&arguments, format_arguments);
-    bound_memory(&arguments, encoding, ahead);
-    seek_by_seconds(&arguments, encoding, seconds);
+    add(&arguments, format_arguments);
+    if (format->ahead != NULL && pixels > FULL_HD) {
+        /* An encoder keeps the frames that it looks ahead, and more for each thread. Of frames larger than full HD it
+           keeps no more pixels than it may of full HD, in as many threads on every machine; otherwise 3840x2160 takes
+           1.7 GB with two cores. */
+        const long frames = format->ahead_frames * (long)FULL_HD / pixels;
+        snprintf(ahead, sizeof ahead, "%ld", frames > AHEAD_LEAST ? frames : AHEAD_LEAST);
+        ADD(&arguments, format->ahead, ahead, "-threads", "4");
+    }
+    if (format->ahead != NULL) { /* a key frame at least each second: players seek from one to the next */
+        snprintf(seconds, sizeof seconds, "%.0f", fmax(1, floor(encoding->options->frame_rate / encoding->stride)));
+        ADD(&arguments, "-g", seconds);
+    }
     ADD(&arguments, output);
-    RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
+    RawTarget target = {.rgb = malloc(3 * (size_t)pixels)};
     if (target.rgb == NULL) return error_memory(error, encoding->options->path);
     bool stopped, ok = process_start(&target.process, arguments.list, error);
-    if (ok && !video_feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
-                          &stopped, encoding->progress, error)) {
+    if (ok && !feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
+                    &stopped, encoding->progress, error)) {
         process_kill(&target.process);
         ok = false;
     }
     free(target.rgb);
     if (!ok || !process_finish(&target.process, encoding->words, WORDS_SIZE, error)) return false;
     return !stopped || error_system(error, "ffmpeg", "stopped reading before the last frame\n%s", encoding->words);
-}
-
-/* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
-static bool run_for_gif(const Encoding *encoding, Error *error) {
-    static const char filter[] = GIF_SCALE ",palettegen=stats_mode=full";
-    static const char *const find[] = {"-vf", filter, "-frames:v", "1", "-c:v", "png", "-f", "image2pipe", NULL};
-    Arguments use = {0};
-    ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
-    video_add(&use, encoding->format->encoder);
-    ADD(&use, "-f", encoding->format->muxer);
-    return run_ffmpeg(encoding, find, encoding->palette, error) &&
-           run_ffmpeg(encoding, use.list, encoding->part, error);
-}
-
-static bool run_for_film(const Encoding *encoding, Error *error) {
-    Arguments use = {0};
-    video_add(&use, encoding->format->encoder);
-    ADD(&use, "-f", encoding->format->muxer);
-    return run_ffmpeg(encoding, use.list, encoding->part, error);
 }
 
 /* Counts the frames by decoding the video. */
@@ -276,12 +241,21 @@ static bool count_frames(const char *path, int *count, Error *error) {
     return true;
 }
 
-static bool encode_video(const Encoding *encoding, Error *error) {
+static bool encode(const Encoding *encoding, Error *error) {
+    static const char filter[] = GIF_SCALE ",palettegen=stats_mode=full";
+    static const char *const find[] = {"-vf", filter, "-frames:v", "1", "-c:v", "png", "-f", "image2pipe", NULL};
     const VideoOptions *options = encoding->options;
-    int wanted = (options->last - options->first) / encoding->stride + 1, count;
-    bool gif = strcmp(encoding->format->ending, ".gif") == 0;
-    if (!(gif ? run_for_gif(encoding, error) : run_for_film(encoding, error)) ||
-        !count_frames(encoding->part, &count, error))
+    const int wanted = (options->last - options->first) / encoding->stride + 1;
+    Arguments use = {0};
+    /* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
+    if (strcmp(encoding->format->ending, ".gif") == 0) {
+        if (!run_ffmpeg(encoding, find, encoding->palette, error)) return false;
+        ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
+    }
+    add(&use, encoding->format->encoder);
+    ADD(&use, "-f", encoding->format->muxer);
+    int count;
+    if (!run_ffmpeg(encoding, use.list, encoding->part, error) || !count_frames(encoding->part, &count, error))
         return false;
     if (count != wanted) {
         error_system(error, options->path, "the video has %d frames (expected %d)", count, wanted);
@@ -313,7 +287,7 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
     encoding.draft = encoding.palette_draft = -1;
     const bool ok = open_draft(&encoding.draft, encoding.part, options->path, error) &&
                     open_draft(&encoding.palette_draft, encoding.palette, options->path, error) &&
-                    encode_video(&encoding, error);
+                    encode(&encoding, error);
     if (encoding.draft >= 0) close(encoding.draft);
     if (encoding.palette_draft >= 0) close(encoding.palette_draft);
     return ok;
@@ -327,34 +301,11 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
 
    with R, G, B = channel / 255. The format has no field that marks BT.709. */
 
-enum { HEADER_SIZE = 128 };
-
 static const char frame_line[] = "FRAME\n";
-enum { FRAME_LINE_SIZE = sizeof frame_line - 1 };
-
-/* The header line of a stream. frame_rate in Hz, to a thousandth. */
-static void print_header(char header[HEADER_SIZE], int width, int height, double frame_rate) {
-    const int64_t rate = (int64_t)(1000 * frame_rate + 0.5), divisor = greatest_divisor(rate, 1000);
-    snprintf(header, HEADER_SIZE, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C444 XCOLORRANGE=LIMITED\n",
-             width, height, rate / divisor, 1000 / divisor);
-}
+enum { HEADER_SIZE = 128, FRAME_LINE_SIZE = sizeof frame_line - 1 };
 
 /* a / b rounded to the nearest integer; b > 0 and even. */
 static int nearest(int a, int b) { return (a + b / 2 + 256 * b) / b - 256; }
-
-static void video_convert(const Image *image, uint8_t *frame) {
-    size_t pixels = (size_t)image->width * (size_t)image->height;
-    uint8_t *y = (uint8_t *)memcpy(frame, frame_line, FRAME_LINE_SIZE) + FRAME_LINE_SIZE, *cb = y + pixels,
-            *cr = cb + pixels;
-    for (size_t i = 0; i < pixels; i++) {
-        const uint8_t *rgb = image->pixels + 4 * i;
-        /* In 1/10000 of a channel's step. */
-        int light = 2126 * rgb[0] + 7152 * rgb[1] + 722 * rgb[2];
-        y[i] = (uint8_t)(16 + nearest(219 * light, 255 * 10000));
-        cb[i] = (uint8_t)(128 + nearest(224 * (10000 * rgb[2] - light), 255 * 18556));
-        cr[i] = (uint8_t)(128 + nearest(224 * (10000 * rgb[0] - light), 255 * 15748));
-    }
-}
 
 typedef struct Y4mTarget {
     int file;
@@ -365,7 +316,17 @@ typedef struct Y4mTarget {
 
 static bool write_y4m_frame(void *context, const Image *image) {
     Y4mTarget *target = context;
-    video_convert(image, target->frame);
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    memcpy(target->frame, frame_line, FRAME_LINE_SIZE);
+    uint8_t *y = target->frame + FRAME_LINE_SIZE, *cb = y + pixels, *cr = cb + pixels;
+    for (size_t i = 0; i < pixels; i++) {
+        const uint8_t *rgb = image->pixels + 4 * i;
+        /* In 1/10000 of a channel's step. */
+        int light = 2126 * rgb[0] + 7152 * rgb[1] + 722 * rgb[2];
+        y[i] = (uint8_t)(16 + nearest(219 * light, 255 * 10000));
+        cb[i] = (uint8_t)(128 + nearest(224 * (10000 * rgb[2] - light), 255 * 18556));
+        cr[i] = (uint8_t)(128 + nearest(224 * (10000 * rgb[0] - light), 255 * 15748));
+    }
     if (file_write_all(target->file, target->frame, target->size)) return true;
     target->cause = errno;
     return false;
@@ -379,10 +340,12 @@ bool video_write_y4m(const VideoOptions *options, int file, const Progress *prog
     uint8_t *frame = malloc(size);
     Y4mTarget target = {.file = file, .size = size, .frame = frame};
     if (frame == NULL) return error_memory(error, options->path);
-    print_header(header, width, height, options->frame_rate);
+    const int64_t rate = (int64_t)(1000 * options->frame_rate + 0.5), divisor = greatest_divisor(rate, 1000);
+    snprintf(header, sizeof header, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C444 XCOLORRANGE=LIMITED\n",
+             width, height, rate / divisor, 1000 / divisor);
     bool stopped = !file_write_all(file, header, strlen(header)), ok = true;
     if (stopped) target.cause = errno;
-    if (!stopped) ok = video_feed(options, 1, width, height, write_y4m_frame, &target, &stopped, progress, error);
+    if (!stopped) ok = feed(options, 1, width, height, write_y4m_frame, &target, &stopped, progress, error);
     free(frame);
     return ok && (!stopped || error_system(error, options->path, "cannot write: %s", strerror(target.cause)));
 }
