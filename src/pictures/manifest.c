@@ -46,22 +46,6 @@ static void write_rectangle(JsonWriter *json, const Rect *rect) {
     json_end(json);
 }
 
-static void write_run(JsonWriter *json, const Picture *picture, int run) {
-    char name[TRAJECTORY_FILE_NAME_SIZE];
-    trajectory_file_name(picture->runs, run, name);
-    json_put_text(json, NULL, name);
-}
-
-/* The run of the filled boxes first. */
-static void write_panel_runs(JsonWriter *json, const Picture *picture, int panel) {
-    const int filled = picture_run(picture, panel);
-    json_begin_array(json, "runs", JSON_ONE_LINE);
-    write_run(json, picture, filled);
-    for (int run = 0; run < picture->count; run++)
-        if (picture_draws_outlines(picture, panel, run)) write_run(json, picture, run);
-    json_end(json);
-}
-
 /* The members scale, left and top. */
 static void write_camera(JsonWriter *json, const Camera *camera) {
     json_put_number(json, "scale", camera->scale);
@@ -69,19 +53,25 @@ static void write_camera(JsonWriter *json, const Camera *camera) {
     json_put_number(json, "top", camera->top);
 }
 
-static void write_panels(JsonWriter *json, const Picture *picture) {
+static void write_view(JsonWriter *json, const Picture *picture) {
+    json_begin_object(json, "view", JSON_LINES);
     json_begin_array(json, "panels", JSON_LINES);
     for (int panel = 0; panel < picture->panel_count; panel++) {
+        const int filled = picture_run(picture, panel);
         json_begin_object(json, NULL, JSON_ONE_LINE);
         write_rectangle(json, &picture->layout.panels[panel]);
-        write_panel_runs(json, picture, panel);
+        json_begin_array(json, "runs", JSON_ONE_LINE);
+        for (int i = -1; i < picture->count; i++) { /* the run of the filled boxes first */
+            char name[TRAJECTORY_FILE_NAME_SIZE];
+            if (i >= 0 && !picture_draws_outlines(picture, panel, i)) continue;
+            trajectory_file_name(picture->runs, i < 0 ? filled : i, name);
+            json_put_text(json, NULL, name);
+        }
+        json_end(json);
         write_camera(json, &picture->camera);
         json_end(json);
     }
     json_end(json);
-}
-
-static void write_parts(JsonWriter *json, const Picture *picture) {
     Part parts[PARTS_MAX];
     const int count = parts_find(picture, parts);
     json_begin_array(json, "parts", JSON_LINES);
@@ -93,16 +83,8 @@ static void write_parts(JsonWriter *json, const Picture *picture) {
         json_end(json);
     }
     json_end(json);
-}
-
-static void write_view(JsonWriter *json, const Picture *picture) {
-    json_begin_object(json, "view", JSON_LINES);
-    write_panels(json, picture);
-    write_parts(json, picture);
     json_end(json);
 }
-
-/* The content. */
 
 enum { FORMAT = 1 };
 
@@ -139,27 +121,9 @@ static void write_look(JsonWriter *json, const RenderLook *look) {
     json_end(json);
 }
 
-/* The range of frames, and the number of pictures of everything else. */
-static void write_order(JsonWriter *json, const Manifest *manifest) {
-    const MomentPlan *plan = manifest->plan;
-    json_begin_object(json, "order", JSON_LINES);
-    json_put_int(json, "first", plan->first);
-    json_put_int(json, "last", plan->last);
-    json_put_int(json, "title_card", plan->title);
-    json_begin_object(json, "slow", JSON_ONE_LINE);
-    json_put_int(json, "times", plan->slow);
-    json_put_int(json, "first", plan->slow_first);
-    json_put_int(json, "last", plan->slow_last);
-    json_end(json);
-    json_put_number(json, "rate", plan->rate);
-    json_put_number(json, "speed", plan->speed);
-    json_put_int(json, "hold", plan->hold);
-    json_put_int(json, "end_card", plan->end);
-    json_end(json);
-}
-
 static void write_head(JsonWriter *json, const Manifest *manifest) {
     const RenderOptions *options = manifest->options;
+    const MomentPlan *plan = manifest->plan;
     json_begin_object(json, NULL, JSON_LINES);
     json_put_text(json, "twinbox", TWINBOX_VERSION);
     json_put_int(json, "format", FORMAT);
@@ -174,16 +138,23 @@ static void write_head(JsonWriter *json, const Manifest *manifest) {
     json_put_bool(json, "end_table", options->look.end != NULL && !options->look.end_bare);
     write_runs(json, manifest);
     write_look(json, &options->look);
-    write_order(json, manifest);
+    /* The range of frames, and the number of pictures of everything else. */
+    json_begin_object(json, "order", JSON_LINES);
+    json_put_int(json, "first", plan->first);
+    json_put_int(json, "last", plan->last);
+    json_put_int(json, "title_card", plan->title);
+    json_begin_object(json, "slow", JSON_ONE_LINE);
+    json_put_int(json, "times", plan->slow);
+    json_put_int(json, "first", plan->slow_first);
+    json_put_int(json, "last", plan->slow_last);
+    json_end(json);
+    json_put_number(json, "rate", plan->rate);
+    json_put_number(json, "speed", plan->speed);
+    json_put_int(json, "hold", plan->hold);
+    json_put_int(json, "end_card", plan->end);
+    json_end(json);
     write_view(json, manifest->picture);
     json_begin_array(json, "pictures", JSON_LINES);
-}
-
-static void write_moving_camera(JsonWriter *json, const Picture *picture, Moment moment) {
-    const Camera camera = picture_camera(picture, moment);
-    json_begin_object(json, "camera", JSON_ONE_LINE);
-    write_camera(json, &camera);
-    json_end(json);
 }
 
 static void write_picture(JsonWriter *json, const Manifest *manifest, int index, PictureHashes hashes) {
@@ -198,8 +169,12 @@ static void write_picture(JsonWriter *json, const Manifest *manifest, int index,
     json_put_int(json, "frame", moment.frame);
     frame_part_text(text, sizeof text, moment);
     if (moment.kind == MOMENT_BETWEEN) json_put_text(json, "part", text);
-    if (picture->path != NULL && (moment.kind == MOMENT_STORED || moment.kind == MOMENT_BETWEEN))
-        write_moving_camera(json, picture, moment);
+    if (picture->path != NULL && (moment.kind == MOMENT_STORED || moment.kind == MOMENT_BETWEEN)) {
+        const Camera camera = picture_camera(picture, moment);
+        json_begin_object(json, "camera", JSON_ONE_LINE);
+        write_camera(json, &camera);
+        json_end(json);
+    }
     json_begin_array(json, "states", JSON_ONE_LINE);
     for (int i = 0; i < picture->count; i++)
         json_put_hash(json, NULL, trajectory_frame_hash(picture->runs[i], picture_run_frame(picture, i, moment.frame)));
@@ -273,21 +248,16 @@ void manifest_close(Manifest *manifest) {
     free(manifest->hashes);
 }
 
-/* The number after "frame_", or -1. */
-static int index_of(const char *line) {
-    static const char start[] = "{\"file\": \"frame_";
-    if (strncmp(line, start, sizeof start - 1) != 0 || !isdigit((unsigned char)line[sizeof start - 1])) return -1;
-    long index = strtol(line + sizeof start - 1, NULL, 10);
-    return index <= INT32_MAX ? (int)index : -1;
-}
-
 /* The index of the frame that a line, without indentation and comma, lists, and its hashes as far as the line has any;
    -1: the line lists no frame. */
 static int read_line(const char *line, size_t length, PictureHashes *hashes) {
+    static const char start[] = "{\"file\": \"frame_";
     if (length < PIXELS_FROM_END) return -1;
-    const char *end = line + length;
+    const char *end = line + length, *number = line + sizeof start - 1;
     *hashes = (PictureHashes){strtoull(end - PIXELS_FROM_END, NULL, 16), strtoull(end - FILE_FROM_END, NULL, 16)};
-    return index_of(line);
+    if (strncmp(line, start, sizeof start - 1) != 0 || !isdigit((unsigned char)*number)) return -1;
+    const long index = strtol(number, NULL, 10);
+    return index <= INT32_MAX ? (int)index : -1;
 }
 
 /* Takes the hashes from a line, if the line equals the expected one with these hashes. */
@@ -305,36 +275,27 @@ static void recall_line(Manifest *manifest, const char *line, size_t length) {
     free(expected);
 }
 
-/* An incomplete last line was cut off by a kill and is ignored. */
-static void recall_lines(Manifest *manifest, char *text) {
-    for (char *line = text, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+/* False, with `why` set, if the file is missing or of other pictures. */
+static bool recall_file(Manifest *manifest, const char *path, char *why, size_t why_size) {
+    Error error = {0};
+    size_t size, head = strlen(manifest->head), count = (size_t)(manifest->last - manifest->first) + 1;
+    char *text = file_read(path, head + 2 * (count + 1) * MANIFEST_LINE_SIZE, &size, &error);
+    const bool same = text != NULL && strncmp(text, manifest->head, head) == 0;
+    if (text == NULL)
+        snprintf(why, why_size, "%s", error.message);
+    else if (!same) {
+        int line = 1;
+        for (const char *a = text, *b = manifest->head; *a == *b && *a != '\0'; a++, b++) line += *a == '\n';
+        snprintf(why, why_size, "%s:%d differs: other runs, options or version", path, line);
+    }
+    /* An incomplete last line was cut off by a kill and is ignored. */
+    for (char *line = same ? text + head : NULL, *end; same && (end = strchr(line, '\n')) != NULL; line = end + 1) {
         while (*line == ' ') line++;
         size_t length = (size_t)(end - line);
         if (length > 0 && line[length - 1] == ',') length--;
         line[length] = '\0';
         recall_line(manifest, line, length);
     }
-}
-
-static int line_of_difference(const char *a, const char *b) {
-    int line = 1;
-    for (; *a == *b && *a != '\0'; a++, b++) line += *a == '\n';
-    return line;
-}
-
-/* False, with `why` set, if the file is missing or of other pictures. */
-static bool recall_file(Manifest *manifest, const char *path, char *why, size_t why_size) {
-    Error error = {0};
-    size_t size, head = strlen(manifest->head), count = (size_t)(manifest->last - manifest->first) + 1;
-    char *text = file_read(path, head + 2 * (count + 1) * MANIFEST_LINE_SIZE, &size, &error);
-    bool same = text != NULL && strncmp(text, manifest->head, head) == 0;
-    if (same)
-        recall_lines(manifest, text + head);
-    else if (text != NULL)
-        snprintf(why, why_size, "%s:%d differs: other runs, options or version", path,
-                 line_of_difference(text, manifest->head));
-    else
-        snprintf(why, why_size, "%s", error.message);
     free(text);
     return same;
 }
@@ -366,56 +327,43 @@ bool manifest_check(const Manifest *manifest, Error *error) {
     return check_overwritable(manifest->path, error) && check_overwritable(manifest->journal, error);
 }
 
-static bool remove_listed(const Manifest *manifest, const char *line, Error *error) {
-    char path[PATH_MAX];
-    PictureHashes hashes;
-    const int index = read_line(line, strlen(line), &hashes);
+/* Removes the frames that the file, the manifest of an earlier sequence or its journal, lists, that the new sequence
+   does not overwrite, and whose bytes are unchanged; files of any other origin stay. What is not a regular file lists
+   nothing. */
+static bool remove_listed(const Manifest *manifest, const char *path, Error *error) {
     const char *directory = manifest->options->directory;
-    if (index < 0 || (index >= manifest->first && index <= manifest->last)) return true;
-    return !sink_frame_path(path, sizeof path, directory, index) || !sink_frame_is(directory, index, hashes.file) ||
-           file_remove(path, error);
-}
-
-/* Lines longer than those that manifests have are read in pieces, none of which looks like one. */
-static bool remove_all(const Manifest *manifest, FILE *list, const char *path, Error *error) {
-    char line[MANIFEST_LINE_SIZE];
-    while (fgets(line, sizeof line, list) != NULL) {
-        const size_t end = strcspn(line, "\n"), begin = strspn(line, " ");
-        if (line[end] == '\0' || begin > end) continue;
-        line[end > 0 && line[end - 1] == ',' ? end - 1 : end] = '\0';
-        if (!remove_listed(manifest, line + begin, error)) return false;
-    }
-    return !ferror(list) || error_system(error, path, "cannot read: %s", strerror(errno));
-}
-
-/* What is not a regular file lists nothing. */
-static bool remove_listed_in(const Manifest *manifest, const char *path, Error *error) {
     struct stat status;
     const int file = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (file < 0) return errno == ENOENT || errno == ELOOP || file_open_error(path, error);
-    if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) {
-        close(file);
-        return true;
-    }
-    FILE *list = fdopen(file, "r");
+    const bool regular = fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+    FILE *list = regular ? fdopen(file, "r") : NULL;
     if (list == NULL) {
         close(file);
-        return error_memory(error, path);
+        return !regular || error_memory(error, path);
     }
-    const bool done = remove_all(manifest, list, path, error);
+    /* Lines longer than those that manifests have are read in pieces, none of which looks like one. */
+    char line[MANIFEST_LINE_SIZE], frame[PATH_MAX];
+    bool ok = true;
+    while (ok && fgets(line, sizeof line, list) != NULL) {
+        const size_t end = strcspn(line, "\n"), begin = strspn(line, " ");
+        if (line[end] == '\0' || begin > end) continue;
+        line[end > 0 && line[end - 1] == ',' ? end - 1 : end] = '\0';
+        PictureHashes hashes;
+        const int index = read_line(line + begin, strlen(line + begin), &hashes);
+        if (index >= 0 && (index < manifest->first || index > manifest->last) &&
+            sink_frame_path(frame, sizeof frame, directory, index) && sink_frame_is(directory, index, hashes.file))
+            ok = file_remove(frame, error);
+    }
+    if (ok && ferror(list)) ok = error_system(error, path, "cannot read: %s", strerror(errno));
     fclose(list);
-    return done;
-}
-
-/* Removes the frames that the folder's manifest or journal lists, that the new sequence does not overwrite, and whose
-   bytes are unchanged; files of any other origin stay. To be called while both are still those of the earlier sequence:
-   what an interrupted call leaves is then listed for the next one. ERROR_SYSTEM if one of them is left. */
-static bool remove_stale(const Manifest *manifest, Error *error) {
-    return remove_listed_in(manifest, manifest->path, error) && remove_listed_in(manifest, manifest->journal, error);
+    return ok;
 }
 
 bool manifest_begin(Manifest *manifest, bool whole, Error *error) {
-    if (whole && !remove_stale(manifest, error)) return false;
+    /* While both are still those of the earlier sequence: what an interrupted call leaves is then listed for the next
+       one. */
+    if (whole && !(remove_listed(manifest, manifest->path, error) && remove_listed(manifest, manifest->journal, error)))
+        return false;
     size_t size;
     char *text = file_print(print_journal, manifest, &size);
     bool ok =
