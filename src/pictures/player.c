@@ -6,6 +6,8 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "base/numbers.h"
+#include "live/live.h"
 #include "methods/methods.h"
 #include "methods/names.h"
 #include "pictures/pictures_internal.h"
@@ -16,70 +18,44 @@
 #include "runs/trajectory.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 static const double POINT = 2e-3; /* of a box: a tenth of a pixel where a box has 50 */
 static const double SMALL = 1e-2; /* of common impulses: shorter arrows cannot be seen */
 
-typedef bool IsThere(const Trajectory *first, const Trajectory *run, int frame, int body);
-
-static bool player_differs(const Trajectory *first, const Trajectory *run, int frame, int body) {
-    return !trajectory_same_state(first, run, frame, body);
-}
-
-static bool is_apart(const Trajectory *first, const Trajectory *run, int frame, int body) {
-    return trajectory_has(first, frame, body) && trajectory_has(run, frame, body) &&
-           trajectory_state_difference(first, run, frame, body).distance > EVENTS_VISIBLE_DISTANCE;
-}
-
-/* The first frame and body for which it holds; -1, -1: none. */
-static void player_find(const Trajectory *first, const Trajectory *run, IsThere *is_there, int *frame, int *body) {
-    const int frames = first->frames < run->frames ? first->frames : run->frames;
-    for (*frame = 0; *frame < frames; ++*frame)
-        for (*body = 0; *body < run->bodies; ++*body)
-            if (is_there(first, run, *frame, *body)) return;
-    *frame = *body = -1;
-}
-
-static void find_marks(Player *player, int index) {
+/* What a reader looks for in a run: where it parts from the first one, in a bit and visibly; distances and hashes. */
+static bool find_marks(Player *player, int index, Error *error) {
     const Trajectory *first = player->picture.runs[0], *trajectory = player->picture.runs[index];
+    const PlayerFrames *frames = &player->frames;
     PlayerRun *run = &player->runs[index];
-    run->frames = player_frame_count(&player->frames, trajectory->frames);
+    run->frames = player_frame_count(frames, trajectory->frames);
     run->chunks = player_run_is_live(player, index) ? 0 : (run->frames + PLAYER_CHUNK - 1) / PLAYER_CHUNK;
-    run->differs_frame = run->apart_frame = -1;
+    run->differs_frame = run->apart_frame = run->differs_body = run->apart_body = -1;
     run->compared = index == 0 || !trajectory_different_worlds(first, trajectory, run->why, sizeof run->why);
-    if (index == 0 || !run->compared) return;
-    player_find(first, trajectory, player_differs, &run->differs_frame, &run->differs_body);
-    player_find(first, trajectory, is_apart, &run->apart_frame, &run->apart_body);
-    run->differs_frame = player_stored(&player->frames, run->differs_frame);
-    run->apart_frame = player_stored(&player->frames, run->apart_frame);
-}
-
-static bool measure_frames(Player *player, int index, Error *error) {
-    PlayerRun *run = &player->runs[index];
+    const int common = index > 0 && run->compared ? int_min(first->frames, trajectory->frames) : 0;
+    for (int frame = 0; frame < common && run->apart_frame < 0; frame++)
+        for (int body = 0; body < trajectory->bodies && run->apart_frame < 0; body++) {
+            if (run->differs_frame < 0 && !trajectory_same_state(first, trajectory, frame, body))
+                run->differs_frame = frame, run->differs_body = body;
+            if (trajectory_has(first, frame, body) && trajectory_has(trajectory, frame, body) &&
+                trajectory_state_difference(first, trajectory, frame, body).distance > EVENTS_VISIBLE_DISTANCE)
+                run->apart_frame = frame, run->apart_body = body;
+        }
+    run->differs_frame = player_stored(frames, run->differs_frame);
+    run->apart_frame = player_stored(frames, run->apart_frame);
+    if (run->frames == 0)
+        return error_input(error, "--frames", "run %d (%s) ends before frame %d", index + 1, trajectory->method,
+                           frames->first);
     run->hashes = malloc((size_t)run->frames * sizeof *run->hashes);
     run->distances = malloc((size_t)run->frames * sizeof *run->distances);
     if (run->hashes == NULL || run->distances == NULL) return error_memory(error, "page");
     for (int i = 0; i < run->frames; i++) {
-        const int frame = player_frame(&player->frames, i);
-        run->hashes[i] = trajectory_frame_hash(player->picture.runs[index], frame);
+        const int frame = player_frame(frames, i);
+        run->hashes[i] = trajectory_frame_hash(trajectory, frame);
         run->distances[i] =
             run->compared ? (float)picture_run_distance(&player->picture, index, moment_stored(frame)) : NAN;
-    }
-    return true;
-}
-
-/* Finds what a reader looks for: where runs part, distances, hashes. */
-static bool find_all_marks(Player *player, Error *error) {
-    for (int i = 0; i < player->picture.count; i++) find_marks(player, i);
-    const double impulse = SMALL * player->measures.impulse;
-    player->units = (ContactUnits){(float)(POINT * player->measures.box), impulse > 0 ? (float)impulse : 1};
-    for (int i = 0; i < player->picture.count; i++) {
-        if (player->runs[i].frames == 0)
-            return error_input(error, "--frames", "run %d (%s) ends before frame %d", i + 1,
-                               player->picture.runs[i]->method, player->frames.first);
-        if (!measure_frames(player, i, error)) return false;
     }
     return true;
 }
@@ -132,7 +108,8 @@ static void put_mark(JsonWriter *json, const char *key, int frame, int body) {
     json_end(json);
 }
 
-double player_ems(FontFace face, const char *text) {
+/* Width of text in ems of the built-in font. Grids of panels depend on it: not on the reader's fonts. */
+static double ems(FontFace face, const char *text) {
     const Font font = font_pick(face, EM);
     return (double)font_width(&font, text) / font.pixels;
 }
@@ -147,8 +124,8 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_text(json, "name", name);
     json_put_text(json, "caption", player->options->names[index]);
     json_put_text(json, "note", note);
-    json_put_number(json, "ems", player_ems(FONT_SEMIBOLD, name));
-    json_put_number(json, "note_ems", player_ems(FONT_REGULAR, note));
+    json_put_number(json, "ems", ems(FONT_SEMIBOLD, name));
+    json_put_number(json, "note_ems", ems(FONT_REGULAR, note));
     json_put_text(json, "file", player->options->files[index]);
     json_put_text(json, "made_of", player->options->scenes[index]);
     json_put_hash(json, "hash",
@@ -163,16 +140,8 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_int(json, "steps", run->frames - 1);
 }
 
-static void put_verdict(JsonWriter *json, const Player *player, const Trajectory *run) {
-    if (json_put_absent(json, "verdict", run->verdict[0] == '\0')) return;
-    json_begin_object(json, "verdict", JSON_ONE_LINE);
-    json_put_text(json, "text", run->verdict);
-    json_put_int(json, "frame", player_stored(&player->frames, run->verdict_frame));
-    json_put_int(json, "body", run->verdict_body);
-    json_end(json);
-}
-
-void player_put_colours(JsonWriter *json, const char *key, const RunColours *colours) {
+/* The colours of a run's boxes, by theme. */
+static void put_colours(JsonWriter *json, const char *key, const RunColours *colours) {
     json_begin_object(json, key, JSON_ONE_LINE);
     put_body_colors(json, "light", &colours->light);
     put_body_colors(json, "dark", &colours->dark);
@@ -193,8 +162,14 @@ static void put_run_data(JsonWriter *json, const Player *player, int index) {
     json_put_bool(json, "velocities", !trajectory->no_velocities);
     json_put_bool(json, "contacts", run->contacts != NULL || player_run_is_live(player, index));
     json_put_text(json, "live", player->options->live != NULL ? player->options->live->methods[index] : NULL);
-    player_put_colours(json, "colours", &player->picture.colours[index]);
-    put_verdict(json, player, trajectory);
+    put_colours(json, "colours", &player->picture.colours[index]);
+    if (!json_put_absent(json, "verdict", trajectory->verdict[0] == '\0')) {
+        json_begin_object(json, "verdict", JSON_ONE_LINE);
+        json_put_text(json, "text", trajectory->verdict);
+        json_put_int(json, "frame", player_stored(&player->frames, trajectory->verdict_frame));
+        json_put_int(json, "body", trajectory->verdict_body);
+        json_end(json);
+    }
     json_put_bool(json, "compared", run->compared);
     json_put_text(json, "why", run->why);
     put_mark(json, "differs", run->differs_frame, run->differs_body);
@@ -218,25 +193,27 @@ static void put_left_out(JsonWriter *json, const Player *player) {
     json_end(json);
 }
 
-static void put_measures(JsonWriter *json, const Player *player) {
-    json_begin_object(json, "scales", JSON_ONE_LINE);
-    json_put_number(json, "impulse", player->measures.impulse);
-    json_put_number(json, "speed", player->measures.speed);
-    json_put_number(json, "box", player->measures.box);
-    json_put_number(json, "largest", player->picture.largest_distance);
-    json_end(json);
-    json_begin_object(json, "units", JSON_ONE_LINE);
-    json_put_number(json, "length", (double)player->units.length);
-    json_put_number(json, "impulse", (double)player->units.impulse);
-    json_end(json);
-}
-
-static int first_impact(const Picture *picture) {
-    for (int i = 0; i < picture->count; i++) {
-        const int impact = trajectory_impact(picture->runs[i]);
-        if (impact >= 0) return impact;
+/* The methods that a page offers to step itself. */
+static void put_methods(JsonWriter *json, const Player *player) {
+    json_begin_object(json, "live", JSON_LINES);
+    json_begin_array(json, "methods", JSON_LINES);
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const MethodDescription *method = kind->description;
+        RunColours family[COLOUR_SHADES];
+        if (!live_has_method(method)) continue;
+        colours_family(method->name, &player->options->colours, family);
+        json_begin_object(json, NULL, JSON_LINES);
+        json_put_text(json, "name", method->name);
+        json_put_number(json, "ems", ems(FONT_SEMIBOLD, method->name));
+        json_put_text(json, "note", method->caption);
+        json_put_number(json, "note_ems", method->caption != NULL ? ems(FONT_REGULAR, method->caption) : 0);
+        json_begin_array(json, "shades", JSON_LINES); /* readers' panels follow the rule of pictures/colours.h, too */
+        for (int i = 0; i < COLOUR_SHADES; i++) put_colours(json, NULL, &family[i]);
+        json_end(json);
+        json_end(json);
     }
-    return -1;
+    json_end(json);
+    json_end(json);
 }
 
 /* What the page's script (player/codec.js) reads first: JSON. */
@@ -244,6 +221,8 @@ static void put_data(FILE *file, const Player *player) {
     JsonWriter json = {.out = file};
     const Trajectory *first = player->picture.runs[0];
     char title[CAPTION_TEXT_SIZE];
+    int impact = -1; /* of the first run that has one */
+    for (int i = 0; i < player->picture.count && impact < 0; i++) impact = trajectory_impact(player->picture.runs[i]);
     caption_title(&player->picture, title);
     json_begin_object(&json, NULL, JSON_LINES);
     json_put_text(&json, "version", TWINBOX_VERSION);
@@ -255,11 +234,11 @@ static void put_data(FILE *file, const Player *player) {
     json_put_int(&json, "frames", player_frame_count(&player->frames, player->picture.frames));
     json_put_int(&json, "total", player->picture.frames);
     json_put_int(&json, "chunk", PLAYER_CHUNK);
-    json_put_int(&json, "impact", player_stored(&player->frames, first_impact(&player->picture)));
-    json_put_number(&json, "distance_ems", player_ems(FONT_REGULAR, "distance 0.00 m"));
-    json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out of view"));
+    json_put_int(&json, "impact", player_stored(&player->frames, impact));
+    json_put_number(&json, "distance_ems", ems(FONT_REGULAR, "distance 0.00 m"));
+    json_put_number(&json, "out_ems", ems(FONT_REGULAR, "00 out of view"));
     json_put_text(&json, "arrow_note", ARROW_NOTE);
-    json_put_number(&json, "arrow_note_ems", player_ems(FONT_REGULAR, ARROW_NOTE));
+    json_put_number(&json, "arrow_note_ems", ems(FONT_REGULAR, ARROW_NOTE));
     json_begin_object(&json, "shows", JSON_ONE_LINE);
     for (int i = 0; i < SHOW_COUNT; i++)
         if (show_marks[i].script != NULL) json_put_text(&json, show_marks[i].name, show_marks[i].needs);
@@ -273,7 +252,16 @@ static void put_data(FILE *file, const Player *player) {
     put_left_out(&json, player);
     const CameraFrame framing = camera_frame(player->picture.runs, player->picture.count);
     camera_frame_put(&json, "framing", &framing);
-    put_measures(&json, player);
+    json_begin_object(&json, "scales", JSON_ONE_LINE);
+    json_put_number(&json, "impulse", player->measures.impulse);
+    json_put_number(&json, "speed", player->measures.speed);
+    json_put_number(&json, "box", player->measures.box);
+    json_put_number(&json, "largest", player->picture.largest_distance);
+    json_end(&json);
+    json_begin_object(&json, "units", JSON_ONE_LINE);
+    json_put_number(&json, "length", (double)player->units.length);
+    json_put_number(&json, "impulse", (double)player->units.impulse);
+    json_end(&json);
     json_begin_object(&json, "themes", JSON_LINES);
     put_theme(&json, "light", theme_get(LOOK_LIGHT));
     put_theme(&json, "dark", theme_get(LOOK_DARK));
@@ -281,7 +269,7 @@ static void put_data(FILE *file, const Player *player) {
     json_begin_array(&json, "runs", JSON_LINES);
     for (int i = 0; i < player->picture.count; i++) put_run_data(&json, player, i);
     json_end(&json);
-    if (player->options->live != NULL) player_live_put(&json, player);
+    if (player->options->live != NULL) put_methods(&json, player);
     json_end(&json);
 }
 
@@ -308,52 +296,35 @@ static void put_head(FILE *file, const Player *player) {
     fprintf(file, "</title>\n<style>\n%s</style>\n</head>\n<body>\n", player_page_css);
 }
 
-/* `what`: of a run, or of a chunk of it. */
-static void put_packed(FILE *file, const char *what, const void *data, size_t size) {
-    fprintf(file, "<script type=\"text/plain\" id=\"%s\">", what);
+/* An element with data: of a run, of a chunk of it, or of the page. */
+PRINTF_LIKE(4, 5) static void put_packed(FILE *file, const void *data, size_t size, const char *id, ...) {
+    va_list numbers;
+    va_start(numbers, id);
+    fputs("<script type=\"text/plain\" id=\"", file);
+    vfprintf(file, id, numbers);
+    fputs("\">", file);
+    va_end(numbers);
     base64_put(file, data, size);
     fputs("</script>\n", file);
-}
-
-static void put_chunk(FILE *file, char kind, int run, int chunk, const Bytes *bytes) {
-    char id[32];
-    snprintf(id, sizeof id, "%c%d-%d", kind, run, chunk);
-    put_packed(file, id, bytes->data, bytes->size);
 }
 
 static void put_run(FILE *file, const Player *player, int index) {
     const Trajectory *trajectory = player->picture.runs[index];
     const PlayerRun *run = &player->runs[index];
     const size_t bodies = (size_t)trajectory->bodies, frames = (size_t)run->frames;
-    char id[32];
-    snprintf(id, sizeof id, "size%d", index);
-    put_packed(file, id, trajectory->size, bodies * sizeof *trajectory->size);
-    snprintf(id, sizeof id, "fixed%d", index);
-    put_packed(file, id, trajectory->fixed, bodies * sizeof *trajectory->fixed);
-    snprintf(id, sizeof id, "mass%d", index);
-    if (trajectory_has_masses(trajectory)) put_packed(file, id, trajectory->mass, bodies * sizeof *trajectory->mass);
-    snprintf(id, sizeof id, "name%d", index);
-    if (trajectory->name != NULL) put_packed(file, id, trajectory->name, bodies * sizeof *trajectory->name);
+    put_packed(file, trajectory->size, bodies * sizeof *trajectory->size, "size%d", index);
+    put_packed(file, trajectory->fixed, bodies * sizeof *trajectory->fixed, "fixed%d", index);
+    if (trajectory_has_masses(trajectory))
+        put_packed(file, trajectory->mass, bodies * sizeof *trajectory->mass, "mass%d", index);
+    if (trajectory->name != NULL)
+        put_packed(file, trajectory->name, bodies * sizeof *trajectory->name, "name%d", index);
     if (player_run_is_live(player, index)) return;
-    snprintf(id, sizeof id, "hashes%d", index);
-    put_packed(file, id, run->hashes, frames * sizeof *run->hashes);
-    snprintf(id, sizeof id, "distances%d", index);
-    put_packed(file, id, run->distances, frames * sizeof *run->distances);
-    for (int k = 0; k < run->chunks; k++) put_chunk(file, 's', index, k, &run->states[k]);
-    for (int k = 0; k < run->chunks && run->contacts != NULL; k++) put_chunk(file, 'c', index, k, &run->contacts[k]);
-}
-
-/* The first frame is that of all live runs. */
-static void put_live(FILE *file, const Player *player) {
-    put_packed(file, "module", player->module.data, player->module.size);
-    put_packed(file, "bundle", player->bundle.data, player->bundle.size);
-    for (int i = 0; i < player->picture.count; i++) {
-        const Trajectory *run = player->picture.runs[i];
-        if (!player_run_is_live(player, i)) continue;
-        put_packed(file, "places", run->position, (size_t)run->bodies * sizeof *run->position);
-        put_packed(file, "angles", run->angle, (size_t)run->bodies * sizeof *run->angle);
-        break;
-    }
+    put_packed(file, run->hashes, frames * sizeof *run->hashes, "hashes%d", index);
+    put_packed(file, run->distances, frames * sizeof *run->distances, "distances%d", index);
+    for (int k = 0; k < run->chunks; k++)
+        put_packed(file, run->states[k].data, run->states[k].size, "s%d-%d", index, k);
+    for (int k = 0; k < run->chunks && run->contacts != NULL; k++)
+        put_packed(file, run->contacts[k].data, run->contacts[k].size, "c%d-%d", index, k);
 }
 
 /* The whole page. The context is a Player. */
@@ -366,29 +337,34 @@ static void put_page(FILE *file, const void *context) {
     fputs("<script type=\"application/json\" id=\"data\">", file);
     put_data(file, player);
     fputs("</script>\n", file);
-    if (player->options->live != NULL) put_live(file, player);
-    put_packed(file, "viewer", player->viewer.data, player->viewer.size);
+    if (player->options->live != NULL) {
+        put_packed(file, player->module.data, player->module.size, "module");
+        put_packed(file, player->bundle.data, player->bundle.size, "bundle");
+    }
+    for (int i = 0; i < player->picture.count; i++) { /* the first frame is that of all live runs */
+        const Trajectory *run = player->picture.runs[i];
+        if (!player_run_is_live(player, i)) continue;
+        put_packed(file, run->position, (size_t)run->bodies * sizeof *run->position, "places");
+        put_packed(file, run->angle, (size_t)run->bodies * sizeof *run->angle, "angles");
+        break;
+    }
+    put_packed(file, player->viewer.data, player->viewer.size, "viewer");
     fprintf(file, "<script>%s</script>\n</body>\n</html>\n", player_begin);
 }
 
 /* Of any size: only names, colours and distances count. */
 enum { WIDTH = 1280, HEIGHT = 720 };
 
-/* All panels show the same moment. */
-static bool check_steps(const Trajectory *const *runs, int count, Error *error) {
-    for (int i = 1; i < count; i++)
+static bool make_plan(Player *player, const Trajectory *const *runs, int count, Error *error) {
+    const PlayerOptions *options = player->options;
+    const RenderOptions look = {
+        .width = WIDTH, .height = HEIGHT, .describe = options->describe, .colours = options->colours};
+    for (int i = 1; i < count; i++) /* all panels show the same moment */
         if (runs[i]->dt != runs[0]->dt)
             return error_input(error, "page",
                                "run %d (%s) has time steps of %g s, but the first run has %g s; they must be equal",
                                i + 1, runs[i]->method, (double)runs[i]->dt, (double)runs[0]->dt);
-    return true;
-}
-
-static bool player_plan(Player *player, const Trajectory *const *runs, int count, Error *error) {
-    const PlayerOptions *options = player->options;
-    const RenderOptions look = {
-        .width = WIDTH, .height = HEIGHT, .describe = options->describe, .colours = options->colours};
-    if (!check_steps(runs, count, error) || !picture_plan(&player->picture, runs, count, WIDTH, HEIGHT, error) ||
+    if (!picture_plan(&player->picture, runs, count, WIDTH, HEIGHT, error) ||
         !picture_apply_options(&player->picture, &look, error))
         return false;
     player->picture.title = options->title; /* after its check of their room: the page cuts what is too long */
@@ -398,27 +374,31 @@ static bool player_plan(Player *player, const Trajectory *const *runs, int count
         return error_input(error, "--frames", "%d is beyond the last frame, %d",
                            options->first > end ? options->first : last, end);
     player->frames = (PlayerFrames){options->first, last, options->every > 1 ? options->every : 1};
-    return scales_measure(runs[0], &player->measures, error);
-}
-
-static bool write_page(const Player *player, const char *path, PlayerResult *result, Error *error) {
-    size_t size;
-    char *page = file_print(put_page, player, &size);
-    const bool ok = page != NULL ? file_write(path, page, size, error) : error_memory(error, path);
-    free(page);
-    *result = (PlayerResult){player_frame_count(&player->frames, player->picture.frames), (int64_t)size,
-                             player->left_contacts};
-    return ok;
+    if (!scales_measure(runs[0], &player->measures, error)) return false;
+    const double impulse = SMALL * player->measures.impulse;
+    player->units = (ContactUnits){(float)(POINT * player->measures.box), impulse > 0 ? (float)impulse : 1};
+    for (int i = 0; i < count; i++)
+        if (!find_marks(player, i, error)) return false;
+    return true;
 }
 
 bool player_write(const Trajectory *const *runs, int count, const PlayerOptions *options, const char *path,
                   PlayerResult *result, Error *error) {
+    const PlayerLive *live = options->live;
     Player player = {.options = options,
                      .most_bytes = options->most_bytes > 0 ? (double)options->most_bytes : PLAYER_MAX_BYTES};
-    const bool ok = player_plan(&player, runs, count, error) && find_all_marks(&player, error) &&
-                    player_pack(&player, error) && (options->live == NULL || player_live_pack(&player, error)) &&
-                    bytes_deflate(&player.viewer, player_viewer, strlen(player_viewer), error) &&
-                    write_page(&player, path, result, error);
+    bool ok = make_plan(&player, runs, count, error) && player_pack(&player, error) &&
+              (live == NULL || (bytes_deflate(&player.module, live->module.bytes, live->module.size, error) &&
+                                bytes_deflate(&player.bundle, live->bundle, live->bundle_size, error))) &&
+              bytes_deflate(&player.viewer, player_viewer, strlen(player_viewer), error);
+    if (ok) {
+        size_t size;
+        char *page = file_print(put_page, &player, &size);
+        ok = page != NULL ? file_write(path, page, size, error) : error_memory(error, path);
+        free(page);
+        *result = (PlayerResult){player_frame_count(&player.frames, player.picture.frames), (int64_t)size,
+                                 player.left_contacts};
+    }
     player_free(&player);
     return ok;
 }

@@ -112,17 +112,6 @@ static inline bool player_run_is_live(const Player *player, int index) {
     return player->options->live != NULL && player->options->live->methods[index] != NULL;
 }
 
-/* What a page with live runs needs beside them (player_live.c): deflates module and bundle; the key "live" of the
-   data. */
-bool player_live_pack(Player *player, Error *error);
-void player_live_put(JsonWriter *json, const Player *player);
-
-/* The colours of a run's boxes, by theme. */
-void player_put_colours(JsonWriter *json, const char *key, const RunColours *colours);
-
-/* Width of text in ems of the built-in font. Grids of panels depend on it: not on the reader's fonts. */
-double player_ems(FontFace face, const char *text);
-
 /* Packs all states, then all contacts, or leaves these out if the page would be too large. ERROR_INPUT if it is even
    so. */
 bool player_pack(Player *player, Error *error);
