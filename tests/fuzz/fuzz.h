@@ -58,3 +58,12 @@ enum { FUZZ_MILLISECONDS = 100, FUZZ_SANITIZED = 10, FUZZ_MEBIBYTES = 64 };
    error: why" or "PLACE:line:column: error: why", where `place` is the file or the option; NULL: any. */
 void fuzz_begin(void);
 void fuzz_end(bool accepted, const Error *error, const char *place);
+
+/* What a reader that takes &error returns: Run *run = FUZZ_READ(run_read(path, &error), path). */
+#define FUZZ_READ(call, place)                  \
+    ({                                          \
+        fuzz_begin();                           \
+        __auto_type result = (call);            \
+        fuzz_end(result != 0, &error, (place)); \
+        result;                                 \
+    })

@@ -31,9 +31,8 @@ void fuzz_times(const uint8_t *data, size_t size) {
     Error error = {0};
     if (size == 0) return;
     const SceneStudy study = {.contender_count = data[0] % 8};
-    fuzz_begin();
-    MethodTimes *times = scene_times_read(&study, "times", (const char *)data + 1, size - 1, &error);
-    fuzz_end(times != NULL, &error, "times");
+    MethodTimes *times =
+        FUZZ_READ(scene_times_read(&study, "times", (const char *)data + 1, size - 1, &error), "times");
     for (int i = 0; times != NULL && i < study.contender_count; i++)
         if (times[i].costs[PROTOCOL_CLOSED][PHASE_REST].solver < 0) fuzz_fail("a time below 0");
     free(times);

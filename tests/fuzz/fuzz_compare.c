@@ -24,9 +24,7 @@ void fuzz_results(const uint8_t *data, size_t size) {
     ApprovalList list;
     Error error = {0};
     const char *path = fuzz_file("results.json", data, size);
-    fuzz_begin();
-    const bool ok = approval_read(&list, path, &error);
-    fuzz_end(ok, &error, path);
+    const bool ok = FUZZ_READ(approval_read(&list, path, &error), path);
     if (!ok) return;
     for (size_t i = 0; i < list.count; i++) {
         const ApprovalItem *item = &list.items[i];
@@ -42,9 +40,7 @@ void fuzz_view(const uint8_t *data, size_t size) {
     FrameView view;
     Error error = {0};
     const char *path = fuzz_file("manifest.json", data, size);
-    fuzz_begin();
-    const bool ok = view_read(&view, path, &error);
-    fuzz_end(ok, &error, path);
+    const bool ok = FUZZ_READ(view_read(&view, path, &error), path);
     if (!ok && (view.width != 0 || view.panel_count != 0)) fuzz_fail("a view that was refused is not empty");
     for (int i = 0; i < view.panel_count; i++) {
         const ViewPanel *panel = &view.panels[i];
@@ -85,9 +81,7 @@ void fuzz_rules(const uint8_t *data, size_t size) {
     fuzz_file("mask.png", mask, rest);
     const char *path = fuzz_file("compare.yaml", data, length);
     Error error = {0};
-    fuzz_begin();
-    Rules *rules = rules_read(path, &error);
-    fuzz_end(rules != NULL, &error, path);
+    Rules *rules = FUZZ_READ(rules_read(path, &error), path);
     if (rules != NULL) {
         for (int i = 0; i < 2; i++) check_masks(rules, names[i], &picture);
         rules_check_names(rules, names, 2, &error);

@@ -35,9 +35,7 @@ void fuzz_launches(const uint8_t *data, size_t size) {
     LaunchTable table;
     Error error = {0};
     const char *path = fuzz_file("launches.csv", data, size);
-    fuzz_begin();
-    const bool ok = launches_read(&table, path, &error);
-    fuzz_end(ok, &error, path);
+    const bool ok = FUZZ_READ(launches_read(&table, path, &error), path);
     if (!ok) return;
     check_launches(&table);
     launches_free(&table);
@@ -72,9 +70,7 @@ void fuzz_tables(const uint8_t *data, size_t size) {
     const char *path = fuzz_file("table.csv", data + 1, size - 1);
     CsvTable table;
     Error error = {0};
-    fuzz_begin();
-    const bool ok = csv_table_read(&table, path, layout, &error);
-    fuzz_end(ok, &error, path);
+    const bool ok = FUZZ_READ(csv_table_read(&table, path, layout, &error), path);
     if (!ok) return;
     check_table(&table, layout);
     csv_table_free(&table);

@@ -14,9 +14,7 @@
 
 static void read_network(const char *path) {
     Error error = {0};
-    fuzz_begin();
-    Network *network = network_read(path, &error);
-    fuzz_end(network != NULL, &error, path);
+    Network *network = FUZZ_READ(network_read(path, &error), path);
     if (network == NULL) return;
     float *input = calloc((size_t)network->widths[0], sizeof *input);
     float *output = calloc((size_t)network->widths[network->layers], sizeof *output);
@@ -48,9 +46,7 @@ static void predict_slots(const SceneNet *network) {
 
 static void read_slot_network(const char *path) {
     Error error = {0};
-    fuzz_begin();
-    SceneNet *network = scene_net_read(path, &error);
-    fuzz_end(network != NULL, &error, path);
+    SceneNet *network = FUZZ_READ(scene_net_read(path, &error), path);
     if (network != NULL) predict_slots(network);
     scene_net_destroy(network);
 }
@@ -63,9 +59,7 @@ static void check_weights(const double *weights, int count) {
 static void read_gns_net(const char *path) {
     GnsNet net;
     Error error = {0};
-    fuzz_begin();
-    const bool ok = gns_net_read(&net, path, &error);
-    fuzz_end(ok, &error, path);
+    const bool ok = FUZZ_READ(gns_net_read(&net, path, &error), path);
     for (int i = 0; ok && i < net.layout.parameters; i++)
         if (!isfinite(net.parameters[i])) fuzz_fail("parameter %d is NaN or infinite", i);
     gns_net_free(&net);
@@ -76,9 +70,7 @@ static void read_fit(const char *path) {
     Error error = {0};
     bool found;
     fit_init(&fit, "train", path, NULL);
-    fuzz_begin();
-    const bool ok = fit_begin(&fit, 3, &found, &error);
-    fuzz_end(ok, &error, path);
+    const bool ok = FUZZ_READ(fit_begin(&fit, 3, &found, &error), path);
     if (ok && found) check_weights(fit.adam.weights, 3 * 3);
     fit_free(&fit);
 }
@@ -87,9 +79,7 @@ static void read_fit(const char *path) {
 static void read_memory(const char *path) {
     static ContactImpulse impulses[HYBRID_CONTACTS_MAX];
     Error error = {0};
-    fuzz_begin();
-    HybridMemory *memory = hybrid_memory_read(path, &error);
-    fuzz_end(memory != NULL, &error, path);
+    HybridMemory *memory = FUZZ_READ(hybrid_memory_read(path, &error), path);
     for (int entry = 0; memory != NULL && entry < memory->entry_count; entry++) {
         const int set = memory->entry_set[entry];
         const float *key = memory->keys + (size_t)entry * (size_t)memory->key_size;
@@ -105,9 +95,7 @@ static void read_memory(const char *path) {
 static void read_sain(const char *path) {
     SainNetworks networks;
     Error error = {0};
-    fuzz_begin();
-    const bool ok = sain_networks_read(&networks, path, &error);
-    fuzz_end(ok, &error, path);
+    const bool ok = FUZZ_READ(sain_networks_read(&networks, path, &error), path);
     if (!ok) return;
     float pair[SAIN_PAIR_INPUTS] = {0}, inputs[SAIN_BODY_INPUTS] = {0};
     SainBody body = {.rows = 1, .axis = {1, 0}, .radius = 1};
@@ -140,9 +128,7 @@ static void step_subspace(const SubspaceNet *net, const SubspacePredictor *predi
 
 static void read_subspace(const char *path) {
     Error error = {0};
-    fuzz_begin();
-    SubspaceNet *net = subspace_net_read(path, &error);
-    fuzz_end(net != NULL, &error, path);
+    SubspaceNet *net = FUZZ_READ(subspace_net_read(path, &error), path);
     if (net == NULL) return;
     for (int i = 0; i < net->shape.predictor_count; i++) step_subspace(net, &net->predictors[i]);
     subspace_net_destroy(net);

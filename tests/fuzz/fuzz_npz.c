@@ -17,9 +17,7 @@
 void fuzz_zip(const uint8_t *data, size_t size) {
     Error error = {0};
     const char *path = fuzz_file("input.npz", data, size);
-    fuzz_begin();
-    NpzFile *file = npz_open(path, &error);
-    fuzz_end(file != NULL, &error, path);
+    NpzFile *file = FUZZ_READ(npz_open(path, &error), path);
     if (file == NULL) return;
     if (npz_name(file, 0) == NULL) fuzz_fail("no array, and no error");
     for (size_t i = 0; npz_name(file, i) != NULL; i++) {
@@ -77,9 +75,7 @@ static void check_run(const Trajectory *run) {
 void fuzz_run(const uint8_t *data, size_t size) {
     Error error = {0};
     const char *path = fuzz_archive(data, size);
-    fuzz_begin();
-    Trajectory *run = trajectory_read(path, &error);
-    fuzz_end(run != NULL, &error, path);
+    Trajectory *run = FUZZ_READ(trajectory_read(path, &error), path);
     if (run != NULL) check_run(run);
     trajectory_destroy(run);
 }
@@ -87,9 +83,7 @@ void fuzz_run(const uint8_t *data, size_t size) {
 void fuzz_dataset(const uint8_t *data, size_t size) {
     Error error = {0};
     const char *path = fuzz_archive(data, size);
-    fuzz_begin();
-    Dataset *dataset = dataset_read(path, &error);
-    fuzz_end(dataset != NULL, &error, path);
+    Dataset *dataset = FUZZ_READ(dataset_read(path, &error), path);
     for (int64_t row = 0; dataset != NULL && row < dataset->rows; row++) {
         const int launch = dataset->launch[row];
         if (launch < 0 || launch >= dataset->launches || dataset->launch_scene[launch] < 0 ||
@@ -120,9 +114,7 @@ static void solve(const ContactProblem *problem, const char *text) {
 void fuzz_problem(const uint8_t *data, size_t size) {
     Error error = {0};
     const char *path = fuzz_archive(data, size);
-    fuzz_begin();
-    StoredProblem *stored = problem_read(path, &error);
-    fuzz_end(stored != NULL, &error, path);
+    StoredProblem *stored = FUZZ_READ(problem_read(path, &error), path);
     if (stored != NULL) {
         solve(&stored->problem, "engine:k=2");
         solve(&stored->problem, "interior");

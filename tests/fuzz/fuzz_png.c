@@ -36,9 +36,7 @@ static bool same(const Image *a, const Image *b) {
 static void check_agreement(const uint8_t *data, size_t size, const Image *image) {
     int width = 0, height = 0;
     Error error = {0};
-    fuzz_begin();
-    const bool checked = png_check(data, size, "picture.png", &width, &height, &error);
-    fuzz_end(checked, &error, "picture.png");
+    const bool checked = FUZZ_READ(png_check(data, size, "picture.png", &width, &height, &error), "picture.png");
     if (image == NULL) return;
     if (!checked) fuzz_fail("the check refuses a picture that is decoded: %s", error.message);
     if (width != image->width || height != image->height) fuzz_fail("the check gives another size");
@@ -47,9 +45,7 @@ static void check_agreement(const uint8_t *data, size_t size, const Image *image
 static void decode(const uint8_t *data, size_t size) {
     Image *fast = NULL;
     Error error = {0};
-    fuzz_begin();
-    Image *image = png_libpng_decode(data, size, "picture.png", MOST_PIXELS, &error);
-    fuzz_end(image != NULL, &error, "picture.png");
+    Image *image = FUZZ_READ(png_libpng_decode(data, size, "picture.png", MOST_PIXELS, &error), "picture.png");
     fuzz_begin();
     const bool decoded = png_fast_decode(data, size, MOST_PIXELS, &fast);
     fuzz_end(true, &(Error){0}, "");
@@ -64,9 +60,7 @@ static void decode(const uint8_t *data, size_t size) {
 static void check_display(const uint8_t *data, size_t size) {
     PngDisplay display;
     Error error = {0};
-    fuzz_begin();
-    const bool compared = png_display_compare(data, size, data, size, &display, &error);
-    fuzz_end(compared, &error, NULL);
+    (void)FUZZ_READ(png_display_compare(data, size, data, size, &display, &error), NULL);
     if (display.text[0] != '\0') fuzz_fail("a picture is displayed as another: %s", display.text);
 }
 
@@ -77,9 +71,8 @@ static void read_others(const uint8_t *data, size_t size) {
     char value[64];
     Image *images[2] = {NULL, NULL};
     Error error = {0};
-    fuzz_begin();
-    const bool ok = image_decode_png_pair(files, (size_t[]){size, size}, paths, MOST_PIXELS, images, &error);
-    fuzz_end(ok, &error, "picture.png");
+    const bool ok = FUZZ_READ(image_decode_png_pair(files, (size_t[]){size, size}, paths, MOST_PIXELS, images, &error),
+                              "picture.png");
     if (ok && !same(images[0], images[1])) fuzz_fail("a picture differs from itself");
     if (ok) check_display(data, size);
     image_destroy_pair(images);

@@ -34,9 +34,7 @@ static void check_scene(const Scene *scene) {
 
 static void read_scene(const char *path, const SceneSettings *set) {
     Error error = {0};
-    fuzz_begin();
-    Scene *scene = scene_read_with(path, set->items, set->count, &error);
-    fuzz_end(scene != NULL, &error, path);
+    Scene *scene = FUZZ_READ(scene_read_with(path, set->items, set->count, &error), path);
     if (scene != NULL) check_scene(scene);
     scene_destroy(scene);
 }

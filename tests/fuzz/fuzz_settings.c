@@ -41,9 +41,7 @@ void fuzz_settings(const uint8_t *data, size_t size) {
     stepper_destroy(stepper);
     if (rest == NULL) return;
     error = (Error){0};
-    fuzz_begin();
-    ok = law_weights_parse(rest, &laws, &error);
-    fuzz_end(ok, &error, "laws");
+    ok = FUZZ_READ(law_weights_parse(rest, &laws, &error), "laws");
     for (int law = 0; ok && law < LAWS; law++)
         if (!(laws.of[law] >= 0) || isinf(laws.of[law])) fuzz_fail("a law's weight is %g", laws.of[law]);
 }
