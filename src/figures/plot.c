@@ -56,8 +56,6 @@ static void draw_number(Sketch *sketch, const PlotTick *number, Point at, const 
     }
 }
 
-static double outside_of(const PlotAxis *axis) { return axis->outside ? tick : 0; }
-
 static void draw_x_axis(Sketch *sketch, const PlotPanel *panel, const PlotTicks *ticks) {
     const double em = label_size(panel) * MM_PER_POINT, bottom = panel->box.bottom, end = bottom - tick;
     const Pen pen = pen_line(INK, frame_width, NULL);
@@ -75,7 +73,7 @@ static void draw_x_axis(Sketch *sketch, const PlotPanel *panel, const PlotTicks 
 
 static void draw_y_axis(Sketch *sketch, const PlotPanel *panel, const PlotTicks *ticks) {
     const double em = label_size(panel) * MM_PER_POINT, left = panel->box.left;
-    const double end = left - outside_of(&panel->y) - number_gap;
+    const double end = left - (panel->y.outside ? tick : 0) - number_gap;
     const Pen pen = pen_line(INK, frame_width, NULL), guide = pen_line(GRID_STRONG, 0.9, NULL);
     const TextStyle numbers = {number_size(panel), TEXT_RIGHT, INK, 0, false};
     double widest = 0;
@@ -211,33 +209,17 @@ typedef struct Plotter {
     bool used[PLOT_SERIES];
 } Plotter;
 
-/* The points of a series, clamped to the axes. */
-static int plot_gather(Plotter *plotter, const PlotPanel *panel, int index, int series) {
-    int count = 0;
-    for (int row = 0; row < plotter->spec->rows; row++) {
-        PlotPoint point = {0};
-        if (!plotter->spec->point(plotter->spec->of, index, series, row, &point)) continue;
-        point.x = plot_axis_clamp(&panel->x, point.x, &plotter->beyond);
-        point.y = plot_axis_clamp(&panel->y, point.y, &plotter->beyond);
-        if (!isnan(point.x + point.y)) plotter->points[count++] = point;
-    }
-    if (count > 0) plotter->used[series] = true;
-    return count;
-}
-
-static int plot_compare(double a, double b) { return (a > b) - (a < b); }
-
-static int by_group(const void *first, const void *second) {
-    const PlotPoint *a = first, *b = second;
-    int order = plot_compare(a->group, b->group);
-    if (order == 0) order = plot_compare(a->x, b->x);
-    return order != 0 ? order : plot_compare(a->y, b->y);
-}
+static int compare(double a, double b) { return (a > b) - (a < b); }
 
 static int by_place(const void *first, const void *second) {
     const PlotPoint *a = first, *b = second;
-    const int order = plot_compare(a->x, b->x);
-    return order != 0 ? order : plot_compare(a->y, b->y);
+    const int order = compare(a->x, b->x);
+    return order != 0 ? order : compare(a->y, b->y);
+}
+
+static int by_group(const void *first, const void *second) {
+    const int order = compare(((const PlotPoint *)first)->group, ((const PlotPoint *)second)->group);
+    return order != 0 ? order : by_place(first, second);
 }
 
 /* Replaces the points by their medians at each x. */
@@ -252,71 +234,49 @@ static int to_medians(PlotPoint *points, int count) {
     return medians;
 }
 
-static void draw_points(Plotter *plotter, const PlotPanel *panel, int count, const PlotLook *look) {
-    int places = 0;
-    for (int i = 0; i < count; i++) {
-        const PlotPoint *point = &plotter->points[i];
-        if (i > 0 && point->group != point[-1].group) plotter->places[places++] = (Point){NAN, NAN};
-        plotter->places[places++] = plot_place(panel, point->x, point->y);
-    }
-    plot_line(plotter->sketch, plotter->places, places, look);
-}
-
-static void draw_stems(Plotter *plotter, const PlotPanel *panel, int count, const PlotLook *look) {
-    const Pen pen = pen_line(look->style.colour, look->line, NULL);
-    for (int i = 0; i < count; i++) {
-        const PlotPoint *point = &plotter->points[i];
-        sketch_line(plotter->sketch, plot_place(panel, point->x, 0), plot_place(panel, point->x, point->y), &pen);
-    }
-}
-
-static void draw_band(Plotter *plotter, const PlotPanel *panel, const PlotLook *look) {
-    const PlotPoint *corners = plotter->points;
-    sketch_rectangle(plotter->sketch, plot_place(panel, corners[0].x, corners[0].y),
-                     plot_place(panel, corners[1].x, corners[1].y), &(Pen){look->style.colour, 1, NO_COLOUR, 0, NULL});
-}
-
 /* From bottom to top. */
 typedef enum Pass { PASS_SEEDS, PASS_BELOW, PASS_ABOVE, PASSES } Pass;
 
-static void draw_series(Plotter *plotter, const PlotPanel *panel, int index, int series, Pass pass) {
-    PlotLook look = plotter->spec->look(plotter->spec->of, series);
-    int count = plot_gather(plotter, panel, index, series);
+static void draw_series(Plotter *plotter, int index, int series, Pass pass) {
+    const PlotPanel *panel = &plotter->spec->panels[index];
+    PlotPoint *points = plotter->points;
+    PlotLook look = plotter->spec->looks[series];
+    int count = 0, places = 0;
+    /* The points, clamped to the axes. */
+    for (int row = 0; row < plotter->spec->rows; row++) {
+        PlotPoint point = {0};
+        if (!plotter->spec->point(plotter->spec->of, index, series, row, &point)) continue;
+        point.x = plot_axis_clamp(&panel->x, point.x, &plotter->beyond);
+        point.y = plot_axis_clamp(&panel->y, point.y, &plotter->beyond);
+        if (!isnan(point.x + point.y)) points[count++] = point;
+    }
+    if (count > 0) plotter->used[series] = true;
     if (count == 0 || (pass == PASS_SEEDS ? !look.seeds : look.above != (pass == PASS_ABOVE))) return;
     if (pass == PASS_SEEDS) {
-        qsort(plotter->points, (size_t)count, sizeof *plotter->points, by_group);
+        qsort(points, (size_t)count, sizeof *points, by_group);
         look = plot_look_thin(look);
-    } else if (look.seeds || look.medians)
-        count = to_medians(plotter->points, count);
+    } else if (look.seeds || look.medians) {
+        count = to_medians(points, count);
+    }
     if (look.band) {
-        if (count > 1) draw_band(plotter, panel, &look);
+        const Pen pen = {look.style.colour, 1, NO_COLOUR, 0, NULL};
+        if (count > 1)
+            sketch_rectangle(plotter->sketch, plot_place(panel, points[0].x, points[0].y),
+                             plot_place(panel, points[1].x, points[1].y), &pen);
         return;
     }
     if (look.stems) {
-        draw_stems(plotter, panel, count, &look);
+        const Pen pen = pen_line(look.style.colour, look.line, NULL);
+        for (int i = 0; i < count; i++)
+            sketch_line(plotter->sketch, plot_place(panel, points[i].x, 0), plot_place(panel, points[i].x, points[i].y),
+                        &pen);
         look.line = 0;
     }
-    draw_points(plotter, panel, count, &look);
-}
-
-static void draw_panel(Plotter *plotter, int index) {
-    PlotPanel panel = {.box = plot_grid_box(&plotter->spec->grid, index)};
-    plotter->spec->panel(plotter->spec->of, index, &panel);
-    if (panel.box.width <= 0) return;
-    plot_panel_place(&panel);
-    for (int pass = 0; pass < PASSES; pass++)
-        for (int series = plotter->spec->series - 1; series >= 0; series--)
-            draw_series(plotter, &panel, index, series, (Pass)pass);
-    plot_panel_draw(plotter->sketch, &panel);
-}
-
-static void draw_legend(const Plotter *plotter) {
-    const PlotSpec *spec = plotter->spec;
-    PlotLook looks[PLOT_SERIES];
-    int count = 0;
-    for (int series = 0; series < spec->series; series++)
-        if (plotter->used[series]) looks[count++] = spec->look(spec->of, series);
-    plot_legend(plotter->sketch, looks, count, spec->legend_columns, spec->legend_left, spec->legend_top);
+    for (int i = 0; i < count; i++) {
+        if (i > 0 && points[i].group != points[i - 1].group) plotter->places[places++] = (Point){NAN, NAN};
+        plotter->places[places++] = plot_place(panel, points[i].x, points[i].y);
+    }
+    plot_line(plotter->sketch, plotter->places, places, &look);
 }
 
 bool plot_draw(PlotPage *page, const PlotSpec *spec, const char *what, Error *error) {
@@ -324,9 +284,19 @@ bool plot_draw(PlotPage *page, const PlotSpec *spec, const char *what, Error *er
     plotter.points = malloc((size_t)spec->rows * sizeof *plotter.points + 1);
     plotter.places = malloc(2 * (size_t)spec->rows * sizeof *plotter.places + 1);
     const bool room = plotter.points != NULL && plotter.places != NULL;
-    sketch_begin(&page->sketch, spec->grid.width, spec->grid.height);
-    for (int panel = 0; room && panel < spec->panels; panel++) draw_panel(&plotter, panel);
-    if (room) draw_legend(&plotter);
+    sketch_begin(&page->sketch, spec->width, spec->height);
+    for (int i = 0; room && i < spec->panel_count; i++) {
+        if (spec->panels[i].box.width <= 0) continue;
+        plot_panel_place(&spec->panels[i]);
+        for (int pass = 0; pass < PASSES; pass++)
+            for (int series = spec->series - 1; series >= 0; series--) draw_series(&plotter, i, series, (Pass)pass);
+        plot_panel_draw(&page->sketch, &spec->panels[i]);
+    }
+    PlotLook shown[PLOT_SERIES];
+    int count = 0;
+    for (int series = 0; series < spec->series; series++)
+        if (plotter.used[series]) shown[count++] = spec->looks[series];
+    plot_legend(&page->sketch, shown, count, spec->legend_columns, spec->legend_left, spec->legend_top);
     snprintf(page->caption, sizeof page->caption, "%s%s\n", spec->caption,
              plotter.beyond ? " Values beyond an axis are drawn at its edge." : "");
     free(plotter.points);

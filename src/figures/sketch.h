@@ -397,12 +397,12 @@ bool plot_upright(PlotPoint *out, int i, double x);
 
 /* Each series may have a point for each of the rows, in each panel. The first series is on top. */
 typedef struct PlotSpec {
-    const void *of; /* handed to the functions */
-    PlotGrid grid;
-    int panels, series, rows;
-    void (*panel)(const void *of, int panel, PlotPanel *out); /* *out has its box of the grid; width 0: left out */
-    PlotLook (*look)(const void *of, int series);
+    double width, height;  /* mm: of the page */
+    PlotPanel *panels;     /* [panel_count] with their boxes, in which plot_draw() places the axes; width 0: left out */
+    const PlotLook *looks; /* [series] */
+    int panel_count, series, rows;
     bool (*point)(const void *of, int panel, int series, int row, PlotPoint *out); /* false: none */
+    const void *of;                                                                /* handed to point */
     int legend_columns;
     double legend_left, legend_top; /* as of plot_legend(); the legend has the series with points */
     const char *caption;

@@ -3,7 +3,6 @@
    recorded rows, with the state of a pair and the change by its own impulses. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "figures/figure.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
@@ -32,23 +31,20 @@ enum { PATH_POINTS = 200, BOMB_SHOWN_EVERY = 50 };
 /* x of launch i, m */
 static float sweep_x(int i) { return range_value(&sweep, i); }
 
-/* The numbers that `twinbox dataset` records. */
-static void fill_row(SweepRow *row, const ContactProblem *problem, const ContactSolution *solution, int first) {
-    pair_inputs(problem, NULL, first, PAIR_RELATIVE, row->inputs);
-    pair_changes(problem, solution, first, pair_contact_count(problem, first), row->changes);
-}
-
+/* The row has the numbers that `twinbox dataset` records. */
 static void take_row(SweepRow *row, const EngineRun *run) {
     const ContactProblem *problem = world_problem(run->world);
-    for (int i = next_pair(problem, -1); i < problem->contact_count; i = next_pair(problem, i)) {
+    for (int i = 0, count; i < problem->contact_count; i += count) {
         const int a = problem->contacts[i].a, b = problem->contacts[i].b;
-        bool bomb = a == problem->bomb || b == problem->bomb;
+        const bool bomb = a == problem->bomb || b == problem->bomb;
+        count = pair_contact_count(problem, i);
         if (!bomb || problem->bodies[a].inv_mass == 0 || problem->bodies[b].inv_mass == 0) continue;
         *row = (SweepRow){.step = run->frame,
                           .bodies = {a, b},
                           .bomb = problem->bomb,
                           .boxes = {engine_run_box(run, a), engine_run_box(run, b)}};
-        fill_row(row, problem, world_solution(run->world), i);
+        pair_inputs(problem, NULL, i, PAIR_RELATIVE, row->inputs);
+        pair_changes(problem, world_solution(run->world), i, count, row->changes);
         return;
     }
 }
@@ -60,28 +56,19 @@ typedef struct Path {
     bool touches;
 } Path;
 
-static void illustration_data_follow(Path *path, const EngineRun *run, const View *view) {
-    int bomb = run->scene->body_count;
-    if (run->tracker.touch != 0 || world_body_count(run->world) <= bomb || path->count == PATH_POINTS) return;
-    path->points[path->count++] = view_place(view, world_bodies(run->world)[bomb].position);
-}
-
-static int count_pairs(const ContactProblem *problem) {
-    int count = 0;
-    for (int i = next_pair(problem, -1); i < problem->contact_count; i = next_pair(problem, i)) count++;
-    return count;
-}
-
 /* Adds the launch's touching pairs to *rows. row: NULL, or where the row is stored. */
 static bool run_launch(Path *path, int *rows, SweepRow *row, const Scene *launched, const View *view, Error *error) {
     EngineRun run;
     if (!engine_run_begin(&run, launched, error)) return false;
+    const int bomb = launched->body_count;
     bool ok = true;
     *path = (Path){0};
     while (ok && run.frame < launched->frames) {
-        illustration_data_follow(path, &run, view);
+        if (run.tracker.touch == 0 && world_body_count(run.world) > bomb && path->count < PATH_POINTS)
+            path->points[path->count++] = view_place(view, world_bodies(run.world)[bomb].position);
         ok = engine_run_step(&run, error);
-        if (ok) *rows += count_pairs(world_problem(run.world));
+        const ContactProblem *problem = world_problem(run.world);
+        for (int i = 0; ok && i < problem->contact_count; i += pair_contact_count(problem, i)) ++*rows;
         if (ok && row != NULL && run.tracker.touch == run.frame) take_row(row, &run);
     }
     path->touches = run.tracker.touch != 0;
@@ -89,53 +76,43 @@ static bool run_launch(Path *path, int *rows, SweepRow *row, const Scene *launch
     return ok;
 }
 
-static void draw_stack(Sketch *sketch, const View *view, const Scene *scene) {
+static bool draw_launch(Sketch *sketch, const View *view, const Scene *scene, int i, SweepRow *row, int *rows,
+                        Error *error) {
+    Path path;
+    Launch launch = launch_of(scene);
+    launch.x = sweep_x(i);
+    const Scene launched = launch_scene(scene, &launch);
+    const bool of_row = i == SWEEP_ROW_LAUNCH;
+    if (!run_launch(&path, rows, of_row ? row : NULL, &launched, view, error)) return false;
+    if (i % BOMB_SHOWN_EVERY == 0 || of_row) {
+        const BodyDef bomb = scene_bomb_body(&launched);
+        const Box box = box_make(bomb.position, bomb.size, bomb.angle);
+        const Pen pen = pen_fill(BOMB.fill, 0.75, BOMB.line);
+        Point at = view_place(view, bomb.position);
+        at.y += view->scale * (double)bomb.size.y / 2 + 2.4;
+        sketch_box(sketch, view, &box, &pen);
+        if (!of_row)
+            sketch_text(sketch, at, &(TextStyle){7.5, TEXT_CENTER, INK, 0, false}, "%s m",
+                        show_decimals((double)bomb.position.x, 1).text);
+    }
+    const uint32_t colour = of_row ? ACCENT : BOMB.fill;
+    const Pen line = pen_line(colour, of_row ? 2.8 : 1.2, NULL), dot = pen_fill(colour, 1, NO_COLOUR);
+    sketch_path(sketch, path.points, path.count, &line);
+    if (path.touches) sketch_dot(sketch, path.points[path.count - 1], of_row ? 1 : 0.6, &dot);
+    return true;
+}
+
+/* Runs the launches shown to their end, and draws the bomb's path up to its first touch over the scene's initial state.
+   *rows: touching pairs, summed over all steps. ERROR_INPUT if the launch of the row touches no box. */
+static bool draw_sweep(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error) {
+    *rows = 0;
+    *row = (SweepRow){0};
     for (int i = 0; i < scene->body_count; i++) {
         const BodyDef *body = &scene->bodies[i];
         const Box box = box_make(body->position, body->size, body->angle);
         const Pen pen = body->fixed ? pen_fill(GROUND, 1, GROUND_LINE) : pen_fill(BOX_COLOUR, 0.3, BOX_INK);
         sketch_box(sketch, view, &box, &pen);
     }
-}
-
-static void draw_bomb(Sketch *sketch, const View *view, const Scene *launched, bool named) {
-    const BodyDef bomb = scene_bomb_body(launched);
-    const Box box = box_make(bomb.position, bomb.size, bomb.angle);
-    const Pen pen = pen_fill(BOMB.fill, 0.75, BOMB.line);
-    sketch_box(sketch, view, &box, &pen);
-    if (!named) return;
-    Point at = view_place(view, bomb.position);
-    at.y += view->scale * (double)bomb.size.y / 2 + 2.4;
-    sketch_text(sketch, at, &(TextStyle){7.5, TEXT_CENTER, INK, 0, false}, "%s m",
-                show_decimals((double)bomb.position.x, 1).text);
-}
-
-static void draw_path(Sketch *sketch, const Path *path, bool of_row) {
-    uint32_t colour = of_row ? ACCENT : BOMB.fill;
-    const Pen line = pen_line(colour, of_row ? 2.8 : 1.2, NULL), dot = pen_fill(colour, 1, NO_COLOUR);
-    sketch_path(sketch, path->points, path->count, &line);
-    if (path->touches) sketch_dot(sketch, path->points[path->count - 1], of_row ? 1 : 0.6, &dot);
-}
-
-static bool draw_launch(Sketch *sketch, const View *view, const Scene *scene, int i, SweepRow *row, int *rows,
-                        Error *error) {
-    Path path;
-    Launch launch = launch_of(scene);
-    launch.x = sweep_x(i);
-    Scene launched = launch_scene(scene, &launch);
-    bool of_row = i == SWEEP_ROW_LAUNCH;
-    if (!run_launch(&path, rows, of_row ? row : NULL, &launched, view, error)) return false;
-    if (i % BOMB_SHOWN_EVERY == 0 || of_row) draw_bomb(sketch, view, &launched, !of_row);
-    draw_path(sketch, &path, of_row);
-    return true;
-}
-
-/* Runs the launches shown to their end, and draws the bomb's path up to its first touch over the scene's initial state.
-   *rows: touching pairs, summed over all steps. ERROR_INPUT if the launch of the row touches no box. */
-static bool sweep_draw(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error) {
-    *rows = 0;
-    *row = (SweepRow){0};
-    draw_stack(sketch, view, scene);
     for (int i = 0; i < SWEEP_LAUNCHES; i += SWEEP_SHOWN_EVERY)
         if (!draw_launch(sketch, view, scene, i, row, rows, error)) return false;
     return row->step > 0 || error_input(error, scene->name, "the bomb launched from x = %g m touches no box",
@@ -227,11 +204,26 @@ static void draw_row(Sketch *sketch, const SweepRow *row) {
                 show_decimals((double)row->changes[4] - (double)row->changes[1], 3).text);
 }
 
-static void write_caption(char caption[CAPTION_SIZE], const SweepRow *row, int rows) {
+static bool draw_data(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE],
+                      Error *error) {
+    const View view = {{1, 1}, {split - 6, height - 6}, {0, 7.5}, 5.1};
+    const TextStyle title = {8.5, TEXT_LEFT, INK, 0, false};
+    SweepRow row;
+    int rows;
+    if (!draw_sweep(sketch, &view, scenes[SCENE_STACK], &row, &rows, error)) return false;
+    sketch_scale_bar(sketch, (Point){3, 4}, view.scale, 2, "m", 7.5);
+    sketch_text(sketch, (Point){split - 8, 4}, &(TextStyle){7.5, TEXT_RIGHT, INK, 0, false}, "dot: first touch");
+    draw_pair(sketch, &row);
+    draw_key(sketch);
+    draw_row(sketch, &row);
+    sketch_text(sketch, (Point){1, height - 2.5}, &title, "%d of %d launches",
+                (SWEEP_LAUNCHES - 1) / SWEEP_SHOWN_EVERY + 1, SWEEP_LAUNCHES);
+    sketch_text(sketch, (Point){split, height - 2.5}, &title, "One row: bodies %d and %d, step %d, launch from %s m",
+                row.bodies[0], row.bodies[1], row.step, show_decimals((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text);
     char changes[2][2 * sizeof(ShownDecimals) + 2];
     for (int i = 0; i < 2; i++)
-        snprintf(changes[i], sizeof changes[i], "%s, %s", show_decimals((double)row->changes[3 * i], 2).text,
-                 show_decimals((double)row->changes[3 * i + 1], 2).text);
+        snprintf(changes[i], sizeof changes[i], "%s, %s", show_decimals((double)row.changes[3 * i], 2).text,
+                 show_decimals((double)row.changes[3 * i + 1], 2).text);
     snprintf(
         caption, CAPTION_SIZE,
         "How training data are made. In stack.yaml the bomb is launched from %d places, x = %s to %s m (every %dth is "
@@ -239,29 +231,10 @@ static void write_caption(char caption[CAPTION_SIZE], const SweepRow *row, int r
         "%d and %d in step %d of the launch from x = %s m. It has ten inputs and the changes by the pair's impulses, "
         "which change the velocity of the %s by (%s) m/s and that of the %s by (%s) m/s.",
         SWEEP_LAUNCHES, show_decimals((double)sweep_x(0), 0).text,
-        show_decimals((double)sweep_x(SWEEP_LAUNCHES - 1), 0).text, SWEEP_SHOWN_EVERY, rows, row->bodies[0],
-        row->bodies[1], row->step, show_decimals((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text,
-        is_bomb_of(row, 0) ? "bomb" : "box", changes[0], is_bomb_of(row, 1) ? "bomb" : "box", changes[1]);
-}
-
-static bool illustration_data_draw(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE],
-                                   Error *error) {
-    const View view = {{1, 1}, {split - 6, height - 6}, {0, 7.5}, 5.1};
-    SweepRow row;
-    int rows;
-    if (!sweep_draw(sketch, &view, scenes[SCENE_STACK], &row, &rows, error)) return false;
-    sketch_scale_bar(sketch, (Point){3, 4}, view.scale, 2, "m", 7.5);
-    sketch_text(sketch, (Point){split - 8, 4}, &(TextStyle){7.5, TEXT_RIGHT, INK, 0, false}, "dot: first touch");
-    draw_pair(sketch, &row);
-    draw_key(sketch);
-    draw_row(sketch, &row);
-    const TextStyle title = {8.5, TEXT_LEFT, INK, 0, false};
-    sketch_text(sketch, (Point){1, height - 2.5}, &title, "%d of %d launches",
-                (SWEEP_LAUNCHES - 1) / SWEEP_SHOWN_EVERY + 1, SWEEP_LAUNCHES);
-    sketch_text(sketch, (Point){split, height - 2.5}, &title, "One row: bodies %d and %d, step %d, launch from %s m",
-                row.bodies[0], row.bodies[1], row.step, show_decimals((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text);
-    write_caption(caption, &row, rows);
+        show_decimals((double)sweep_x(SWEEP_LAUNCHES - 1), 0).text, SWEEP_SHOWN_EVERY, rows, row.bodies[0],
+        row.bodies[1], row.step, show_decimals((double)sweep_x(SWEEP_ROW_LAUNCH), 1).text,
+        is_bomb_of(&row, 0) ? "bomb" : "box", changes[0], is_bomb_of(&row, 1) ? "bomb" : "box", changes[1]);
     return true;
 }
 
-const Illustration illustration_data = {width, height, illustration_data_draw};
+const Illustration illustration_data = {width, height, draw_data};

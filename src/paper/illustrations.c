@@ -54,10 +54,6 @@ Box engine_run_box(const EngineRun *run, int body) {
     return box_make(of->position, of->size, of->angle);
 }
 
-int next_pair(const ContactProblem *problem, int first) {
-    return first < 0 ? 0 : first + pair_contact_count(problem, first);
-}
-
 /* Figure 2: a collision of the bomb in the pyramid's run. Left: the boxes at true scale, with the contact points. Right:
    both boxes' projections on the four axes, by the separating axis theorem: the smallest overlap gives the normal. */
 
@@ -106,12 +102,13 @@ static void find_overlaps(Collision *collision) {
    two nearly equal overlaps the engine may choose the larger; then it is not this one. */
 static bool find_in_step(Collision *collision, const EngineRun *run) {
     const ContactProblem *problem = world_problem(run->world);
-    for (int i = next_pair(problem, -1); i < problem->contact_count; i = next_pair(problem, i)) {
+    for (int i = 0, count; i < problem->contact_count; i += count) {
         const int a = problem->contacts[i].a, b = problem->contacts[i].b;
         const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
+        count = pair_contact_count(problem, i);
         const double turned = fmod(fabs((double)body_b->angle - (double)body_a->angle) * 180 / M_PI, 90);
         if ((a != problem->bomb && b != problem->bomb) || body_a->inv_mass == 0 || body_b->inv_mass == 0 ||
-            pair_contact_count(problem, i) != 2 || fmin(turned, 90 - turned) < least_tilt)
+            count != 2 || fmin(turned, 90 - turned) < least_tilt)
             continue;
         *collision = (Collision){.boxes = {engine_run_box(run, a), engine_run_box(run, b)},
                                  .bodies = {a, b},
@@ -231,40 +228,27 @@ static const Illustration *const figures[] = {&illustration_loop, &illustration_
 
 const char *const illustration_names[] = {"loop", "narrow-phase", "data", "scenes", NULL};
 
-static bool write_caption(const char *folder, const char *name, const char *caption, Error *error) {
-    char path[PATH_MAX], line[CAPTION_SIZE + 1];
-    int length = snprintf(line, sizeof line, "%s\n", caption);
-    return file_path(path, sizeof path, error, "%s/%s.txt", folder, name) &&
-           file_write(path, line, (size_t)length, error);
-}
-
 static bool draw_figure(const Illustration *figure, const char *name, Scene *const *scenes, const char *folder,
                         Error *error) {
     Sketch sketch;
-    char stem[PATH_MAX], caption[CAPTION_SIZE] = "";
+    char stem[PATH_MAX], path[PATH_MAX + 4], caption[CAPTION_SIZE] = "", line[CAPTION_SIZE + 1];
     if (!file_path(stem, sizeof stem, error, "%s/%s", folder, name)) return false;
     sketch_begin(&sketch, figure->width, figure->height);
-    bool drawn = figure->draw(&sketch, scenes, caption, error) && sketch_draw(&sketch, stem, SKETCH_SVG, error);
+    const bool drawn = figure->draw(&sketch, scenes, caption, error) && sketch_draw(&sketch, stem, SKETCH_SVG, error);
     sketch_free(&sketch);
-    return drawn && write_caption(folder, name, caption, error);
-}
-
-static Scene *read_scene(const char *folder, const char *name, Error *error) {
-    char path[PATH_MAX];
-    if (!file_path(path, sizeof path, error, "%s/%s.yaml", folder, name)) return NULL;
-    Scene *scene = scene_read(path, error);
-    if (scene == NULL || scene->bomb.present) return scene;
-    error_input(error, path, "the scene has no bomb to launch");
-    scene_destroy(scene);
-    return NULL;
+    snprintf(path, sizeof path, "%s.txt", stem);
+    const int length = snprintf(line, sizeof line, "%s\n", caption);
+    return drawn && file_write(path, line, (size_t)length, error);
 }
 
 bool illustrations_draw(const char *scenes_folder, const char *folder, Error *error) {
     Scene *scenes[ILLUSTRATION_SCENES] = {NULL};
     bool done = true;
     for (int i = 0; done && i < ILLUSTRATION_SCENES; i++) {
-        scenes[i] = read_scene(scenes_folder, scene_names[i], error);
-        done = scenes[i] != NULL;
+        char path[PATH_MAX];
+        done = file_path(path, sizeof path, error, "%s/%s.yaml", scenes_folder, scene_names[i]) &&
+               (scenes[i] = scene_read(path, error)) != NULL &&
+               (scenes[i]->bomb.present || error_input(error, path, "the scene has no bomb to launch"));
     }
     for (size_t i = 0; done && illustration_names[i] != NULL; i++)
         done = draw_figure(figures[i], illustration_names[i], scenes, folder, error);

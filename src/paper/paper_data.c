@@ -152,26 +152,19 @@ void paper_datasets_free(PaperDatasets *datasets) {
     datasets->count = 0;
 }
 
-/* Ranges are constants of this program and always valid. */
-static FloatRange range_of(const char *text) {
-    FloatRange range = {0};
-    parse_range(text, DATASET_MAX_LAUNCHES, &range);
-    return range;
-}
-
-static bool same_options(const DatasetOptions *a, const DatasetOptions *b) {
-    return a->view == b->view && a->target == b->target && a->labels == b->labels && a->random == b->random &&
-           a->every == b->every && a->context == b->context && memcmp(&a->bomb_x, &b->bomb_x, sizeof a->bomb_x) == 0;
-}
-
-/* The dataset of `count` scenes from `first` on, with launches of bomb_x, if not NULL. */
-static const Dataset *paper_data_record(PaperDatasets *datasets, int first, int count, const char *bomb_x,
-                                        DatasetOptions options, Error *error) {
+/* The dataset of `count` scenes from `first` on, with launches of bomb_x, if not NULL: recorded before, or now. */
+static const Dataset *record(PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
+                             Error *error) {
     const char *scenes[PAPER_SCENES];
-    if (bomb_x != NULL) options.bomb_x = range_of(bomb_x);
+    /* Ranges are constants of this program and always valid. */
+    if (bomb_x != NULL) parse_range(bomb_x, DATASET_MAX_LAUNCHES, &options.bomb_x);
     for (int i = 0; i < datasets->count; i++) {
         const StoredDataset *stored = &datasets->items[i];
-        if (stored->first == first && stored->count == count && same_options(&stored->options, &options))
+        const DatasetOptions *of = &stored->options;
+        if (stored->first == first && stored->count == count && of->view == options.view &&
+            of->target == options.target && of->labels == options.labels && of->random == options.random &&
+            of->every == options.every && of->context == options.context &&
+            memcmp(&of->bomb_x, &options.bomb_x, sizeof of->bomb_x) == 0)
             return stored->dataset;
     }
     if (datasets->count == PAPER_DATASETS_MAX)
@@ -199,12 +192,12 @@ const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *networ
     if (network->data == DATA_MIXED) options.random = size->mixed_random;
     if (network->target == TARGET_IMPULSE)
         options.every = network->data == DATA_FINEST ? size->finest_every : size->impulse_every;
-    return paper_data_record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
+    return record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
 }
 
 bool paper_laws_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
-    const Dataset *dataset = paper_data_record(&plan->datasets, 0, PAPER_TRAINING_SCENES, plan->size->data.swept,
-                                               (DatasetOptions){.context = true}, error); /* with the pairs' context */
+    const Dataset *dataset = record(&plan->datasets, 0, PAPER_TRAINING_SCENES, plan->size->data.swept,
+                                    (DatasetOptions){.context = true}, error); /* with the pairs' context */
     LawRow row;
     return dataset != NULL && law_study_run(dataset, &part->laws, &row, progress, error) &&
            piece_tables_print(lines, &paper_law_layout, -1, &row, error);
@@ -214,7 +207,7 @@ bool paper_transfer_write(PaperPlan *plan, const PaperPart *part, FILE *lines, c
     const Dataset *data[TRANSFER_SCENES];
     TransferRow row;
     for (int i = 0; i < TRANSFER_SCENES; i++) {
-        data[i] = paper_data_record(&plan->datasets, i, 1, plan->size->data.transfer, (DatasetOptions){0}, error);
+        data[i] = record(&plan->datasets, i, 1, plan->size->data.transfer, (DatasetOptions){0}, error);
         if (data[i] == NULL) return false;
     }
     return transfer_study_run(data, &part->transfer, &row, progress, error) &&

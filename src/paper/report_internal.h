@@ -26,12 +26,10 @@ typedef struct Illustration {
 
 extern const Illustration illustration_loop, illustration_narrow_phase, illustration_data, illustration_scenes;
 
-/* The plots of report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error
+/* The plots of paper_report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error
    set if memory is short. */
 typedef bool PlotWrite(const CsvTable *table, PlotPage *page, Error *error);
 PlotWrite plot_factors, plot_closed_loop, plot_transfer;
-
-extern const char *const paper_scene_titles[PAPER_SCENES]; /* of paper_scene_names, for readers */
 
 /* A run of the engine, step by step, for figures that need a step's contact problem. */
 
@@ -53,7 +51,3 @@ bool engine_run_to_touch(EngineRun *run, Error *error);
 
 /* The box of a body as collision detection used it in the last step. */
 Box engine_run_box(const EngineRun *run, int body);
-
-/* The first contact of the pair that follows the one with first contact `first`; -1 for the first pair. The number of
-   contacts after the last pair. */
-int next_pair(const ContactProblem *problem, int first);

@@ -120,14 +120,6 @@ typedef struct Table {
     PlotPoint points[4][8];
 } Table;
 
-static void panel_of(const void *of, int panel, PlotPanel *out) {
-    (void)of, (void)panel;
-    out->x = plot_linear_axis(0, 8, "Across");
-    out->y = plot_linear_axis(0, 8, "Up");
-}
-
-static PlotLook look_of(const void *of, int series) { return ((const Table *)of)->looks[series]; }
-
 static bool point_of(const void *of, int panel, int series, int row, PlotPoint *out) {
     (void)panel;
     *out = ((const Table *)of)->points[series][row];
@@ -136,14 +128,17 @@ static bool point_of(const void *of, int panel, int series, int row, PlotPoint *
 
 static void draw_table(PlotPage *page, const Table *table) {
     Error error = {0};
-    const PlotSpec spec = {.of = table,
-                           .grid = {100, 100, 10, 10, 10, 10, 1, 1, 0, 0},
-                           .panels = 1,
+    PlotPanel panel = {
+        .box = {10, 10, 80, 80}, .x = plot_linear_axis(0, 8, "Across"), .y = plot_linear_axis(0, 8, "Up")};
+    const PlotSpec spec = {.width = 100,
+                           .height = 100,
+                           .panels = &panel,
+                           .looks = table->looks,
+                           .panel_count = 1,
                            .series = table->series,
                            .rows = table->rows,
-                           .panel = panel_of,
-                           .look = look_of,
                            .point = point_of,
+                           .of = table,
                            .legend_columns = 2,
                            .legend_left = 2,
                            .legend_top = 4,

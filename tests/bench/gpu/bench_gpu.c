@@ -255,17 +255,6 @@ static void measure_steps(void) {
     job_end(&job);
 }
 
-static void gpu_panel(const void *of, int panel, PlotPanel *to) {
-    PlotRange range = plot_range();
-    for (int i = 0; i < way_count * SIZES; i++) plot_range_include(&range, ways[i / SIZES].plotted[i % SIZES]);
-    to->x = plot_log_axis(sizes[0], sizes[SIZES - 1], "Pairs in a batch");
-    to->y = plot_log_axis(range.least, range.most, "Time of a batch (µs)");
-    to->x.powers = to->y.powers = true;
-    (void)of, (void)panel;
-}
-
-static PlotLook gpu_look(const void *of, int series) { return (void)of, plot_look(series, ways[series].name); }
-
 static bool gpu_point(const void *of, int panel, int series, int i, PlotPoint *to) {
     *to = (PlotPoint){sizes[i], ways[series].plotted[i], 0};
     return (void)of, (void)panel, !isnan(to->y);
@@ -274,8 +263,26 @@ static bool gpu_point(const void *of, int panel, int series, int i, PlotPoint *t
 static void draw(void) {
     static PlotPage page;
     const char *caption = "Time of pair-net on a batch of pairs: on cores by each instruction set, and on a device.";
-    const PlotGrid grid = {FIGURE_PAGE_WIDTH, 106, 19, 3, 34, 4, 1, 1, 0, 0};
-    const PlotSpec spec = {NULL, grid, 1, way_count, SIZES, gpu_panel, gpu_look, gpu_point, 2, 6, 20, caption};
+    PlotLook looks[PLOT_SERIES];
+    PlotRange range = plot_range();
+    for (int i = 0; i < way_count; i++) looks[i] = plot_look(i, ways[i].name);
+    for (int i = 0; i < way_count * SIZES; i++) plot_range_include(&range, ways[i / SIZES].plotted[i % SIZES]);
+    PlotPanel panel = {.box = {19, 34, FIGURE_PAGE_WIDTH - 22, 68},
+                       .x = plot_log_axis(sizes[0], sizes[SIZES - 1], "Pairs in a batch"),
+                       .y = plot_log_axis(range.least, range.most, "Time of a batch (µs)")};
+    panel.x.powers = panel.y.powers = true;
+    const PlotSpec spec = {.width = FIGURE_PAGE_WIDTH,
+                           .height = 106,
+                           .panels = &panel,
+                           .looks = looks,
+                           .panel_count = 1,
+                           .series = way_count,
+                           .rows = SIZES,
+                           .point = gpu_point,
+                           .legend_columns = 2,
+                           .legend_left = 6,
+                           .legend_top = 20,
+                           .caption = caption};
     check(plot_draw(&page, &spec, "gpu", &error) && file_make_directory("out", &error) &&
           plot_page_write(&page, "out", "", "gpu", &error));
     plot_page_free(&page);
