@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs the installed program: `twinbox-compare EXPECTED ACTUAL [OPTION...]` is `twinbox compare ...`, with its exit status.
 //
-//     const { compare, server } = require("twinbox-compare");
+//     const { compare } = require("twinbox-compare");
 //     const { passed, frames } = await compare("expected", "actual", ["--antialias"]); // what --json prints
-//     const odiff = new ODiffServer(server); // odiff's own client (odiff-bin), answered by twinbox
 "use strict";
 const { execFile, spawn } = require("child_process");
 const { accessSync, constants, statSync } = require("fs");
@@ -38,7 +37,7 @@ function compare(expected, actual, options = []) {
   });
 }
 
-module.exports = { compare, find, server: __filename };
+module.exports = { compare, find };
 
 if (require.main === module) {
   try {

@@ -2,7 +2,7 @@
 /* twinbox approve: new pictures become the expected ones. */
 #include "base/base.h"
 #include "cli/options.h"
-#include "regression/report.h"
+#include "regression/approve.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -10,7 +10,8 @@
 #include "cli/options.h"
 #include "cli/panels.h"
 #include "methods/methods.h"
-#include "regression/compare.h"
+#include "regression/limits.h"
+#include "regression/mask.h"
 #include "regression/regression.h"
 #include "regression/report.h"
 #include "runs/pieces.h"
@@ -20,10 +21,7 @@
 #include "scenes/scenes.h"
 #include "studies/stability.h"
 
-/* twinbox compare: its options, results and --watch. */
-
-typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
-typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
+/* twinbox compare: its options and results. */
 
 typedef struct CompareOptions {
     const char *paths[2], *report;
@@ -34,10 +32,7 @@ typedef struct CompareOptions {
     PoseTolerance poses;
     const char *scene, *csv; /* of runs */
     const char *rules;       /* a file; NULL: not given */
-    bool flat;
-    unsigned metadata;    /* CompareMetadata */
-    unsigned annotations; /* CompareAnnotations */
-    bool watch, json, server;
+    bool flat, strict, json;
     Mask mask;
 } CompareOptions;
 
@@ -68,7 +63,7 @@ int compare_runs_others(const RunComparison *comparison, RunOther others[RUN_OTH
 
 JsonOutputWrite compare_runs_write_json; /* of a RunComparison */
 
-/* Writes report.html, junit.xml, results.tap, results.json and, if the runs differ, run.html, which plays both. */
+/* Writes report.html, junit.xml, results.json and, if the runs differ, run.html, which plays both. */
 bool compare_runs_report(RunComparison *comparison, const char *folder, Error *error);
 
 /* Compares two runs and prints the result. False if they differ, or with error set. */
@@ -79,16 +74,6 @@ bool compare_print(const Regression *regression, Error *error); /* false with er
 
 /* The same as JSON: what results.json of a report has. */
 bool compare_json_pictures(const Regression *regression, Error *error);
-
-typedef bool CompareRun(const CompareOptions *options, Error *error);
-
-/* Compares, and again whenever a picture or trajectory below the two inputs has changed and all have been still for
-   half a second, until Ctrl-C or SIGTERM. An error, such as a folder that is gone, is printed and does not end it.
-   Returns what the last comparison that ended returned, with its error. */
-bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
-
-/* Answers the requests of standard input until it ends. False with error set if standard output cannot be written. */
-bool compare_serve(Error *error);
 
 /* simulate() with the verdict in the run. */
 Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Approval: folders in which no link is followed, the list of results.json, and the changes. */
+#include "regression/approve.h"
+
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"
-#include "regression/compare.h"
-#include "regression/regression_internal.h"
-#include "regression/report.h"
+#include "regression/sequence.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -16,6 +16,20 @@
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder,
+   even if one is made meanwhile. */
+
+typedef struct Root {
+    int folder;       /* an open directory */
+    const char *path; /* of the caller, for messages */
+} Root;
+
+typedef struct Place {
+    int folder;          /* an open directory; -1 if there is no such folder */
+    const char *name;    /* in it; points into the relative name */
+    char path[PATH_MAX]; /* for messages */
+} Place;
 
 enum { OPEN_FOLDER = O_RDONLY | O_DIRECTORY | O_CLOEXEC };
 
@@ -104,7 +118,7 @@ static void root_close(const Root *root) { close(root->folder); }
 
 /* Opens the directory of `name` in the root; `name` is relative, without "." and "..". create: makes the folders that
    are missing. ERROR_INPUT if one is a link or no folder. After success, place_close(). */
-static bool place_open(ApprovePlace *place, const Root *root, const char *name, bool create, Error *error) {
+static bool place_open(Place *place, const Root *root, const char *name, bool create, Error *error) {
     if (!file_path(place->path, sizeof place->path, error, "%s/%s", root->path, name)) return false;
     place->name = name;
     place->folder = walk(fcntl(root->folder, F_DUPFD_CLOEXEC, 0), &place->name, create);
@@ -114,7 +128,7 @@ static bool place_open(ApprovePlace *place, const Root *root, const char *name, 
                           error);
 }
 
-static void place_close(const ApprovePlace *place) {
+static void place_close(const Place *place) {
     if (place->folder >= 0) close(place->folder);
 }
 
@@ -296,7 +310,7 @@ typedef struct Folders {
 
 /* A regular file of this name, or none. */
 static bool inspect(const Root *root, const char *name, Found *found, Error *error) {
-    ApprovePlace place;
+    Place place;
     struct stat status;
     *found = (Found){.there = false};
     if (!place_open(&place, root, name, false, error)) return false;
@@ -343,8 +357,8 @@ static bool approve_decide(const Folders *folders, const ApprovalItem *item, Act
 #define CHANGED "has changed during the approval"
 
 /* Reads the actual file again and checks the hash of exactly the bytes that are written. */
-static bool approve_copy(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
-    ApprovePlace source;
+static bool approve_copy(const Folders *folders, const ApprovalFile *actual, const Place *target, Error *error) {
+    Place source;
     size_t size;
     if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
     if (source.folder < 0) return error_input(error, source.path, CHANGED);
@@ -360,7 +374,7 @@ static bool approve_apply(const Folders *folders, const ApprovalItem *item, Acti
                           void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
     static const char *const words[] = {"", "replaced", "added", "removed"};
     int *counts[] = {&approval->already, &approval->replaced, &approval->added, &approval->removed};
-    ApprovePlace target;
+    Place target;
     (*counts[action])++;
     if (action == ACTION_NONE) return true;
     if (!place_open(&target, &folders->expected, target_of(item), action == ACTION_ADD, error)) return false;

@@ -2,8 +2,6 @@
 /* A comparison in words: changes and regions, frames, runs, causes, the verdict, notes. */
 #include "base/base.h"
 #include "pixels/png.h"
-#include "regression/compare.h"
-#include "regression/regression_internal.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
 #include "runs/trajectory.h"
@@ -12,124 +10,94 @@
 #include <math.h>
 #include <string.h>
 
-static const double SMALL = 0.005;     /* pixels; smaller movements round to 0.00 */
-static const double ALONG = 0.25;      /* a movement's smaller part is left out below this share of the larger */
-static const double SEEN_TURN = 0.001; /* rad */
-static const double DEGREES = 57.29577951308232;
+#define ADD(words, ...) text_add((words)->text, sizeof(words)->text, __VA_ARGS__)
+/* JOIN(words, between, format, ...) */
+#define JOIN(words, ...) text_join((words)->text, sizeof(words)->text, __VA_ARGS__)
+
+/* Of a movement, to a sensible number of digits. */
+static void add_pixels(ChangeText *text, double pixels) {
+    ADD(text, " %.*f px", pixels < 0.1 ? 2 : pixels < 9.95 ? 1 : 0, pixels);
+}
 
 static void add_subject(ChangeText *text, const Change *change) {
-    static const char *const names[] = {
-        [SUBJECT_HEADER] = "header",         [SUBJECT_CAPTION] = "caption",   [SUBJECT_AXIS] = "axis",
-        [SUBJECT_LEGEND] = "legend",         [SUBJECT_TIMELINE] = "timeline", [SUBJECT_MARKS] = "marks",
-        [SUBJECT_BACKGROUND] = "background", [SUBJECT_PAGE] = "page",         [SUBJECT_CONTENT] = "content"};
-    switch (change->subject) {
-    case SUBJECT_BODY: text_add(text->text, sizeof text->text, "body %d", change->body); break;
-    case SUBJECT_BOMB: text_add(text->text, sizeof text->text, "bomb (body %d)", change->body); break;
-    case SUBJECT_FIXED: text_add(text->text, sizeof text->text, "static body %d", change->body); break;
-    case SUBJECT_GROUND: text_add(text->text, sizeof text->text, "ground (body %d)", change->body); break;
-    case SUBJECT_BODIES:
-        text_add(text->text, sizeof text->text, "%d more %s", change->body, change->body == 1 ? "body" : "bodies");
-        break;
-    case SUBJECT_HEADER:
-    case SUBJECT_CAPTION:
-    case SUBJECT_AXIS:
-    case SUBJECT_LEGEND:
-    case SUBJECT_TIMELINE:
-    case SUBJECT_MARKS:
-    case SUBJECT_BACKGROUND:
-    case SUBJECT_PAGE:
-    case SUBJECT_CONTENT: text_add(text->text, sizeof text->text, "%s", names[change->subject]); break;
-    }
-    if (change->panel > 0) text_add(text->text, sizeof text->text, " of panel %d", change->panel);
+    static const char *const names[] = {[SUBJECT_HEADER] = "header",     [SUBJECT_CAPTION] = "caption",
+                                        [SUBJECT_AXIS] = "axis",         [SUBJECT_LEGEND] = "legend",
+                                        [SUBJECT_TIMELINE] = "timeline", [SUBJECT_MARKS] = "marks",
+                                        [SUBJECT_BODY] = "body",         [SUBJECT_BACKGROUND] = "background",
+                                        [SUBJECT_PAGE] = "page",         [SUBJECT_FIXED] = "static body",
+                                        [SUBJECT_BOMB] = "bomb",         [SUBJECT_GROUND] = "ground"};
+    if (change->subject == SUBJECT_BODIES)
+        ADD(text, "%d more %s", change->body, change->body == 1 ? "body" : "bodies");
+    else
+        ADD(text, "%s", names[change->subject]);
+    if (change->subject == SUBJECT_BODY || change->subject == SUBJECT_FIXED) ADD(text, " %d", change->body);
+    if (change->subject == SUBJECT_BOMB || change->subject == SUBJECT_GROUND) ADD(text, " (body %d)", change->body);
+    if (change->panel > 0) ADD(text, " of panel %d", change->panel);
 }
 
-static void add_pixels(ChangeText *text, double pixels, const char *positive, const char *negative) {
-    double size = fabs(pixels);
-    text_add(text->text, sizeof text->text, " %.*f px %s",
-             size < 0.1    ? 2
-             : size < 9.95 ? 1
-                           : 0,
-             size, pixels > 0 ? positive : negative);
-}
-
-/* " 0.4 px right", " 3 px right and 2 px up"; a movement along one axis has one part. */
-static void add_amount(ChangeText *text, const Change *change) {
-    double right = fabs(change->right), up = fabs(change->up);
-    const char *between = text->text[0] != '\0' ? " " : "";
-    bool has_right = right >= SMALL && right >= ALONG * up, has_up = up >= SMALL && up >= ALONG * right;
-    bool turns = fabs(change->turn) >= SEEN_TURN;
-    text_add(text->text, sizeof text->text, "%s", between);
-    if (has_right || has_up) text_add(text->text, sizeof text->text, "moved");
-    if (has_right) add_pixels(text, change->right, "right", "left");
-    if (has_right && has_up) text_add(text->text, sizeof text->text, " and");
-    if (has_up) add_pixels(text, change->up, "up", "down");
-    if (turns)
-        text_add(text->text, sizeof text->text, "%s %.2g degrees", has_right || has_up ? ", turned" : "turned",
-                 DEGREES * fabs(change->turn));
-    if (!has_right && !has_up && !turns) text_add(text->text, sizeof text->text, "moved less than 0.01 px");
-}
-
-/* Of a body or another part of a frame. */
-static void add_kind(ChangeText *text, const Change *change) {
-    const char *kind = change->kind == CHANGE_APPEARED      ? " only in the actual run"
-                       : change->kind == CHANGE_DISAPPEARED ? " only in the expected run"
-                       : change->subject <= SUBJECT_BODIES  ? " changed"
-                                                            : "";
-    text_add(text->text, sizeof text->text, "%s", kind);
-}
-
-/* Of content of which nothing is known. */
-static void add_content(ChangeText *text, const Change *change) {
-    static const char *const kinds[] = {
-        [CHANGE_COLOUR] = "recoloured", [CHANGE_APPEARED] = "added", [CHANGE_DISAPPEARED] = "removed",
-        [CHANGE_REPLACED] = "replaced", [CHANGE_NOISE] = "noise",    [CHANGE_UNSURE] = "unsure what changed"};
-    text_add(text->text, sizeof text->text, "%s", kinds[change->kind]);
+/* " moved 0.4 px right", " moved 3 px right and 2 px up, turned 4 degrees". */
+static void add_movement(ChangeText *text, const Change *change) {
+    const double SMALL = 0.005; /* pixels; smaller movements round to 0.00 */
+    const double ALONG = 0.25;  /* a movement's smaller part is left out below this share of the larger */
+    const double SEEN_TURN = 0.001, DEGREES = 57.29577951308232;
+    const double right = fabs(change->right), up = fabs(change->up);
+    const bool has_right = right >= SMALL && right >= ALONG * up, has_up = up >= SMALL && up >= ALONG * right;
+    const bool turns = fabs(change->turn) >= SEEN_TURN;
+    if (has_right || has_up) ADD(text, " moved");
+    if (has_right) add_pixels(text, right), ADD(text, " %s", change->right > 0 ? "right" : "left");
+    if (has_right && has_up) ADD(text, " and");
+    if (has_up) add_pixels(text, up), ADD(text, " %s", change->up > 0 ? "up" : "down");
+    if (turns) ADD(text, "%s turned %.2g degrees", has_right || has_up ? "," : "", DEGREES * fabs(change->turn));
+    if (!has_right && !has_up && !turns) ADD(text, " moved less than 0.01 px");
 }
 
 ChangeText change_words(const Change *change) {
     ChangeText text = {""};
-    const bool content = change->subject == SUBJECT_CONTENT;
-    if (!content) add_subject(&text, change);
-    if (change->kind == CHANGE_MOVED && change->subject == SUBJECT_BODIES)
-        text_add(text.text, sizeof text.text, " moved");
-    else if (change->kind == CHANGE_MOVED)
-        add_amount(&text, change);
-    else if (content)
-        add_content(&text, change);
+    add_subject(&text, change);
+    if (change->kind == CHANGE_MOVED && change->subject != SUBJECT_BODIES)
+        add_movement(&text, change);
     else
-        add_kind(&text, change);
+        ADD(&text, "%s",
+            change->kind == CHANGE_MOVED         ? " moved"
+            : change->kind == CHANGE_APPEARED    ? " only in the actual run"
+            : change->kind == CHANGE_DISAPPEARED ? " only in the expected run"
+            : change->subject <= SUBJECT_BODIES  ? " changed"
+                                                 : "");
     return text;
 }
 
 ChangeText change_cause(const Change *change) {
-    bool several = change->subject == SUBJECT_BODIES;
+    const bool several = change->subject == SUBJECT_BODIES;
     if (change->kind != CHANGE_MOVED && !several) return change_words(change);
     ChangeText text = {""};
     if (several)
-        text_add(text.text, sizeof text.text, "other bodies");
+        ADD(&text, "other bodies");
     else
         add_subject(&text, change);
-    text_add(text.text, sizeof text.text, change->kind == CHANGE_MOVED ? " moved" : " changed");
+    ADD(&text, change->kind == CHANGE_MOVED ? " moved" : " changed");
     return text;
 }
 
+/* Whether nearly all of these pixels differ as those along edges may. */
+static bool are_edges(int64_t edges, int64_t pixels) { return 10 * edges >= 9 * pixels; }
+
 ChangeText region_name(const FrameChanges *changes, int region) {
     ChangeText text = {""};
-    int change = changes->region_change[region], others = changes->region_others[region];
-    if (change < 0) return text;
-    text = change_words(&changes->list[change]);
-    if (others > 0)
-        text_add(text.text, sizeof text.text, ", and %d more %s", others, others == 1 ? "change" : "changes");
+    const ImageRegion *r = &changes->regions.list[region];
+    const int change = changes->region_change[region], others = changes->region_others[region];
+    if (change >= 0) text = change_words(&changes->list[change]);
+    if (change >= 0 && others > 0) ADD(&text, ", and %d more %s", others, others == 1 ? "change" : "changes");
+    if (change < 0 && are_edges(r->edges, r->pixels)) ADD(&text, "noise along edges");
     return text;
 }
 
 ChangeText region_words(const FrameChanges *changes, int region) {
     ChangeText text = {""};
     const ImageRegion *r = &changes->regions.list[region];
-    ChangeText name = region_name(changes, region);
-    text_add(text.text, sizeof text.text, "%d x %d pixels at (%d, %d), %" PRId64 " of them %s", r->right - r->left,
-             r->bottom - r->top, r->left, r->top, r->pixels, r->pixels == 1 ? "differs" : "differ");
-    if (name.text[0] != '\0') text_add(text.text, sizeof text.text, ": %s", name.text);
+    const ChangeText name = region_name(changes, region);
+    ADD(&text, "%d x %d pixels at (%d, %d), %" PRId64 " of them %s by at most %d", r->right - r->left,
+        r->bottom - r->top, r->left, r->top, r->pixels, r->pixels == 1 ? "differs" : "differ", r->largest);
+    if (name.text[0] != '\0') ADD(&text, ": %s", name.text);
     return text;
 }
 
@@ -166,32 +134,23 @@ const char *frame_verdict(const RegressionFrame *frame) {
     return frame->pixels == PIXELS_EQUAL ? "equal" : "within tolerance";
 }
 
-/* ADD(text, between, format, ...) */
-#define ADD(words, ...) text_join((words)->text, sizeof(words)->text, __VA_ARGS__)
-
-/* The name of the largest region that has one. */
-static void add_changes(RegressionText *words, const RegressionFrame *frame) {
+/* What differs, where that has a name: the largest region's change; or what all of it looks like. */
+static void add_name(RegressionText *words, const RegressionFrame *frame) {
+    enum { SEEN = 16 }; /* levels; less, everywhere, is noise */
+    const ImageDifference *difference = &frame->difference;
     const FrameChanges *changes = frame->changes;
-    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
+    if (changes == NULL || difference->pixels == 0) return;
+    for (int i = 0; i < changes->regions.kept; i++) {
+        const int others = changes->count - 1;
         if (changes->region_change[i] < 0) continue;
-        int others = changes->count - 1;
-        ADD(words, ": ", "%s", change_words(&changes->list[changes->region_change[i]]).text);
-        if (others > 0) ADD(words, ", ", "and %d more %s", others, others == 1 ? "change" : "changes");
+        JOIN(words, ": ", "%s", change_words(&changes->list[changes->region_change[i]]).text);
+        if (others > 0) JOIN(words, ", ", "and %d more %s", others, others == 1 ? "change" : "changes");
         return;
     }
-}
-
-static void add_difference(RegressionText *words, const ImageDifference *difference) {
-    if (difference->pixels == 0)
-        ADD(words, "", "equal pixels");
-    else
-        ADD(words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
-            difference->pixels == 1 ? "pixel differs" : "pixels differ",
-            100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
-            difference->first_y);
-    if (difference->moved > 0)
-        ADD(words, "; ", "%" PRId64 " %s as limits allow", difference->moved,
-            difference->moved == 1 ? "pixel differs" : "pixels differ");
+    if (are_edges(changes->regions.edges, difference->pixels))
+        JOIN(words, ": ", "noise along edges");
+    else if (2 * difference->pixels > difference->counted && difference->largest >= SEEN && difference->counted > 1)
+        JOIN(words, ": ", "the whole picture is another");
 }
 
 RegressionText frame_words(const RegressionFrame *frame) {
@@ -199,29 +158,38 @@ RegressionText frame_words(const RegressionFrame *frame) {
     const ImageDifference *difference = &frame->difference;
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     switch (frame->pixels) {
-    case PIXELS_MISSING: ADD(&words, "", "no actual picture"); break;
-    case PIXELS_EXTRA: ADD(&words, "", "no expected picture"); break;
-    case PIXELS_UNREAD: ADD(&words, "", "%s", frame->read_error); break;
-    case PIXELS_EQUAL: ADD(&words, "", "equal pixels"); break;
+    case PIXELS_MISSING: JOIN(&words, "", "no actual picture"); break;
+    case PIXELS_EXTRA: JOIN(&words, "", "no expected picture"); break;
+    case PIXELS_UNREAD: JOIN(&words, "", "%s", frame->read_error); break;
+    case PIXELS_EQUAL: JOIN(&words, "", "equal pixels"); break;
     case PIXELS_WITHIN:
     case PIXELS_DIFFER:
     case PIXELS_RESIZED:
         if (!difference->same_size)
-            ADD(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
+            JOIN(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
         if (frame->sizes_alone) break;
-        if (!difference->same_size) ADD(&words, "; ", "overlap: ");
-        add_difference(&words, difference);
+        if (!difference->same_size) JOIN(&words, "; ", "overlap: ");
+        if (difference->pixels == 0)
+            JOIN(&words, "", "equal pixels");
+        else
+            JOIN(&words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
+                 difference->pixels == 1 ? "pixel differs" : "pixels differ",
+                 100 * (double)difference->pixels / (double)difference->counted, difference->largest,
+                 difference->first_x, difference->first_y);
+        if (difference->moved > 0)
+            JOIN(&words, "; ", "%" PRId64 " %s as limits allow", difference->moved,
+                 difference->moved == 1 ? "pixel differs" : "pixels differ");
     }
-    if (frame->panel > 0) ADD(&words, ", ", "states differ in panel %d", frame->panel);
+    if (frame->panel > 0) JOIN(&words, ", ", "states differ in panel %d", frame->panel);
     if (frame->other_view && frame->states != STATES_DIFFER)
-        ADD(&words, ", ", "the camera differs");
+        JOIN(&words, ", ", "the camera differs");
     else if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
-        ADD(&words, ", ", "states equal in this frame but not in the whole run, which sets camera and scales");
-    add_changes(&words, frame);
-    if (frame->metadata.text[0] != '\0') ADD(&words, ", ", "metadata differs: %s", frame->metadata.text);
+        JOIN(&words, ", ", "states equal in this frame but not in the whole run, which sets camera and scales");
+    add_name(&words, frame);
+    if (frame->metadata.text[0] != '\0') JOIN(&words, ", ", "metadata differs: %s", frame->metadata.text);
     if (frame->at[EXPECTED] != NULL && frame->at[EXPECTED] != frame->base)
-        ADD(&words, "; ", frame_failed(frame) ? "closest accepted picture: %s" : "accepted picture: %s",
-            frame->at[EXPECTED]->name + frame->at[EXPECTED]->folder);
+        JOIN(&words, "; ", frame_failed(frame) ? "closest accepted picture: %s" : "accepted picture: %s",
+             frame->at[EXPECTED]->name + frame->at[EXPECTED]->folder);
     return words;
 }
 
@@ -230,16 +198,16 @@ RegressionText case_words(const RegressionFrame *frame) {
     const ImageRegions *regions = frame->changes != NULL ? &frame->changes->regions : NULL;
     if (regions == NULL || regions->kept == 0) return words;
     const ImageRegion *r = &regions->list[0];
-    ADD(&words, "; ", regions->count > 1 ? "%" PRId64 " regions, the largest" : "one region", regions->count);
-    ADD(&words, " ", "of %d x %d pixels at (%d, %d)", r->right - r->left, r->bottom - r->top, r->left, r->top);
+    JOIN(&words, "; ", regions->count > 1 ? "%" PRId64 " regions, the largest" : "one region", regions->count);
+    JOIN(&words, " ", "of %d x %d pixels at (%d, %d)", r->right - r->left, r->bottom - r->top, r->left, r->top);
     return words;
 }
 
 RegressionText cause_words(const RegressionCause *cause) {
     RegressionText words = {""};
-    ADD(&words, "", "%s: %s", cause->frames, cause->what);
+    JOIN(&words, "", "%s: %s", cause->frames, cause->what);
     if (cause->most > 0)
-        ADD(&words, " ", "at most %.*f px", cause->most < 0.1 ? 2 : cause->most < 9.95 ? 1 : 0, cause->most);
+        JOIN(&words, " ", "at most %.*f px", cause->most < 0.1 ? 2 : cause->most < 9.95 ? 1 : 0, cause->most);
     return words;
 }
 
@@ -247,30 +215,26 @@ RegressionText run_words(const RegressionRun *run) {
     RegressionText words = {""};
     const TrajectoryDifference *d = &run->difference;
     if (d->equal) {
-        ADD(&words, "", "%s",
-            run->alone[EXPECTED] ? "only in the expected folder"
-            : run->alone[ACTUAL] ? "only in the actual folder"
-                                 : "equal states");
+        JOIN(&words, "", "%s",
+             run->alone[EXPECTED] ? "only in the expected folder"
+             : run->alone[ACTUAL] ? "only in the actual folder"
+                                  : "equal states");
         return words;
     }
-    if (d->what[0] != '\0') ADD(&words, "", "%s", d->what);
+    if (d->what[0] != '\0') JOIN(&words, "", "%s", d->what);
     if (run->beyond.frame >= 0)
-        ADD(&words, "; ", "beyond the tolerance from frame %d, body %d: %g m apart, %g rad", run->beyond.frame,
-            run->beyond.body, run->beyond.by.distance, run->beyond.by.angle);
+        JOIN(&words, "; ", "beyond the tolerance from frame %d, body %d: %g m apart, %g rad", run->beyond.frame,
+             run->beyond.body, run->beyond.by.distance, run->beyond.by.angle);
     if (d->frame >= 0)
-        ADD(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,
-            d->angle, d->speed);
+        JOIN(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,
+             d->angle, d->speed);
     if (d->max_frame >= 0)
-        ADD(&words, "; ", "farthest in frame %d, body %d: %g m", d->max_frame, d->max_body, d->max_distance);
+        JOIN(&words, "; ", "farthest in frame %d, body %d: %g m", d->max_frame, d->max_body, d->max_distance);
     return words;
 }
 
-static void add_count(RegressionText *text, int count, const char *what) {
-    if (count > 0) ADD(text, ", ", "%d %s %s", count, count == 1 ? "frame" : "frames", what);
-}
-
-static void add_run_count(RegressionText *text, int count, const char *what) {
-    if (count > 0) ADD(text, ", ", "%d %s %s", count, count == 1 ? "trajectory" : "trajectories", what);
+static void add_count(RegressionText *text, int count, const char *one, const char *more, const char *what) {
+    if (count > 0) JOIN(text, ", ", "%d %s %s", count, count == 1 ? one : more, what);
 }
 
 RegressionText regression_verdict(const Regression *regression) {
@@ -279,20 +243,20 @@ RegressionText regression_verdict(const Regression *regression) {
     bool physics = regression->physics > 0 || regression->elsewhere > 0 || runs_changed > 0;
     bool renderer = regression->renderer > 0;
     if (physics || renderer)
-        ADD(&verdict, ", ", "%s",
-            physics && renderer ? "physics and renderer changed"
-            : physics           ? "physics changed"
-                                : "renderer changed");
-    if (regression->view > 0 && !physics) ADD(&verdict, ", ", "view changed");
+        JOIN(&verdict, ", ", "%s",
+             physics && renderer ? "physics and renderer changed"
+             : physics           ? "physics changed"
+                                 : "renderer changed");
+    if (regression->view > 0 && !physics) JOIN(&verdict, ", ", "view changed");
     if (regression->unknown > 0)
-        ADD(&verdict, ", ", regression->film ? "pictures differ (cause unknown: no states)" : "pictures differ");
-    if (regression->metadata_failed > 0) ADD(&verdict, ", ", "metadata changed");
-    add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
-    add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");
-    add_count(&verdict, regression->by_verdict[PIXELS_UNREAD], "not comparable");
-    add_run_count(&verdict, alone[EXPECTED], "missing");
-    add_run_count(&verdict, alone[ACTUAL], "extra");
-    if (verdict.text[0] == '\0') ADD(&verdict, "", "equal");
+        JOIN(&verdict, ", ", regression->film ? "pictures differ (cause unknown: no states)" : "pictures differ");
+    if (regression->metadata_failed > 0) JOIN(&verdict, ", ", "metadata changed");
+    add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "frame", "frames", "missing");
+    add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "frame", "frames", "extra");
+    add_count(&verdict, regression->by_verdict[PIXELS_UNREAD], "frame", "frames", "not comparable");
+    add_count(&verdict, alone[EXPECTED], "trajectory", "trajectories", "missing");
+    add_count(&verdict, alone[ACTUAL], "trajectory", "trajectories", "extra");
+    if (verdict.text[0] == '\0') JOIN(&verdict, "", "equal");
     return verdict;
 }
 
@@ -300,10 +264,10 @@ RegressionText regression_begin(const Regression *regression) {
     RegressionText begin = {""};
     if (regression->first_run >= 0) {
         const RegressionRun *run = &regression->runs[regression->first_run];
-        ADD(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
+        JOIN(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
     }
     if (regression->first_renderer >= 0)
-        ADD(&begin, "\n", "renderer changed first in %s", frame_name(&regression->frames[regression->first_renderer]));
+        JOIN(&begin, "\n", "renderer changed first in %s", frame_name(&regression->frames[regression->first_renderer]));
     return begin;
 }
 
@@ -317,10 +281,10 @@ RegressionText regression_begin(const Regression *regression) {
 RegressionText regression_limits(const Regression *regression) {
     const PoseTolerance *poses = &regression->options.poses;
     RegressionText words = {""};
-    ADD(&words, "", "%s", tolerance_words(&regression->options.tolerance).text);
+    JOIN(&words, "", "%s", tolerance_words(&regression->options.tolerance).text);
     if (poses->given && regression->count == 0) words.text[0] = '\0';
-    if (poses->given) ADD(&words, "; ", "trajectories: at most %g m", poses->distance);
-    if (poses->given && isfinite(poses->angle)) ADD(&words, " ", "and %g rad", poses->angle);
+    if (poses->given) JOIN(&words, "; ", "trajectories: at most %g m", poses->distance);
+    if (poses->given && isfinite(poses->angle)) JOIN(&words, " ", "and %g rad", poses->angle);
     return words;
 }
 
@@ -329,26 +293,26 @@ RegressionText regression_notes(const Regression *regression) {
     enum { NAME = 100 }; /* of each name, so that all notes fit */
     const ImageSequence *const *sides = (const ImageSequence *const *)regression->sequences;
     bool same = sides[EXPECTED]->device == sides[ACTUAL]->device && sides[EXPECTED]->inode == sides[ACTUAL]->inode;
-    if (same) ADD(&notes, "\n", "expected and actual are the same %s", sides[EXPECTED]->single ? "file" : "folder");
+    if (same) JOIN(&notes, "\n", "expected and actual are the same %s", sides[EXPECTED]->single ? "file" : "folder");
     int accepted = regression->other_accepted, metadata = regression->metadata;
-    if (accepted > 0) ADD(&notes, "\n", "%d frame%s passed by another accepted picture", accepted, plural(accepted));
+    if (accepted > 0) JOIN(&notes, "\n", "%d frame%s passed by another accepted picture", accepted, plural(accepted));
     if (metadata > 0) {
         const RegressionFrame *first = &regression->frames[regression->first_metadata];
-        ADD(&notes, "\n", "metadata differs in %d frame%s, first in %.*s: %s%s", metadata, plural(metadata),
-            (int)utf8_cut(frame_name(first), NAME), frame_name(first), first->metadata.text,
-            regression->options.strict_metadata ? "" : " (--metadata strict fails)");
+        JOIN(&notes, "\n", "metadata differs in %d frame%s, first in %.*s: %s%s", metadata, plural(metadata),
+             (int)utf8_cut(frame_name(first), NAME), frame_name(first), first->metadata.text,
+             regression->options.strict ? "" : " (--strict fails)");
     }
     int left_out = regression->runs_left_out, foreign = regression->runs_foreign;
     const char *expected = regression->sequences[EXPECTED]->folder;
     if (left_out > 0)
-        ADD(&notes, "\n", "not compared: %d .npz file%s only in %.*s", left_out, plural(left_out),
-            (int)utf8_cut(expected, NAME), expected);
-    if (foreign > 0) ADD(&notes, "\n", "not compared: %d .npz file%s " UNREAD, foreign, plural(foreign));
+        JOIN(&notes, "\n", "not compared: %d .npz file%s only in %.*s", left_out, plural(left_out),
+             (int)utf8_cut(expected, NAME), expected);
+    if (foreign > 0) JOIN(&notes, "\n", "not compared: %d .npz file%s " UNREAD, foreign, plural(foreign));
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
         if (sequence->skipped > 0)
-            ADD(&notes, "\n", "not compared: %d picture%s in subfolders of %.*s (--no-recursive)", sequence->skipped,
-                plural(sequence->skipped), (int)utf8_cut(sequence->folder, NAME), sequence->folder);
+            JOIN(&notes, "\n", "not compared: %d picture%s in subfolders of %.*s (--no-recursive)", sequence->skipped,
+                 plural(sequence->skipped), (int)utf8_cut(sequence->folder, NAME), sequence->folder);
     }
     return notes;
 }

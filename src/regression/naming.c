@@ -4,16 +4,82 @@
 #include "regression/naming.h"
 
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pixels/png.h"
-#include "regression/compare.h"
-#include "regression/regression_internal.h"
+#include "regression/image_compare.h"
+#include "regression/view.h"
 #include "runs/trajectory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const int BORDER = 4; /* pixels; a panel's frame is drawn around its rectangle */
+enum {
+    PIXELS_MAX = 20000000, /* larger pictures get no names */
+    PAINTED_MAX = 64,      /* times a panel, by all its bodies: more are no picture of a scene */
+    BORDER = 4,            /* pixels; a panel's frame is drawn around its rectangle */
+    SINGLE = 6,            /* bodies of a panel that get a name because they moved, */
+    CHANGED = 4            /* and because their pixels changed */
+};
+static const double SEEN = 0.01;  /* pixels; the states of a body that moved less explain no pixel */
+static const double AROUND = 1.5; /* pixels beyond its edge that a body may change */
+
+/* Owners of differing pixels: CHANGE i is OWNER_FIRST + i. */
+enum { OWNER_NONE, OWNER_UNKNOWN, OWNER_FIRST };
+
+typedef struct Naming {
+    const NamingScene *scene;
+    size_t width;
+    uint8_t *owners; /* [height, width] */
+    int32_t *tops;   /* [height, width] what is drawn on top in the expected picture: a body in the order of
+                        drawing, or (their number) an outline; -1: nothing */
+    FrameChanges *changes;
+} Naming;
+
+/* A box as twinbox draws it. Pixels, y down. */
+typedef struct DrawnBox {
+    double x, y;         /* centre */
+    double cosine, sine; /* of the angle, counter-clockwise on the screen */
+    double half_width, half_height;
+} DrawnBox;
+
+/* A body as drawn in a panel. */
+typedef struct Drawn {
+    int index;
+    bool exists[2];
+    DrawnBox box[2]; /* expected, actual */
+    double moved;    /* pixels, of the corner that the states move farthest; infinite if it exists on one side only */
+    int64_t pixels;  /* unknown ones on it */
+} Drawn;
+
+typedef struct Panel {
+    Naming *naming;
+    int number; /* from 0 */
+    const ViewPanel *view;
+    const Trajectory *runs[2];
+    int count;
+    Drawn *bodies; /* [count], in the order of drawing */
+} Panel;
+
+/* Signed distance of a point from the edge, negative inside. */
+static double distance(const DrawnBox *box, double x, double y) {
+    const double along = box->cosine * (x - box->x) - box->sine * (y - box->y);
+    const double up = -box->sine * (x - box->x) - box->cosine * (y - box->y);
+    const double side = fabs(along) - box->half_width, end = fabs(up) - box->half_height;
+    return side > 0 && end > 0 ? sqrt(side * side + end * end) : fmax(side, end);
+}
+
+/* The part of the rectangle that a box and a margin around it may reach; empty if right <= left. */
+static ViewRect bounds(const DrawnBox *box, double margin, ViewRect rect) {
+    const double cosine = fabs(box->cosine), sine = fabs(box->sine);
+    const double x = cosine * box->half_width + sine * box->half_height + margin;
+    const double y = sine * box->half_width + cosine * box->half_height + margin;
+    if (box->x - x > rect.left) rect.left = (int)fmin(floor(box->x - x), rect.right);
+    if (box->y - y > rect.top) rect.top = (int)fmin(floor(box->y - y), rect.bottom);
+    if (box->x + x < rect.right) rect.right = (int)fmax(ceil(box->x + x), rect.left);
+    if (box->y + y < rect.bottom) rect.bottom = (int)fmax(ceil(box->y + y), rect.top);
+    return rect;
+}
 
 /* Adds a change. Returns its index, or -1 if there is no room. */
 static int add_change(Naming *naming, const Change *change) {
@@ -24,90 +90,101 @@ static int add_change(Naming *naming, const Change *change) {
     return changes->count++;
 }
 
-static ViewRect clipped(const Naming *naming, ViewRect rect) {
-    const FrameView *view = naming->scene->view;
-    if (rect.left < 0) rect.left = 0;
-    if (rect.top < 0) rect.top = 0;
-    if (rect.right > view->width) rect.right = view->width;
-    if (rect.bottom > view->height) rect.bottom = view->height;
-    return rect;
-}
-
 /* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change;
-   -1: to none. Returns their number. */
-static int64_t naming_take(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
+   -1: to none. */
+static void take(Naming *naming, ViewRect rect, const DrawnBox *box, double margin, int change) {
+    const FrameView *view = naming->scene->view;
     int64_t taken = 0;
-    rect = clipped(naming, rect);
-    for (int y = rect.top; y < rect.bottom; y++)
-        for (int x = rect.left; x < rect.right; x++) {
-            uint8_t *owner = &naming->owners[(size_t)y * (size_t)naming->scene->view->width + (size_t)x];
-            if (*owner != OWNER_UNKNOWN) continue;
-            if (box != NULL && box_distance(box, x + 0.5, y + 0.5) > margin) continue;
+    if (box != NULL) rect = bounds(box, margin + 1, rect);
+    const int right = int_min(rect.right, view->width), bottom = int_min(rect.bottom, view->height);
+    for (int y = int_max(rect.top, 0); y < bottom; y++)
+        for (int x = int_max(rect.left, 0); x < right; x++) {
+            uint8_t *owner = &naming->owners[(size_t)y * naming->width + (size_t)x];
+            if (*owner != OWNER_UNKNOWN || (box != NULL && distance(box, x + 0.5, y + 0.5) > margin)) continue;
             *owner = change < 0 ? OWNER_NONE : (uint8_t)(OWNER_FIRST + change);
             taken++;
         }
     if (change >= 0) naming->changes->list[change].pixels += taken;
-    return taken;
 }
 
-static int nearest(double value, int low, int high) { return value <= low ? low : value >= high ? high : (int)value; }
-
-static int64_t take_box(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
-    double bounds[4];
-    box_bounds(box, margin + 1, bounds);
-    ViewRect inside = {
-        nearest(floor(bounds[0]), rect.left, rect.right), nearest(floor(bounds[1]), rect.top, rect.bottom),
-        nearest(ceil(bounds[2]), rect.left, rect.right), nearest(ceil(bounds[3]), rect.top, rect.bottom)};
-    return naming_take(naming, inside, box, margin, change);
+/* Removes the last change if it has no pixels. */
+static void drop_empty(Naming *naming, int change) {
+    if (change >= 0 && naming->changes->list[change].pixels == 0) naming->changes->count--;
 }
 
 /* Gives the unknown pixels of a rectangle to a new change, if there are any and there is room. */
 static void name_rectangle(Naming *naming, ViewRect rect, ChangeSubject subject, int panel) {
-    const Change change = {.subject = subject, .panel = panel};
-    int at = add_change(naming, &change);
-    if (at >= 0 && naming_take(naming, rect, NULL, 0, at) == 0) naming->changes->count--;
+    const int change = add_change(naming, &(Change){.subject = subject, .panel = panel});
+    if (change >= 0) take(naming, rect, NULL, 0, change);
+    drop_empty(naming, change);
 }
 
-static void name_parts(Naming *naming) {
-    static const ChangeSubject subjects[] = {SUBJECT_HEADER, SUBJECT_CAPTION, SUBJECT_AXIS, SUBJECT_LEGEND,
-                                             SUBJECT_TIMELINE};
-    const FrameView *view = naming->scene->view;
-    for (int i = 0; i < view->part_count; i++)
-        name_rectangle(naming, view->parts[i].rect, subjects[view->parts[i].kind], view->parts[i].panel);
+static bool place(const Panel *panel, const Trajectory *run, int body, DrawnBox *box) {
+    int frame = panel->naming->scene->frame < run->frames ? panel->naming->scene->frame : run->frames - 1;
+    if (body >= run->bodies || !trajectory_has(run, frame, body)) return false;
+    size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    const ViewPanel *view = panel->view;
+    double angle = (double)run->angle[i], scale = view->scale;
+    *box = (DrawnBox){.x = view->rect.left + view->left + scale * (double)run->position[i].x,
+                      .y = view->rect.top + view->top - scale * (double)run->position[i].y,
+                      .cosine = cos(angle),
+                      .sine = sin(angle),
+                      .half_width = scale * (double)run->size[body].x / 2,
+                      .half_height = scale * (double)run->size[body].y / 2};
+    return true;
 }
 
-/* Whether the bodies of a panel are known. */
-static bool knows_bodies(const Naming *naming, int panel) {
-    const NamingScene *scene = naming->scene;
-    return !scene->view->follows && scene->runs[panel][0] != NULL && scene->runs[panel][1] != NULL;
+/* The largest movement of a corner. */
+static double movement(const DrawnBox *a, const DrawnBox *b) {
+    double reach = sqrt(a->half_width * a->half_width + a->half_height * a->half_height);
+    double x = b->x - a->x, y = b->y - a->y, cosine = b->cosine - a->cosine, sine = b->sine - a->sine;
+    return sqrt(x * x + y * y) + reach * sqrt(cosine * cosine + sine * sine);
 }
 
-static void name_rest(Naming *naming) {
-    const FrameView *view = naming->scene->view;
-    for (int i = 0; i < view->panel_count; i++) {
-        ViewRect rect = view->panels[i].rect;
-        if (!knows_bodies(naming, i)) naming_take(naming, rect, NULL, 0, -1); /* a body may be what changed */
-        name_rectangle(naming,
-                       (ViewRect){rect.left - BORDER, rect.top - BORDER, rect.right + BORDER, rect.bottom + BORDER},
-                       view->marks ? SUBJECT_MARKS : SUBJECT_BACKGROUND, i + 1);
+/* The order of drawing. */
+typedef enum Layer { LAYER_STATIC, LAYER_DYNAMIC, LAYER_BOMB, LAYERS } Layer;
+
+static Layer layer_of(const Trajectory *run, int body) {
+    return body == run->bomb ? LAYER_BOMB : run->fixed[body] ? LAYER_STATIC : LAYER_DYNAMIC;
+}
+
+/* Paints a box into `tops`: what is between these distances from its edge. */
+static int64_t paint(const Panel *panel, const DrawnBox *box, double from, double to, int top) {
+    const ViewRect rect = bounds(box, 1, panel->view->rect);
+    for (int y = rect.top; y < rect.bottom; y++)
+        for (int x = rect.left; x < rect.right; x++) {
+            const double at = distance(box, x + 0.5, y + 0.5);
+            if (at < to && at > from) panel->naming->tops[(size_t)y * panel->naming->width + (size_t)x] = top;
+        }
+    return (int64_t)(rect.right - rect.left) * (rect.bottom - rect.top);
+}
+
+/* Paints the expected bodies into `tops`, half a pixel larger: with their smoothed edges. Outlines of other runs are
+   above all bodies. False if bodies so large and many are no picture of a scene. */
+static bool paint_tops(const Panel *panel) {
+    const NamingScene *scene = panel->naming->scene;
+    const ViewRect whole = panel->view->rect;
+    const int width = whole.right - whole.left, height = whole.bottom - whole.top;
+    const double outline = 3 + 0.008 * int_min(width, height); /* at most (pictures/bodies.c) */
+    int64_t painted = 0;
+    const int64_t most = PAINTED_MAX * (int64_t)width * height;
+    for (int y = whole.top; y < whole.bottom; y++)
+        for (int x = whole.left; x < whole.right; x++)
+            panel->naming->tops[(size_t)y * panel->naming->width + (size_t)x] = -1;
+    for (int i = 0; i < panel->count && painted <= most; i++)
+        if (panel->bodies[i].exists[0]) painted += paint(panel, &panel->bodies[i].box[0], -INFINITY, 0.5, i);
+    for (int i = 0; painted <= most && i < panel->view->outline_count; i++) {
+        const Trajectory *run = scene->outlines[panel->number][i];
+        DrawnBox box;
+        for (int body = 0; run != NULL && body < run->bodies; body++)
+            if (!run->fixed[body] && place(panel, run, body, &box)) paint(panel, &box, -outline, 0.5, panel->count);
     }
-    name_rectangle(naming, (ViewRect){0, 0, view->width, view->height}, SUBJECT_PAGE, 0);
+    return painted <= most;
 }
-
-/* Whether change i names a region better than change j: it is of one thing, not of several bodies; or it has more
-   pixels. */
-static bool names_better(const FrameChanges *changes, const int64_t *pixels, int i, int j) {
-    bool several_i = changes->list[i].subject == SUBJECT_BODIES, several_j = changes->list[j].subject == SUBJECT_BODIES;
-    return several_i != several_j ? several_j : pixels[i] > pixels[j];
-}
-
-static const double SEEN = 0.01;  /* pixels; the states of a body that moved less explain no pixel */
-static const double AROUND = 1.5; /* pixels beyond its edge that a body may change */
-enum { SINGLE = 6, CHANGED = 4 };
 
 static Change change_of(const Panel *panel, const Drawn *body, ChangeKind kind) {
     const Trajectory *run = panel->runs[0];
-    BodyLayer at = panel_layer(run, body->index);
+    Layer at = layer_of(run, body->index);
     int fixed = 0;
     for (int i = 0; i < run->bodies && fixed < 2; i++) fixed += run->fixed[i] != 0;
     ChangeSubject subject = at == LAYER_BOMB      ? SUBJECT_BOMB
@@ -123,50 +200,33 @@ static int by_movement(const void *a, const void *b) {
     return x->index < y->index ? -1 : 1;
 }
 
-static int64_t take_body(Panel *panel, const Drawn *body, int change) {
-    int64_t taken = 0;
-    for (int side = 0; side < 2; side++)
-        if (body->exists[side]) taken += take_box(panel->naming, panel->view->rect, &body->box[side], AROUND, change);
-    return taken;
-}
-
-/* Removes the last change if it has no pixels. */
-static void drop_empty(Naming *naming, int change) {
-    if (change >= 0 && naming->changes->list[change].pixels == 0) naming->changes->count--;
-}
-
-static int add_moved(Panel *panel, const Drawn *body) {
-    ChangeKind kind = !body->exists[0] ? CHANGE_APPEARED : !body->exists[1] ? CHANGE_DISAPPEARED : CHANGE_MOVED;
-    Change change = change_of(panel, body, kind);
-    if (kind == CHANGE_MOVED) {
-        const BoxModel *a = &body->box[0], *b = &body->box[1];
-        change.right = b->x - a->x, change.up = a->y - b->y;
-        change.turn = atan2(a->cosine * b->sine - a->sine * b->cosine, a->cosine * b->cosine + a->sine * b->sine);
-    }
-    return add_change(panel->naming, &change);
-}
-
 /* Those that moved farthest get names, and the others their number. */
 static bool name_moved(Panel *panel, Error *error) {
     const Drawn **moved = malloc(((size_t)panel->count + 1) * sizeof *moved);
-    int count = 0, rest = -1;
+    int count = 0, change = -1;
     if (moved == NULL) return error_memory(error, "regions");
     for (int i = 0; i < panel->count; i++)
         if (panel->bodies[i].moved >= SEEN) moved[count++] = &panel->bodies[i];
     qsort(moved, (size_t)count, sizeof *moved, by_movement);
     for (int i = 0; i < count; i++) {
-        if (i < SINGLE) {
-            int change = add_moved(panel, moved[i]);
-            if (change >= 0) take_body(panel, moved[i], change);
-            drop_empty(panel->naming, change);
-            continue;
+        const Drawn *body = moved[i];
+        const DrawnBox *a = &body->box[0], *b = &body->box[1];
+        const bool both = body->exists[0] && body->exists[1];
+        Change found = change_of(panel, body,
+                                 both || i >= SINGLE ? CHANGE_MOVED
+                                 : body->exists[0]   ? CHANGE_DISAPPEARED
+                                                     : CHANGE_APPEARED);
+        if (i >= SINGLE) {
+            found.subject = SUBJECT_BODIES, found.body = count - SINGLE;
+        } else if (both) {
+            found.right = b->x - a->x, found.up = a->y - b->y;
+            found.turn = atan2(a->cosine * b->sine - a->sine * b->cosine, a->cosine * b->cosine + a->sine * b->sine);
         }
-        Change others = change_of(panel, moved[i], CHANGE_MOVED);
-        others.subject = SUBJECT_BODIES, others.body = count - SINGLE;
-        if (i == SINGLE) rest = add_change(panel->naming, &others);
-        if (rest >= 0) take_body(panel, moved[i], rest);
+        if (i <= SINGLE) change = add_change(panel->naming, &found);
+        for (int side = 0; change >= 0 && side < 2; side++)
+            if (body->exists[side]) take(panel->naming, panel->view->rect, &body->box[side], AROUND, change);
+        if (i < SINGLE || i == count - 1) drop_empty(panel->naming, change);
     }
-    drop_empty(panel->naming, rest);
     free(moved);
     return true;
 }
@@ -176,58 +236,62 @@ static void count_unknown(Panel *panel) {
     for (int i = 0; i < panel->count; i++) panel->bodies[i].pixels = 0;
     for (int y = rect.top; y < rect.bottom; y++)
         for (int x = rect.left; x < rect.right; x++) {
-            size_t at = panel_pixel(panel, x, y);
-            int top = panel->naming->tops[at];
+            const size_t at = (size_t)y * panel->naming->width + (size_t)x;
+            const int top = panel->naming->tops[at];
             if (panel->naming->owners[at] == OWNER_UNKNOWN && top >= 0 && top < panel->count)
                 panel->bodies[top].pixels++;
         }
 }
 
-/* The body with the most unknown pixels, by itself: those around it are its edge, also where it lies on others. False
-   if there is none, or no room. */
-static bool name_most(Panel *panel) {
-    int most = 0, change;
-    count_unknown(panel);
-    for (int i = 1; i < panel->count; i++)
-        if (panel->bodies[i].pixels > panel->bodies[most].pixels) most = i;
-    if (panel->count == 0 || panel->bodies[most].pixels == 0) return false;
-    const Change changed = change_of(panel, &panel->bodies[most], CHANGE_OTHER);
-    if ((change = add_change(panel->naming, &changed)) < 0) return false;
-    take_box(panel->naming, panel->view->rect, &panel->bodies[most].box[0], AROUND, change);
-    drop_empty(panel->naming, change);
-    return true;
-}
-
-/* Bodies that still have unknown pixels: their number, or the only one. */
-static void name_others(Panel *panel) {
-    int count = 0, last = -1, change;
-    count_unknown(panel);
-    for (int i = 0; i < panel->count; i++)
-        if (panel->bodies[i].pixels > 0) count++, last = i;
-    if (count == 0) return;
-    Change others = change_of(panel, &panel->bodies[last], CHANGE_OTHER);
-    if (count > 1) others.subject = SUBJECT_BODIES, others.body = count;
-    if ((change = add_change(panel->naming, &others)) < 0) return;
-    for (int i = 0; i < panel->count; i++)
-        if (panel->bodies[i].pixels > 0)
-            take_box(panel->naming, panel->view->rect, &panel->bodies[i].box[0], AROUND, change);
-    drop_empty(panel->naming, change);
+/* Bodies whose pixels differ although their states do not: those with the most unknown pixels one by one, as what is
+   around them is their edge, also where it lies on others; then the others: their number, or the only one. */
+static void name_changed(Panel *panel) {
+    for (int named = 0; named <= CHANGED; named++) {
+        int most = -1, count = 0;
+        count_unknown(panel);
+        for (int i = 0; i < panel->count; i++) {
+            count += panel->bodies[i].pixels > 0;
+            if (panel->bodies[i].pixels > (most < 0 ? 0 : panel->bodies[most].pixels)) most = i;
+        }
+        if (most < 0) return;
+        const bool others = named == CHANGED;
+        Change found = change_of(panel, &panel->bodies[most], CHANGE_OTHER);
+        if (others && count > 1) found.subject = SUBJECT_BODIES, found.body = count;
+        const int change = add_change(panel->naming, &found);
+        if (change < 0) return;
+        for (int i = 0; i < panel->count; i++)
+            if (others ? panel->bodies[i].pixels > 0 : i == most)
+                take(panel->naming, panel->view->rect, &panel->bodies[i].box[0], AROUND, change);
+        drop_empty(panel->naming, change);
+    }
 }
 
 /* Names the bodies of a panel: those whose states differ, then those whose pixels do. They must be known. */
 static bool name_bodies(Naming *naming, int number, Error *error) {
-    Panel panel;
-    bool usable = false,
-         ok = panel_open(&panel, naming, number, &usable, error) && (!usable || name_moved(&panel, error));
-    if (ok && usable) {
-        for (int i = 0; i < CHANGED && name_most(&panel); i++) {
+    const Trajectory *expected = naming->scene->runs[number][0], *actual = naming->scene->runs[number][1];
+    Panel panel = {naming, number, &naming->scene->view->panels[number], .runs = {expected, actual}};
+    panel.bodies = calloc((size_t)expected->bodies + 1, sizeof *panel.bodies);
+    if (panel.bodies == NULL) return error_memory(error, "regions");
+    for (Layer layer = LAYER_STATIC; layer < LAYERS; layer++)
+        for (int body = 0; body < expected->bodies; body++) {
+            if (layer_of(expected, body) != layer) continue;
+            Drawn drawn = {.index = body};
+            for (int side = 0; side < 2; side++)
+                drawn.exists[side] = place(&panel, panel.runs[side], body, &drawn.box[side]);
+            if (drawn.exists[0] != drawn.exists[1]) drawn.moved = INFINITY;
+            if (drawn.exists[0] && drawn.exists[1]) drawn.moved = movement(&drawn.box[0], &drawn.box[1]);
+            if (drawn.exists[0] || drawn.exists[1]) panel.bodies[panel.count++] = drawn;
         }
-        name_others(&panel);
+    bool ok = true;
+    if (paint_tops(&panel)) {
+        ok = name_moved(&panel, error);
+        if (ok) name_changed(&panel);
     }
-    panel_close(&panel);
+    free(panel.bodies);
     return ok;
 }
 
+/* Gives a region the change of one thing, not of several bodies, that has most of its pixels. */
 static void name_region(Naming *naming, int region) {
     FrameChanges *changes = naming->changes;
     const ImageRegion *r = &changes->regions.list[region];
@@ -235,48 +299,61 @@ static void name_region(Naming *naming, int region) {
     int best = -1, others = -1;
     for (int y = r->top; y < r->bottom; y++)
         for (int x = r->left; x < r->right; x++) {
-            uint8_t owner = naming->owners[(size_t)y * (size_t)naming->scene->view->width + (size_t)x];
+            const uint8_t owner = naming->owners[(size_t)y * naming->width + (size_t)x];
             if (owner >= OWNER_FIRST) pixels[owner - OWNER_FIRST]++;
         }
     for (int i = 0; i < changes->count; i++) {
         if (pixels[i] == 0) continue;
         others++;
-        if (best < 0 || names_better(changes, pixels, i, best)) best = i;
+        const bool several = changes->list[i].subject == SUBJECT_BODIES,
+                   best_several = best >= 0 && changes->list[best].subject == SUBJECT_BODIES;
+        if (best < 0 || (several != best_several ? best_several : pixels[i] > pixels[best])) best = i;
     }
     changes->region_change[region] = (int16_t)best;
     changes->region_others[region] = (int16_t)(others > 0 ? others : 0);
 }
 
-static void mark_differences(Naming *naming, const uint8_t *masked) {
-    const Image *a = naming->pictures[0], *b = naming->pictures[1];
-    size_t width = (size_t)a->width, all = width * (size_t)a->height;
-    for (size_t first = 0; first < all; first += width)
-        for (size_t x = image_next_difference(a, b, first, 0); x < width; x = image_next_difference(a, b, first, x + 1))
-            if ((masked == NULL || masked[first + x] == 0) && image_pixel_difference(a, b, first + x) > 0)
-                naming->owners[first + x] = OWNER_UNKNOWN;
+static void name_all(Naming *naming, Error *error) {
+    static const ChangeSubject subjects[] = {SUBJECT_HEADER, SUBJECT_CAPTION, SUBJECT_AXIS, SUBJECT_LEGEND,
+                                             SUBJECT_TIMELINE};
+    const NamingScene *scene = naming->scene;
+    const FrameView *view = scene->view;
+    bool known[VIEW_PANELS_MAX];
+    for (int i = 0; i < view->part_count; i++)
+        name_rectangle(naming, view->parts[i].rect, subjects[view->parts[i].kind], view->parts[i].panel);
+    for (int i = 0; i < view->panel_count; i++) {
+        known[i] = !view->follows && scene->runs[i][0] != NULL && scene->runs[i][1] != NULL;
+        if (known[i] && !name_bodies(naming, i, error)) return;
+    }
+    for (int i = 0; i < view->panel_count; i++) {
+        const ViewRect rect = view->panels[i].rect,
+                       around = {rect.left - BORDER, rect.top - BORDER, rect.right + BORDER, rect.bottom + BORDER};
+        if (!known[i]) take(naming, rect, NULL, 0, -1); /* a body may be what changed */
+        name_rectangle(naming, around, view->marks ? SUBJECT_MARKS : SUBJECT_BACKGROUND, i + 1);
+    }
+    name_rectangle(naming, (ViewRect){0, 0, view->width, view->height}, SUBJECT_PAGE, 0);
+    for (int i = 0; i < naming->changes->regions.kept; i++) name_region(naming, i);
 }
 
 bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
                  FrameChanges *changes, Error *error) {
     const FrameView *view = scene->view;
-    size_t pixels = (size_t)view->width * (size_t)view->height;
-    Naming naming = {scene, {expected, actual}, .changes = changes};
+    const size_t width = (size_t)view->width, pixels = width * (size_t)view->height;
+    Naming naming = {.scene = scene, .width = width, .changes = changes};
     changes->count = 0;
     memset(changes->region_change, -1, sizeof changes->region_change);
     memset(changes->region_others, 0, sizeof changes->region_others);
-    if (view->width != expected->width || view->height != expected->height || pixels > NAMING_PIXELS_MAX) return true;
-    naming.owners = calloc(pixels, 1);
+    if (view->width != expected->width || view->height != expected->height || pixels > PIXELS_MAX) return true;
+    naming.owners = malloc(pixels);
     naming.tops = malloc(pixels * sizeof *naming.tops);
-    bool ok = (naming.owners != NULL && naming.tops != NULL) || error_memory(error, "regions");
-    if (ok) {
-        mark_differences(&naming, masked);
-        name_parts(&naming);
+    if (naming.owners == NULL || naming.tops == NULL) {
+        error_memory(error, "regions");
+    } else {
+        (void)image_find_levels(expected, actual, masked, 0, pixels, naming.owners);
+        for (size_t i = 0; i < pixels; i++) naming.owners[i] = naming.owners[i] > 0 ? OWNER_UNKNOWN : OWNER_NONE;
+        name_all(&naming, error);
     }
-    for (int panel = 0; ok && panel < view->panel_count; panel++)
-        ok = !knows_bodies(&naming, panel) || name_bodies(&naming, panel, error);
-    if (ok) name_rest(&naming);
-    for (int i = 0; ok && i < changes->regions.kept; i++) name_region(&naming, i);
     free(naming.owners);
     free(naming.tops);
-    return ok;
+    return error->kind == ERROR_NONE;
 }

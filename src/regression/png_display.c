@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file says of how its picture is shown, beside the pixels: colours, profile, orientation, resolution. */
+#include "regression/png_display.h"
+
 #include "base/base.h"
 #include "pixels/png.h"
-#include "regression/compare.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,12 +84,6 @@ static bool same_profile(const PngChunk *a, const PngChunk *b, Error *error) {
     return same;
 }
 
-static bool displays_alike(int kind, const PngChunk *a, const PngChunk *b, Error *error) {
-    if (kind == ICCP) return same_profile(a, b, error);
-    if (kind == EXIF) return orientation(a) == orientation(b);
-    return same_bytes(a->data, a->length, b->data, b->length);
-}
-
 typedef struct Value {
     char text[24];
 } Value;
@@ -107,7 +102,7 @@ static Value value_of(int kind, const PngChunk *chunk) {
 }
 
 /* Chunks without a short value: "cHRM differs". */
-static void png_display_describe(int kind, const PngChunk *a, const PngChunk *b, PngDisplay *display) {
+static void describe(int kind, const PngChunk *a, const PngChunk *b, PngDisplay *display) {
     const char *name = kind == EXIF ? "orientation" : types[kind];
     Value first = value_of(kind, a), second = value_of(kind, b);
     if (strcmp(first.text, second.text) == 0)
@@ -122,7 +117,10 @@ bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size
     display->text[0] = '\0';
     for (int i = 0; i < KINDS; i++) {
         const PngChunk *x = &first.kinds[i], *y = &second.kinds[i];
-        if (!displays_alike(i, x, y, error)) png_display_describe(i, x, y, display);
+        const bool alike = i == ICCP   ? same_profile(x, y, error)
+                           : i == EXIF ? orientation(x) == orientation(y)
+                                       : same_bytes(x->data, x->length, y->data, y->length);
+        if (!alike) describe(i, x, y, display);
     }
     return error->kind == ERROR_NONE;
 }

@@ -6,198 +6,122 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "pixels/png.h"
-#include "regression/compare.h"
-#include "regression/content.h"
+#include "regression/image_compare.h"
+#include "regression/limits.h"
+#include "regression/mask.h"
 #include "regression/regression_internal.h"
-#include "regression/naming.h"
+#include "regression/sequence.h"
 
-#include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                         Image *const images[SIDES], Error *error) {
+/* Rules first, then what the options give. */
+static Tolerance tolerance_of(const Regression *regression, const RegressionFrame *frame) {
+    Tolerance tolerance = {0};
+    rules_override(regression->rules, frame_name(frame), &tolerance);
+    tolerance_override(&tolerance, &regression->options.tolerance);
+    return tolerance;
+}
+
+static bool has_masks(const Regression *regression, const RegressionFrame *frame) {
+    const Mask *mask = regression->options.mask;
+    return (mask != NULL && mask->count > 0) || rules_have_masks(regression->rules, frame_name(frame));
+}
+
+/* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
+static bool may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height) {
+    const Mask *mask = regression->options.mask;
+    const double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
+    return hidden + rules_most_hidden(regression->rules, frame_name(frame), width, height) >= (double)width * height;
+}
+
+bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
+                       uint8_t **masked, Error *error) {
+    const Mask *mask = regression->options.mask;
+    const char *name = frame_name(frame), *path = frame->at[EXPECTED]->path;
+    const bool masks = has_masks(regression, frame), edges = tolerance_of(regression, frame).antialias;
+    const size_t width = (size_t)expected->width;
+    *masked = NULL;
+    if ((masks || edges) && (*masked = calloc(width * (size_t)expected->height, 1)) == NULL)
+        return error_memory(error, name);
+    bool ok = !masks || ((mask == NULL || mask_draw(mask, expected, path, *masked, error)) &&
+                         rules_draw_masks(regression->rules, name, expected, path, *masked, error));
+    image_cut_to_overlap(expected, actual);
+    const size_t left = (size_t)expected->width;
+    for (size_t y = 0; masks && left < width && y < (size_t)expected->height; y++)
+        memmove(*masked + y * left, *masked + y * width, left);
+    ok = ok && (!edges || antialias_mark(expected, actual, *masked, error));
+    if (!ok) free(*masked), *masked = NULL;
+    return ok;
+}
+
+/* Sets the verdict on pixels from the difference. */
+static void decide(RegressionFrame *frame, const Tolerance *limits) {
+    const ImageDifference *difference = &frame->difference;
+    if (!difference->same_size)
+        frame->pixels = PIXELS_RESIZED;
+    else if (difference->pixels == 0)
+        frame->pixels = difference->moved > 0 ? PIXELS_WITHIN : PIXELS_EQUAL;
+    else
+        frame->pixels = tolerance_holds(limits, difference) ? PIXELS_WITHIN : PIXELS_DIFFER;
+}
+
+/* Row by row, in little memory, where that is enough. *done: the files are read in pieces, have one size, and are
+   sound. */
+
+static bool begin_rows(void *context, int width, int height) {
+    RowCompare *compare = context;
+    return row_compare_begin(compare, width, height, compare->tolerance);
+}
+
+static uint8_t *place_row(void *context, int side, int y) { return row_compare_place(context, side, y); }
+
+static void take_row(void *context, int y, const uint8_t *a, const uint8_t *b) { row_compare_row(context, y, a != b); }
+
+static bool judge_rows(const Regression *regression, RegressionFrame *frame, PngFile files[SIDES],
+                       const Tolerance *limits, bool *done, Error *error) {
+    RowCompare compare = {.tolerance = limits->tolerance};
+    const RowSink sink = {begin_rows, place_row, take_row, &compare, ROWS_AROUND};
+    *done = png_files_scan(files, regression->count == 1, &sink);
+    bool ok = compare.error.kind == ERROR_NONE;
+    if (ok && *done && (ok = row_compare_end(&compare))) {
+        frame->difference = compare.difference;
+        decide(frame, limits);
+        ok = compare.difference.equal || regression_keep_regions(frame, &compare.regions, error);
+    }
+    if (compare.error.kind != ERROR_NONE) *error = compare.error;
+    row_compare_free(&compare);
+    return ok;
+}
+
+static bool judge_images(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Image *images[SIDES],
+                         const Tolerance *limits, Error *error) {
     Image *expected = images[EXPECTED], *actual = images[ACTUAL];
+    uint8_t *const data[SIDES] = {files[EXPECTED].data, files[ACTUAL].data};
+    ImageDifference *difference = &frame->difference;
+    ImageRegions regions;
     uint8_t *masked;
+    const bool same_size = expected->width == actual->width && expected->height == actual->height;
     if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
-    regression_compare(regression, frame, expected, actual, masked);
-    bool hidden = frame->difference.counted == 0 && regression_accepts_size(regression, frame);
-    bool ok = hidden
-                  ? error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared")
-                  : regression_decide(regression, frame, expected, actual, masked, error);
-    if (ok && frame->difference.pixels > 0)
-        ok = regression_find_changes(regression, frame, data, (const Image *const[SIDES]){expected, actual}, masked,
-                                     error);
+    image_compare_masked(expected, actual, masked, limits->tolerance, difference);
+    difference->same_size = same_size;
+    difference->equal = difference->equal && same_size;
+    bool ok = difference->counted > 0 || !same_size ||
+              error_input(error, frame->at[EXPECTED]->path, "the masks hide all its pixels: nothing is compared");
+    if (ok) decide(frame, limits);
+    if (ok && difference->pixels > 0)
+        ok = image_regions_find(expected, actual, masked, difference, &regions, error) &&
+             regression_keep_regions(frame, &regions, error) &&
+             regression_name_changes(regression, frame, data, (const Image *const[]){expected, actual}, masked, error);
     free(masked);
     return ok;
 }
 
-/* Row by row, in little memory, where that is enough: nothing is ignored, FLIP is not measured, and no file says what
-   the pictures show. */
-typedef struct RowJudge {
-    int width, height, tolerance;
-    ImageDifference difference;
-    ImageRegions regions;
-    RegionScan *scan;     /* from the first row that differs */
-    ContentTraits traits; /* of some rows */
-    ContentBand band;     /* the rows that differ, if they are few */
-    Anchors shift[SIDES]; /* rows that differ */
-    uint8_t *rows[SIDES]; /* [4 * width]; behind them: */
-    uint8_t *levels;      /* [width] */
-    Error error;
-} RowJudge;
-
-static bool begin_rows(void *context, int width, int height) {
-    RowJudge *judge = context;
-    const size_t count = (size_t)width;
-    judge->width = width, judge->height = height;
-    judge->difference =
-        (ImageDifference){.same_size = true, .counted = (int64_t)width * height, .first_x = -1, .first_y = -1};
-    if ((judge->rows[EXPECTED] = malloc(9 * count)) == NULL) return error_memory(&judge->error, "image");
-    judge->rows[ACTUAL] = judge->rows[EXPECTED] + 4 * count;
-    judge->levels = judge->rows[ACTUAL] + 4 * count;
-    content_band_begin(&judge->band, width, height);
-    return true;
-}
-
-static uint8_t *place_row(void *context, int side, int y) {
-    RowJudge *judge = context;
-    (void)y;
-    return judge->rows[side];
-}
-
-static void judge_difference(RowJudge *judge, int y, const uint8_t *a, const uint8_t *b) {
-    image_levels(a, b, (size_t)judge->width, judge->levels);
-    image_count_levels(&judge->difference, y, judge->levels, judge->width, judge->tolerance);
-    if (judge->scan == NULL)
-        judge->scan = region_scan_create(judge->width, judge->height, &judge->regions, &judge->error);
-    if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
-    (void)shift_rows_add(judge->shift, y, a, b, judge->width, &judge->error);
-    if (y % CONTENT_ROWS == 0) traits_add_row(&judge->traits, a, b, judge->levels, 0, judge->width);
-}
-
-static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
-    RowJudge *judge = context;
-    if (judge->error.kind != ERROR_NONE) return;
-    if (a != b) judge_difference(judge, y, a, b);
-    if (!content_band_add(&judge->band, y, a, b, judge->difference.pixels)) error_memory(&judge->error, "regions");
-}
-
-/* The regions of a frame and their names. *named: false where only whole pictures can tell, and are small enough. */
-static bool name_rows(RowJudge *judge, RegressionFrame *frame, bool *named, Error *error) {
-    const Image rows[2] = {content_band_rows(&judge->band, EXPECTED), content_band_rows(&judge->band, ACTUAL)};
-    const bool ground = content_has_ground(&judge->traits, &judge->difference, judge->width, judge->height);
-    const bool lost = ground && judge->band.lost;
-    bool shifted = false;
-    if (!ground && frame_failed(frame) &&
-        !content_may_be_shifted(rows, judge->shift, &judge->traits, judge->width, judge->height, &shifted, error))
-        return false;
-    *named = !frame_failed(frame) || !(shifted || (lost && (int64_t)judge->width * judge->height <= CONTENT_WHOLE_MAX));
-    if (judge->difference.equal || !*named) return true;
-    if (!regression_keep_regions(frame, &judge->regions, error)) return false;
-    if (!frame_failed(frame) || lost) return true;
-    if (ground)
-        return content_name_by_ground(&rows[0], &rows[1], judge->band.first, NULL, traits_floor(&judge->traits),
-                                      &judge->difference, frame->changes, error);
-    content_name_most(&judge->traits, frame->changes);
-    return true;
-}
-
-/* *done: the files are read in pieces, have one size, and are sound, and that is enough to name what changed. */
-static bool judge_rows(const Regression *regression, RegressionFrame *frame, PngFile files[SIDES], bool *done,
-                       Error *error) {
-    RowJudge judge = {.tolerance = regression_level(regression, frame)};
-    const RowSink sink = {begin_rows, place_row, judge_row, &judge, CONTENT_MARGIN};
-    *done = png_files_scan(files, regression->count == 1, &sink);
-    bool ok = judge.error.kind == ERROR_NONE;
-    if (ok && *done) {
-        if (judge.scan != NULL) region_scan_end(judge.scan, judge.height);
-        judge.difference.equal = judge.difference.pixels == 0;
-        frame->difference = judge.difference;
-        ok = regression_decide(regression, frame, NULL, NULL, NULL, error) && name_rows(&judge, frame, done, error);
-    }
-    region_scan_destroy(judge.scan);
-    content_band_end(&judge.band);
-    free(judge.shift[EXPECTED].list), free(judge.shift[ACTUAL].list);
-    free(judge.rows[EXPECTED]);
-    if (judge.error.kind != ERROR_NONE) *error = judge.error;
-    return ok;
-}
-
-/* Sets the sizes in pixels. What is read in pieces has been checked. */
-static bool check_chunks(RegressionFrame *frame, const PngFile files[SIDES], Error *error) {
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        const PngFile *from = &files[side];
-        RegressionFile *file = &frame->files[side];
-        if (from->rows != NULL)
-            (void)png_size(from->data, from->size, &file->width, &file->height);
-        else if (!png_check(from->data, from->size, from->path, &file->width, &file->height, error))
-            return false;
-    }
-    return true;
-}
-
-/* Damage is found without memory for the pixels: where a common file has it, and where the pixels are many. */
-static bool check_damage(RegressionFrame *frame, PngFile files[SIDES], Error *error) {
-    enum { MANY = 1 << 24 };
-    const bool found = files[EXPECTED].damaged || files[ACTUAL].damaged;
-    bool ok = check_chunks(frame, files, error);
-    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
-        const RegressionFile *file = &frame->files[side];
-        if (found ? files[side].damaged : (int64_t)file->width * file->height >= MANY)
-            ok = png_file_check(&files[side], error);
-    }
-    return ok;
-}
-
-static bool decode_and_judge(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
-    Image *images[SIDES];
-    bool rows, done = false;
-    if (!regression_needs_rows_alone(regression, frame, &rows, error)) return false;
-    if (rows && !judge_rows(regression, frame, files, &done, error)) return false;
-    if (done) return true;
-    if (rows && !check_damage(frame, files, error)) return false;
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        if (!png_file_load(&files[side], error)) return false;
-        frame->files[side].size = files[side].size;
-    }
-    uint8_t *const data[SIDES] = {files[EXPECTED].data, files[ACTUAL].data};
-    bool ok = image_decode_png_pair((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
-                                    (const size_t[]){files[EXPECTED].size, files[ACTUAL].size},
-                                    (const char *const[]){files[EXPECTED].path, files[ACTUAL].path},
-                                    regression->options.max_pixels, images, error);
-    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
-        frame->files[side].width = images[side]->width, frame->files[side].height = images[side]->height;
-    ok = ok && judge_pixels(regression, frame, data, images, error);
-    image_destroy_pair(images);
-    return ok;
-}
-
-/* A missing or extra frame is decoded too, to detect damaged files. */
-static bool judge_alone(RegressionFrame *frame, RegressionSide side, PngFile *from, Error *error) {
-    assert(frame->at[side] != NULL);
-    RegressionFile *file = &frame->files[side];
-    if (!png_file_check(from, error)) return false;
-    (void)png_size(from->data, from->size, &file->width, &file->height);
-    frame->pixels = side == EXPECTED ? PIXELS_MISSING : PIXELS_EXTRA;
-    return true;
-}
-
-/* Decoded only to find out whether the masks hide everything: that must not stay unknown until something changes. */
-static bool judge_same_bytes(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
-    const RegressionFile *file = &frame->files[EXPECTED];
-    if (!check_chunks(frame, files, error)) return false;
-    if (regression_may_hide_all(regression, frame, file->width, file->height))
-        return decode_and_judge(regression, frame, files, error);
-    frame->pixels = PIXELS_EQUAL;
-    frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
-    return true;
-}
-
 /* Whether the overlap is so small a part of the larger picture that it says nothing; and decoding both would let a
    small file cost what the largest picture costs. */
-static bool is_far(const RegressionFile *a, const RegressionFile *b) {
+static bool are_far(const RegressionFile *a, const RegressionFile *b) {
     const int64_t LEAST_PART = 16;
     const int64_t width = a->width < b->width ? a->width : b->width,
                   height = a->height < b->height ? a->height : b->height;
@@ -205,39 +129,66 @@ static bool is_far(const RegressionFile *a, const RegressionFile *b) {
     return width * height < (of_a > of_b ? of_a : of_b) / LEAST_PART;
 }
 
-/* By the headers alone. False: the pictures have to be decoded, or cannot. */
-static bool have_far_sizes(RegressionFrame *frame, const PngFile files[SIDES]) {
+static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
+    enum { MANY = 1 << 24 }; /* pixels */
+    PngFile *const a = &files[EXPECTED], *const b = &files[ACTUAL];
+    RegressionFile *const of_a = &frame->files[EXPECTED], *const of_b = &frame->files[ACTUAL];
+    const Tolerance limits = tolerance_of(regression, frame);
+    /* A missing or extra frame is decoded, too, to detect damage. Of others, what is read in pieces has been checked. */
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        RegressionFile *file = &frame->files[side];
-        if (!png_size(files[side].data, files[side].size, &file->width, &file->height)) return false;
-    }
-    return is_far(&frame->files[EXPECTED], &frame->files[ACTUAL]);
-}
-
-static bool judge_sizes(const Regression *regression, RegressionFrame *frame, const PngFile files[SIDES],
-                        Error *error) {
-    if (!check_chunks(frame, files, error)) return false;
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        const RegressionFile *file = &frame->files[side];
-        if (!png_check_pixels(file->width, file->height, regression->options.max_pixels, files[side].path, error))
+        PngFile *from = &files[side];
+        int *width = &frame->files[side].width, *height = &frame->files[side].height;
+        const bool alone = frame->at[1 - side] == NULL;
+        if (frame->at[side] == NULL) continue;
+        if (alone) frame->pixels = side == EXPECTED ? PIXELS_MISSING : PIXELS_EXTRA;
+        if (alone && !png_file_check(from, error)) return false;
+        if (alone || from->rows != NULL)
+            (void)png_size(from->data, from->size, width, height);
+        else if (!png_check(from->data, from->size, from->path, width, height, error))
             return false;
     }
-    frame->pixels = PIXELS_RESIZED;
-    frame->sizes_alone = true;
-    frame->difference = (ImageDifference){.first_x = -1, .first_y = -1};
-    return true;
-}
+    if (frame->pixels != PIXELS_EQUAL) return true;
 
-static bool regression_judge(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
-    const PngFile *a = &files[EXPECTED], *b = &files[ACTUAL];
-    for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (frame->at[1 - side] == NULL) return judge_alone(frame, side, &files[side], error);
+    /* What the files tell without their pixels. */
     if (!regression_judge_states(regression, frame, (uint8_t *const[]){a->data, b->data}, error)) return false;
-    if (png_files_are_same(files)) return judge_same_bytes(regression, frame, files, error);
-    if (!png_display_compare(a->data, a->size, b->data, b->size, &frame->metadata, error)) return false;
-    frame->metadata_failed = regression->options.strict_metadata && frame->metadata.text[0] != '\0';
-    return have_far_sizes(frame, files) ? judge_sizes(regression, frame, files, error)
-                                        : decode_and_judge(regression, frame, files, error);
+    frame->difference = (ImageDifference){.first_x = -1, .first_y = -1};
+    const bool same = png_files_are_same(files);
+    if (same && !may_hide_all(regression, frame, of_a->width, of_a->height)) {
+        frame->difference.equal = frame->difference.same_size = true;
+        return true;
+    }
+    if (!same && !png_display_compare(a->data, a->size, b->data, b->size, &frame->metadata, error)) return false;
+    frame->metadata_failed = regression->options.strict && frame->metadata.text[0] != '\0';
+    if (!same && are_far(of_a, of_b)) {
+        frame->pixels = PIXELS_RESIZED;
+        frame->sizes_alone = true;
+        return png_check_pixels(of_a->width, of_a->height, regression->options.max_pixels, a->path, error) &&
+               png_check_pixels(of_b->width, of_b->height, regression->options.max_pixels, b->path, error);
+    }
+
+    bool named = false, done = false, rows = !has_masks(regression, frame) && !limits.antialias;
+    if (rows && !regression_may_name(regression, frame, &named, error)) return false;
+    rows = rows && !named;
+    if (rows && !judge_rows(regression, frame, files, &limits, &done, error)) return false;
+    if (done) return true;
+    /* Damage is found without memory for the pixels: where a common file has it, and where the pixels are many. */
+    const bool found = a->damaged || b->damaged;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        const int64_t pixels = (int64_t)frame->files[side].width * frame->files[side].height;
+        if (rows && (found ? files[side].damaged : pixels >= MANY) && !png_file_check(&files[side], error))
+            return false;
+    }
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        if (!png_file_load(&files[side], error)) return false;
+        frame->files[side].size = files[side].size;
+    }
+    Image *images[SIDES];
+    bool ok =
+        image_decode_png_pair((const uint8_t *const[]){a->data, b->data}, (const size_t[]){a->size, b->size},
+                              (const char *const[]){a->path, b->path}, regression->options.max_pixels, images, error);
+    ok = ok && judge_images(regression, frame, files, images, &limits, error);
+    image_destroy_pair(images);
+    return ok;
 }
 
 static bool compare_files(Regression *regression, RegressionFrame *frame, Error *error) {
@@ -248,9 +199,9 @@ static bool compare_files(Regression *regression, RegressionFrame *frame, Error 
         ok = png_file_open(&files[side], frame->at[side]->path, regression->options.max_pixels, error);
         frame->files[side] = (RegressionFile){.hash = files[side].hash, .size = files[side].size};
     }
-    ok = ok && regression_judge(regression, frame, files, error);
+    ok = ok && judge(regression, frame, files, error);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        frame->files[side].size = files[side].bytes; /* up to here, of what is in memory */
+        frame->files[side].size = files[side].bytes;
         png_file_close(&files[side]);
     }
     return ok;
@@ -347,37 +298,8 @@ const RegressionFrame **regression_failures(const Regression *regression, Error 
     return failures;
 }
 
-static void count_frame(Regression *regression, int i) {
-    const RegressionFrame *frame = &regression->frames[i];
-    bool pictures = frame->pixels == PIXELS_DIFFER || frame->pixels == PIXELS_RESIZED;
-    regression->by_verdict[frame->pixels]++;
-    regression->failed += frame_failed(frame);
-    regression->physics += frame->states == STATES_DIFFER;
-    bool view = pictures && frame->other_view && frame->states != STATES_DIFFER;
-    regression->view += view;
-    regression->elsewhere += pictures && !view && frame->states == STATES_DIFFER_ELSEWHERE;
-    const bool renderer = pictures && !view && frame->states == STATES_EQUAL;
-    if (renderer && !frame->alone && regression->first_renderer < 0) regression->first_renderer = i;
-    regression->renderer += renderer;
-    regression->unknown += pictures && !view && frame->states == STATES_UNKNOWN;
-    if (frame->metadata.text[0] != '\0' && regression->metadata++ == 0) regression->first_metadata = i;
-    regression->metadata_failed += frame->metadata_failed && !pictures && frame->states != STATES_DIFFER;
-    regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
-}
-
-/* Sets STATES_DIFFER_ELSEWHERE (see StateVerdict) in the frames of one sequence. */
-static void judge_sequence(RegressionFrame *const *frames, int count) {
-    bool physics = false, same_framing = false;
-    for (int i = 0; i < count; i++) {
-        physics = physics || frames[i]->run_differs || frames[i]->states == STATES_DIFFER;
-        bool same = frames[i]->at[EXPECTED] == frames[i]->base && frames[i]->pixels == PIXELS_EQUAL;
-        same_framing = same_framing || (same && frames[i]->states == STATES_EQUAL);
-    }
-    for (int i = 0; physics && !same_framing && i < count; i++)
-        if (frames[i]->states == STATES_EQUAL) frames[i]->states = STATES_DIFFER_ELSEWHERE;
-}
-
-/* Ignores missing and extra frames; their names may have another stem. */
+/* Sets STATES_DIFFER_ELSEWHERE (see StateVerdict) in the frames of one sequence. Missing and extra frames do not count;
+   their names may have another stem. */
 static bool judge_sequences(Regression *regression, Error *error) {
     RegressionFrame **paired = malloc(((size_t)regression->count + 1) * sizeof *paired);
     if (paired == NULL) return error_memory(error, "frames");
@@ -385,8 +307,15 @@ static bool judge_sequences(Regression *regression, Error *error) {
     for (int i = 0; i < regression->count; i++)
         if (regression->frames[i].pixels < PIXELS_MISSING) paired[count++] = &regression->frames[i];
     for (int first = 0, end = 0; first < count; first = end) {
-        while (end < count && sequence_compare_stems(paired[first]->base, paired[end]->base) == 0) end++;
-        judge_sequence(paired + first, end - first);
+        bool physics = false, same_framing = false;
+        for (; end < count && (end == first || sequence_same(paired[first]->base, paired[end]->base)); end++) {
+            const RegressionFrame *frame = paired[end];
+            const bool same = frame->at[EXPECTED] == frame->base && frame->pixels == PIXELS_EQUAL;
+            physics = physics || frame->run_differs || frame->states == STATES_DIFFER;
+            same_framing = same_framing || (same && frame->states == STATES_EQUAL);
+        }
+        for (int i = first; physics && !same_framing && i < end; i++)
+            if (paired[i]->states == STATES_EQUAL) paired[i]->states = STATES_DIFFER_ELSEWHERE;
     }
     free(paired);
     return true;
@@ -394,7 +323,23 @@ static bool judge_sequences(Regression *regression, Error *error) {
 
 static void count(Regression *regression) {
     regression->first_renderer = regression->first_run = regression->first_metadata = -1;
-    for (int i = 0; i < regression->count; i++) count_frame(regression, i);
+    for (int i = 0; i < regression->count; i++) {
+        const RegressionFrame *frame = &regression->frames[i];
+        const bool pictures = frame->pixels == PIXELS_DIFFER || frame->pixels == PIXELS_RESIZED;
+        const bool view = pictures && frame->other_view && frame->states != STATES_DIFFER;
+        const bool renderer = pictures && !view && frame->states == STATES_EQUAL;
+        regression->by_verdict[frame->pixels]++;
+        regression->failed += frame_failed(frame);
+        regression->physics += frame->states == STATES_DIFFER;
+        regression->view += view;
+        regression->elsewhere += pictures && !view && frame->states == STATES_DIFFER_ELSEWHERE;
+        if (renderer && !frame->alone && regression->first_renderer < 0) regression->first_renderer = i;
+        regression->renderer += renderer;
+        regression->unknown += pictures && !view && frame->states == STATES_UNKNOWN;
+        if (frame->metadata.text[0] != '\0' && regression->metadata++ == 0) regression->first_metadata = i;
+        regression->metadata_failed += frame->metadata_failed && !pictures && frame->states != STATES_DIFFER;
+        regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
+    }
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *runs = regression->runs;
         regression->run_within += runs[i].within;
@@ -408,33 +353,46 @@ static void count(Regression *regression) {
     }
 }
 
-static bool share_stem(const RegressionFrame *a, const RegressionFrame *b) {
-    return a->base->number >= 0 && b->base->number >= 0 && sequence_compare_stems(a->base, b->base) == 0;
-}
-
-static void find_films(Regression *regression) {
-    RegressionFrame *frames = regression->frames;
-    for (int i = 0; i < regression->count; i++) {
-        frames[i].alone = !(i > 0 && share_stem(&frames[i - 1], &frames[i])) &&
-                          !(i + 1 < regression->count && share_stem(&frames[i], &frames[i + 1]));
-        regression->film = regression->film || !frames[i].alone;
-    }
-}
-
 static bool pair_frames(Regression *regression, Error *error) {
     SequencePair *pairs =
         image_sequence_pair(regression->sequences[EXPECTED], regression->sequences[ACTUAL], &regression->count, error);
     if (pairs == NULL) return false;
-    regression->frames = calloc((size_t)regression->count + 1, sizeof *regression->frames);
-    for (int i = 0; regression->frames != NULL && i < regression->count; i++)
-        regression->frames[i] = (RegressionFrame){.base = pairs[i].a != NULL ? pairs[i].a : pairs[i].b,
-                                                  .at = {pairs[i].a, pairs[i].b},
-                                                  .flip = NAN,
-                                                  .flip_p99 = NAN};
+    RegressionFrame *frames = regression->frames = calloc((size_t)regression->count + 1, sizeof *frames);
+    for (int i = 0; frames != NULL && i < regression->count; i++)
+        frames[i] =
+            (RegressionFrame){.base = pairs[i].a != NULL ? pairs[i].a : pairs[i].b, .at = {pairs[i].a, pairs[i].b}};
     free(pairs);
-    if (regression->frames == NULL) return error_memory(error, "frames");
-    find_films(regression);
+    if (frames == NULL) return error_memory(error, "frames");
+    for (int i = 0; i < regression->count; i++) {
+        frames[i].alone = !(i > 0 && sequence_same(frames[i - 1].base, frames[i].base)) &&
+                          !(i + 1 < regression->count && sequence_same(frames[i].base, frames[i + 1].base));
+        regression->film = regression->film || !frames[i].alone;
+    }
     return true;
+}
+
+/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. Of folders, each rule must
+   match a frame. */
+static bool read_rules(Regression *regression, Error *error) {
+    const ImageSequence *expected = regression->sequences[EXPECTED];
+    char found[PATH_MAX];
+    const char *path = regression->options.rules;
+    if (path == NULL) {
+        bool there;
+        if (!file_path(found, sizeof found, error, "%s/%s", expected->folder, RULES_NAME) ||
+            !file_find(found, &there, error))
+            return false;
+        if (!there) return true;
+        path = found;
+    }
+    regression->rules = rules_read(path, error);
+    if (regression->rules == NULL || expected->single) return regression->rules != NULL;
+    const char **names = malloc(((size_t)regression->count + 1) * sizeof *names);
+    if (names == NULL) return error_memory(error, "rules");
+    for (int i = 0; i < regression->count; i++) names[i] = frame_name(&regression->frames[i]);
+    bool ok = rules_check_names(regression->rules, names, regression->count, error);
+    free(names);
+    return ok;
 }
 
 static bool is_any(const char *name) { return (void)name, true; }
@@ -485,7 +443,7 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
               refuse_same(regression, expected, actual, error) && pair_frames(regression, error);
     poses->given = poses->given && (regression->count == 0 || (options->tolerance.given & LIMIT_TOLERANCE) == 0);
     ok = ok && regression_find_runs(regression, error) && refuse_empty(regression, error) &&
-         regression_read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
+         read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
          judge_sequences(regression, error);
     if (ok) count(regression);
     ok = ok && regression_find_causes(regression, error);

@@ -1,136 +1,37 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A comparison of two folders: limits, rules, states, causes, the verdict. */
+/* A comparison of two folders, or of two files:
+
+     Regression regression;
+     RegressionOptions options = {.max_pixels = IMAGE_MAX_PIXELS};
+     if (!regression_run(&regression, "expected", "actual", &options, NULL, error)) ...
+     bool passed = regression_passed(&regression);
+     for (int i = 0; i < regression.count; i++) puts(frame_words(&regression.frames[i]).text);
+     regression_free(&regression);
+
+   Compares expected with actual pictures, frame by frame, and finds the cause of differences: the physics changed if
+   the states of the bodies differ, the renderer if only pixels differ. States are compared by trajectories of the same
+   name in both folders and by the "State" texts in the pictures. Without either the cause is unknown. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
 #include "pixels/png.h"
-#include "regression/compare.h"
-#include "regression/flip.h"
+#include "regression/image_compare.h"
+#include "regression/limits.h"
+#include "regression/mask.h"
 #include "regression/naming.h"
+#include "regression/png_display.h"
+#include "regression/sequence.h"
+#include "regression/view.h"
 #include "runs/trajectory.h"
 
-/* How far a picture may differ and still pass. Nothing given: every pixel must be equal. */
-
-enum { FEW_PIXELS_MAX = 8 }; /* of `shift` and `size` */
-
-/* Bits of Tolerance.given. */
-typedef enum ToleranceLimit {
-    LIMIT_FUZZY = 1 << 0,
-    LIMIT_TOLERANCE = 1 << 1,
-    LIMIT_BEYOND = 1 << 2,
-    LIMIT_FLIP_MEAN = 1 << 3,
-    LIMIT_FLIP_P99 = 1 << 4,
-    LIMIT_ANTIALIAS = 1 << 5,
-    LIMIT_SHIFT = 1 << 6,
-    LIMIT_SIZE = 1 << 7,
-    LIMITS_FLIP = LIMIT_FLIP_MEAN | LIMIT_FLIP_P99
-} ToleranceLimit;
-
-/* How many pixels may differ: a share of those that count, 0..1, or a number. A share passes in a long page what it
-   does not pass in a small picture; a number is for marks of one size. */
-typedef struct PixelLimit {
-    double most;
-    bool number;
-} PixelLimit;
-
-/* "0.01", a share, or "20px". False for anything else. */
-bool pixel_limit_parse(PixelLimit *limit, const char *text);
-#define PIXEL_LIMIT_FORM "a share from 0 to 1 or a number of pixels, such as 20px"
-
-/* All that is given must hold. Members that are not given are 0. */
-typedef struct Tolerance {
-    unsigned given;
-    int fuzzy;                  /* largest difference of a channel, 0..255 */
-    PixelLimit share;           /* of pixels that differ; given with fuzzy */
-    int tolerance;              /* pixels that differ by at most this, 0..255, count as equal */
-    PixelLimit beyond;          /* of pixels that differ by more than `tolerance` */
-    double flip_mean, flip_p99; /* largest FLIP: mean, 99th percentile (regression/flip.h) */
-    bool antialias;             /* ignore pixels along edges (regression/regression_internal.h) */
-    int shift; /* pixels that content may move by, 0..FEW_PIXELS_MAX (regression/regression_internal.h) */
-    int size;  /* by this much, 0..FEW_PIXELS_MAX, width and height may differ: the overlap is judged */
-} Tolerance;
-
-/* Replaces in *tolerance what `over` gives. */
-void tolerance_override(Tolerance *tolerance, const Tolerance *over);
-
-/* Whether the pictures pass. `flip` is used only if a limit of FLIP is given. */
-bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *difference, const FlipSummary *flip);
-
-/* "differences of at most 2 in at most 1% of the pixels, FLIP of at most 0.01 on average"; "none". */
-typedef struct ToleranceText {
-    char text[320];
-} ToleranceText;
-ToleranceText tolerance_words(const Tolerance *tolerance);
-
-/* "MAX", "mean=MAX" or "p99=MAX", with MAX from 0 to 1. False, and nothing set, for anything else. */
-bool tolerance_parse_flip(Tolerance *tolerance, const char *text);
-
-/* Rules of a comparison: what the files of certain names may differ in. A YAML file:
-
-     rules:
-       - files: "stack_*"        # a glob of names, with their folder if they have one; * also stands for /
-         tolerance: 3            # as the options of compare of these names
-         beyond: 0.001           # or a number of pixels: 20px
-         fuzzy: [2, 0.01]
-         flip: 0.01              # or: flip: {mean: 0.01, p99: 0.1}
-         antialias: on
-         shift: 1
-         size: 1                 # by this much, width and height may differ
-         masks:
-           - rectangle: [0, 0, 320, 20]
-           - picture: clock.png  # beside this file
-           - colour: "#ff00ff"   # opaque pixels that have this colour in the expected picture
-
-       - files: "stack_*"
-         region: [0, 0, 320, 20] # then: tolerance, antialias and shift, for these pixels alone
-         shift: 1
-
-   Rules apply from top to bottom: a later one replaces the limits of an earlier one, and all masks count. Those of a
-   region only add to what else may differ. */
-
-#define RULES_NAME "compare.yaml" /* in the expected folder */
-
-/* Of one file: each name is matched with each rule, and pictures stay in memory. */
-enum { RULES_MAX = 256, RULES_MAX_PICTURES = 64 };
-
-typedef struct Rules Rules;
-
-/* ERROR_INPUT, with line and column, for anything that is not a rule: unknown keys, values out of range, masks that
-   cannot be read. */
-Rules *rules_read(const char *path, Error *error);
-void rules_destroy(Rules *rules); /* NULL: does nothing */
-const char *rules_path(const Rules *rules);
-
-/* Finds the rules for each of the names. ERROR_INPUT, with the place of the rule, if one matches none of them. */
-bool rules_check_names(const Rules *rules, const char *const *names, int count, Error *error);
-
-/* What follows takes NULL for no rules. Replaces in *tolerance what the rules for this name give. */
-void rules_override(const Rules *rules, const char *name, Tolerance *tolerance);
-
-/* Whether the rules for this name have masks; mask_most_hidden() of all of them, and mask_draw(). */
-bool rules_have_masks(const Rules *rules, const char *name);
-double rules_most_hidden(const Rules *rules, const char *name, int width, int height);
-bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
-                      Error *error);
-
-/* Whether rules for this name have a region; and sets masked[height, width] (regression/compare.h) to what those allow.
-   Both pictures must have the same size. False with error set if out of memory. */
-bool rules_have_regions(const Rules *rules, const char *name);
-bool rules_mark_regions(const Rules *rules, const char *name, const Image *expected, const Image *actual,
-                        uint8_t *masked, Error *error);
-
-/* Compares expected with actual pictures, frame by frame, and finds the cause of differences: the physics changed if
-   the states of the bodies differ, the renderer if only pixels differ. States are compared by trajectories of the same
-   name in both folders and by the "State" texts in the pictures. Without either the cause is unknown. */
-
 typedef struct RegressionOptions {
-    Tolerance tolerance;  /* replaces what the rules give */
-    PoseTolerance poses;  /* of runs; beside pictures only if `tolerance` is not given: one option states either */
-    const char *rules;    /* a file; NULL: RULES_NAME in the expected folder, if it is there */
-    const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
-    int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
-    bool flat;            /* without subfolders */
-    bool strict_metadata; /* files that display differently fail (regression/compare.h) */
+    Tolerance tolerance; /* replaces what the rules give */
+    PoseTolerance poses; /* of runs; beside pictures only if `tolerance` is not given: one option states either */
+    const char *rules;   /* a file; NULL: RULES_NAME in the expected folder, if it is there */
+    const Mask *mask;    /* for all frames, beside the masks of the rules; or NULL */
+    int64_t max_pixels;  /* of a picture; larger ones are refused before decompression */
+    bool flat;           /* without subfolders */
+    bool strict;         /* files that display differently fail (png_display.h) */
 } RegressionOptions;
 
 typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
@@ -187,7 +88,6 @@ typedef struct RegressionFrame {
     ImageDifference difference;
     PngDisplay metadata; /* that differs; only for different files */
     bool metadata_failed;
-    double flip, flip_p99; /* regression/flip.h; NaN where neither a limit nor the report needs it */
     bool run_differs;      /* a trajectory of its scene differs in any frame */
     bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
     FrameChanges *changes; /* of different pixels; else NULL */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pictures of a folder in order, and the pairs that two folders have. */
+#include "regression/sequence.h"
+
 #include "base/base.h"
 #include "base/file.h"
-#include "regression/compare.h"
 
 #include <assert.h>
 #include <limits.h>
@@ -64,9 +65,13 @@ static int compare_folders(const SequenceFrame *x, const SequenceFrame *y) {
     return compare_parts(x->name, x->folder, y->name, y->folder);
 }
 
-int sequence_compare_stems(const SequenceFrame *x, const SequenceFrame *y) {
+static int compare_stems(const SequenceFrame *x, const SequenceFrame *y) {
     int order = compare_folders(x, y);
     return order != 0 ? order : compare_parts(x->name, x->stem, y->name, y->stem);
+}
+
+bool sequence_same(const SequenceFrame *x, const SequenceFrame *y) {
+    return x->number >= 0 && y->number >= 0 && compare_stems(x, y) == 0;
 }
 
 static int compare_numbers(const SequenceFrame *x, const SequenceFrame *y) {
@@ -75,7 +80,7 @@ static int compare_numbers(const SequenceFrame *x, const SequenceFrame *y) {
 
 static int compare_frames(const void *x, const void *y) {
     const SequenceFrame *a = x, *b = y;
-    int order = sequence_compare_stems(a, b);
+    int order = compare_stems(a, b);
     if (order == 0) order = compare_numbers(a, b);
     return order != 0 ? order : strcmp(a->name, b->name);
 }
@@ -96,22 +101,6 @@ static bool list_pictures(ImageSequence *sequence, bool recursive, Error *error)
     return ok;
 }
 
-static bool take_file(ImageSequence *sequence, const char *path, Error *error) {
-    size_t capacity = 0;
-    char *before = strndup(path, file_folder_length(path));
-    bool ok = before != NULL ? add_frame(sequence, &capacity, before, path + strlen(before), error)
-                             : error_memory(error, path);
-    free(before);
-    return ok;
-}
-
-/* "a/b/" -> "a/b"; for a file its folder. */
-static char *folder_of(const char *path, bool single) {
-    size_t length = single ? file_folder_length(path) : strlen(path);
-    while (length > 1 && path[length - 1] == '/') length--;
-    return length == 0 ? strdup(".") : strndup(path, length);
-}
-
 ImageSequence *image_sequence_open(const char *path, bool recursive, Error *error) {
     struct stat status;
     if (stat(path, &status) != 0) return folder_error(path, error), NULL;
@@ -120,11 +109,17 @@ ImageSequence *image_sequence_open(const char *path, bool recursive, Error *erro
     sequence->device = status.st_dev;
     sequence->inode = status.st_ino;
     sequence->single = !S_ISDIR(status.st_mode);
-    sequence->folder = folder_of(path, sequence->single);
-    if (sequence->folder == NULL) error_memory(error, path);
-    if (sequence->folder != NULL &&
-        (sequence->single ? take_file(sequence, path, error) : list_pictures(sequence, recursive, error)))
-        return sequence;
+    /* "a/b/" -> "a/b"; for a file its folder. */
+    const size_t before = file_folder_length(path);
+    size_t length = sequence->single ? before : strlen(path), capacity = 0;
+    while (length > 1 && path[length - 1] == '/') length--;
+    sequence->folder = length == 0 ? strdup(".") : strndup(path, length);
+    char *start = strndup(path, before);
+    bool ok = (sequence->folder != NULL && start != NULL) || error_memory(error, path);
+    ok = ok && (sequence->single ? add_frame(sequence, &capacity, start, path + before, error)
+                                 : list_pictures(sequence, recursive, error));
+    free(start);
+    if (ok) return sequence;
     image_sequence_close(sequence);
     return NULL;
 }
@@ -143,13 +138,13 @@ typedef struct Range {
     int count;
 } Range;
 
-static SequenceFrame *sequence_find(const ImageSequence *sequence, const SequenceFrame *key,
-                                    int (*compare)(const void *, const void *)) {
+static SequenceFrame *find(const ImageSequence *sequence, const SequenceFrame *key,
+                           int (*compare)(const void *, const void *)) {
     if (sequence->count == 0) return NULL;
     return bsearch(key, sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare);
 }
 
-static int by_stem(const void *x, const void *y) { return sequence_compare_stems(x, y); }
+static int by_stem(const void *x, const void *y) { return compare_stems(x, y); }
 
 /* home.png for home.1.png, if that is another accepted picture for it. If `b` has any home.N.png, these are frames. */
 static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *b, const SequenceFrame *frame) {
@@ -161,8 +156,8 @@ static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *
         return NULL;
     SequenceFrame key = {.name = name};
     read_name(&key);
-    if (sequence_find(b, &key, compare_frames) == NULL || sequence_find(b, frame, by_stem) != NULL) return NULL;
-    return sequence_find(a, &key, compare_frames);
+    if (find(b, &key, compare_frames) == NULL || find(b, frame, by_stem) != NULL) return NULL;
+    return find(a, &key, compare_frames);
 }
 
 /* The frames of `a` that can make pairs; the others are linked to theirs. */
@@ -185,7 +180,7 @@ typedef struct Pairing {
     int count;
 } Pairing;
 
-static void sequence_put(Pairing *pairing, const SequenceFrame *a, const SequenceFrame *b) {
+static void put(Pairing *pairing, const SequenceFrame *a, const SequenceFrame *b) {
     pairing->pairs[pairing->count++] = (SequencePair){a, b};
 }
 
@@ -219,10 +214,10 @@ static bool pair_group(Pairing *pairing, Range a, Range b, Error *error) {
     }
     for (int i = 0; i < a.count; i++) {
         const SequenceFrame *same = find_name(b, a.frames[i]->name);
-        sequence_put(pairing, a.frames[i], same != NULL ? same : one ? left_b[0] : NULL);
+        put(pairing, a.frames[i], same != NULL ? same : one ? left_b[0] : NULL);
     }
     for (int i = 0; i < b.count && !one; i++)
-        if (find_name(a, b.frames[i]->name) == NULL) sequence_put(pairing, NULL, b.frames[i]);
+        if (find_name(a, b.frames[i]->name) == NULL) put(pairing, NULL, b.frames[i]);
     return true;
 }
 
@@ -238,21 +233,20 @@ static Range take_leading(Range *range, bool any, int (*compare)(const SequenceF
 }
 
 static int by_stem_and_number(const SequenceFrame *x, const SequenceFrame *y) {
-    int order = sequence_compare_stems(x, y);
+    int order = compare_stems(x, y);
     return order != 0 ? order : compare_numbers(x, y);
 }
 
 static bool has_one_numbered_stem(Range range) {
     return range.count > 0 && range.frames[0]->number >= 0 &&
-           sequence_compare_stems(range.frames[0], range.frames[range.count - 1]) == 0;
+           compare_stems(range.frames[0], range.frames[range.count - 1]) == 0;
 }
 
 typedef bool PairRanges(Pairing *pairing, Range a, Range b, Error *error);
 
 /* Calls pair_ranges for each part of both ranges that has one place in the order of `compare`. */
-static bool sequence_merge(Pairing *pairing, Range a, Range b,
-                           int (*compare)(const SequenceFrame *, const SequenceFrame *), PairRanges *pair_ranges,
-                           Error *error) {
+static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const SequenceFrame *, const SequenceFrame *),
+                  PairRanges *pair_ranges, Error *error) {
     while (a.count > 0 || b.count > 0) {
         int order = a.count == 0 ? 1 : b.count == 0 ? -1 : compare(a.frames[0], b.frames[0]);
         Range first = take_leading(&a, order <= 0, compare), second = take_leading(&b, order >= 0, compare);
@@ -263,17 +257,7 @@ static bool sequence_merge(Pairing *pairing, Range a, Range b,
 
 static bool pair_folder(Pairing *pairing, Range a, Range b, Error *error) {
     bool numbers_alone = has_one_numbered_stem(a) && has_one_numbered_stem(b);
-    return sequence_merge(pairing, a, b, numbers_alone ? compare_numbers : by_stem_and_number, pair_group, error);
-}
-
-static bool pair_sequences(Pairing *pairing, const ImageSequence *a, const ImageSequence *b,
-                           const SequenceFrame **frames, Error *error) {
-    if (a->single) {
-        sequence_put(pairing, &a->frames[0], &b->frames[0]);
-        return true;
-    }
-    Range first = take_frames(a, b, frames), second = take_frames(b, NULL, frames + a->count);
-    return sequence_merge(pairing, first, second, compare_folders, pair_folder, error);
+    return merge(pairing, a, b, numbers_alone ? compare_numbers : by_stem_and_number, pair_group, error);
 }
 
 SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b, int *count, Error *error) {
@@ -285,12 +269,16 @@ SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b
     size_t most = (size_t)a->count + (size_t)b->count + 1;
     Pairing pairing = {.pairs = malloc(most * sizeof *pairing.pairs)};
     const SequenceFrame **frames = calloc(most, sizeof *frames);
-    bool ok = pairing.pairs != NULL && frames != NULL ? pair_sequences(&pairing, a, b, frames, error)
-                                                      : error_memory(error, a->folder);
+    bool ok = (pairing.pairs != NULL && frames != NULL) || error_memory(error, a->folder);
+    if (ok && a->single) {
+        put(&pairing, &a->frames[0], &b->frames[0]);
+    } else if (ok) {
+        const Range first = take_frames(a, b, frames), second = take_frames(b, NULL, frames + a->count);
+        ok = merge(&pairing, first, second, compare_folders, pair_folder, error);
+    }
     free(frames);
-    *count = pairing.count;
+    *count = ok ? pairing.count : 0;
     if (ok) return pairing.pairs;
     free(pairing.pairs);
-    *count = 0;
     return NULL;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The view that a manifest describes, how two views differ, and what the pictures of a folder show. */
+#include "regression/view.h"
+
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
-#include "regression/compare.h"
-#include "regression/naming.h"
+#include "regression/sequence.h"
 #include "runs/trajectory.h"
 
 #include <limits.h>

@@ -154,7 +154,7 @@ assert results["verdict"] == "physics changed, 1 frame missing, 1 frame extra", 
 verdicts = [frame["verdict"] for frame in results["frames"]]
 assert verdicts == ["missing"] + 4 * ["physics changed"] + ["extra"], verdicts
 assert results["frames"][0]["actual"] is None and len(results["frames"][1]["actual"]["xxh3"]) == 16
-assert 0 < results["frames"][1]["flip"] < 1 and results["frames"][1]["largest"] > 0
+assert results["frames"][1]["largest"] > 0
 assert [run["name"] for run in results["trajectories"]] == ["single-engine.npz"]
 suite = xml.etree.ElementTree.parse("report/junit.xml").getroot()
 assert suite.get("tests") == "7" and suite.get("failures") == "7"
@@ -169,9 +169,6 @@ assert changed.find("failure").text.startswith(
     "expected: expected/frame_000001.png\nactual: actual/frame_000001.png\n")
 assert missing.find("failure").text == "expected: expected/frame_000000.png\n"
 assert changed.find("system-out").text.startswith("[[ATTACHMENT|actual/frame_000001.png]]\n")
-tap = open("report/results.tap").read().split("\n")
-assert tap[:3] == ["TAP version 14", "1..7", "not ok 1 - frame_000000.png: missing"], tap[:3]
-assert json.loads(tap[4])["expected"] == "expected/frame_000000.png" and tap[3] == "  ---" and tap[5] == "  ..."
 PYTHON
 cp -r report again
 run 1 compare expected actual --report report

@@ -101,7 +101,7 @@ run 1 compare struck.npz momentum.npz --tolerance 100,0.001 --report report
 says "centres more than 100 m or turned more than 0.001 rad apart: frame "
 says "not compared: the verdict, \""
 says "report -> report/report.html"
-equal "files" "$(ls report | tr '\n' ' ')" "junit.xml report.html results.json results.tap run.html "
+equal "files" "$(ls report | tr '\n' ' ')" "junit.xml report.html results.json run.html "
 /usr/bin/python3 - <<'PYTHON' || fail "the files of a report"
 import json, re, xml.etree.ElementTree as tree
 suite = tree.parse("report/junit.xml").getroot()
@@ -114,8 +114,6 @@ assert "\ncause: the solver\n" in suite.find("system-out").text
 results = json.load(open("report/results.json"))
 assert not results["passed"] and results["tolerance_angle"] == 0.001 and results["frames_equal"] == 4
 assert [other["what"] for other in results["not_compared"]] == ["verdict"]
-tap = open("report/results.tap").read()
-assert "\nnot ok 1 - momentum.npz: physics changed\n" in tap and "\n# cause: the solver\n" in tap
 link = re.search(r"run\.html#t=([\d.]+)&amp;body=(\d+)", open("report/report.html").read())
 beyond = results["beyond"]
 assert beyond["frame"] > results["first"]["frame"]
@@ -123,6 +121,5 @@ assert abs(float(link[1]) * 60 - beyond["frame"]) < 0.1 and int(link[2]) == beyo
 PYTHON
 run 0 compare struck.npz momentum.npz --tolerance 100,100 --report passed
 says "equal within the tolerance of 100 m and 100 rad: 101 frames of 12 bodies; 4 of them in every bit"
-grep -qx 'ok 1 - momentum.npz' passed/results.tap || fail "a comparison within tolerance fails in TAP"
 grep -q 'failures="0"' passed/junit.xml || fail "a comparison within tolerance fails in JUnit"
 finish

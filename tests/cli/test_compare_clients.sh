@@ -253,11 +253,6 @@ test_npm() {
     example 2 twinbox-compare expected none
     complains "none"
     rm bin/npm bin/npx
-    export NODE_PATH=${NODE_PATH:-$(dirname "$twinbox")/npm/node_modules} # where tests/bench/compare installs it
-    if node -e 'require("odiff-bin")' 2>/dev/null; then
-        example 0 node server.js
-        says "false pixel-diff 400"
-    fi
 }
 
 for client in pytest npm; do

@@ -3,9 +3,9 @@
 #include "fuzz.h"
 
 #include "fuzz_png.h"
-#include "regression/naming.h"
-#include "regression/regression.h"
-#include "regression/regression_internal.h"
+#include "regression/approve.h"
+#include "regression/limits.h"
+#include "regression/view.h"
 
 #include <stdlib.h>
 #include <string.h>

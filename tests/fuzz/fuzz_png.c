@@ -5,7 +5,7 @@
 #include "fuzz.h"
 
 #include "pixels/png.h"
-#include "regression/compare.h"
+#include "regression/png_display.h"
 #include "pixels/pixels_internal.h"
 
 #include <stdlib.h>

@@ -33,7 +33,7 @@ CASES = [
     (2, "has no array 'weights_1'", ["network.npz"], f"simulate {single} -m pair-net:network=@ -o x.npz"),
     (2, "has no array 'bomb_state_rows'", ["slots.npz"], f"simulate {single} -m scene-net:network=@ -o x.npz"),
     (1, "", ["deep.png", "small.png"], "compare @ @"),
-    (1, "", ["small.png", "deep.png"], "compare @ @ --flip 1 --report report"),
+    (1, "", ["small.png", "deep.png"], "compare @ @ --antialias --report report"),
     (1, "", ["interlaced.png", "small.png"], "compare @ @"),
     (1, "", ["wide.png", "small.png"], "compare @ @"),
     (1, "", ["high.png", "small.png"], "compare @ @"),

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "regression/compare.h"
+#include "regression/png_display.h"
 #include "png_parts.h"
 
 static PngParts a, b;

@@ -4,7 +4,7 @@
    pixels; and it accepts what it is for. */
 #include "owned.h"
 
-#include "regression/compare.h"
+#include "regression/image_compare.h"
 #include "pixels/pixels_internal.h"
 
 #include "png_parts.h"
@@ -274,7 +274,7 @@ TEST(pairs_are_as_two_pictures) {
                                  1 << 20, images)) {
             for (int k = 0; k < 2; k++) assert_same(images[k], wanted[k]);
             ImageDifference difference;
-            image_compare(wanted[0], wanted[1], &difference);
+            image_compare_masked(wanted[0], wanted[1], NULL, 0, &difference);
             assert_true(difference.equal || images[0] != images[1]);
             same += images[0] == images[1], pairs++;
             image_destroy_pair(images);
@@ -318,7 +318,10 @@ static void take_given(void *context, int y, const uint8_t *a, const uint8_t *b)
 
 static bool is_near_difference(const Image *a, const Image *b, int y, int around) {
     bool near = around == ROWS_ALL;
-    for (int i = 0; !near && i < a->height; i++) near = abs(i - y) <= around && image_row_differs(a, b, i);
+    const size_t bytes = 4 * (size_t)a->width;
+    for (int i = 0; !near && i < a->height; i++)
+        near = abs(i - y) <= around &&
+               memcmp(a->pixels + bytes * (size_t)i, b->pixels + bytes * (size_t)i, bytes) != 0;
     return near;
 }
 

@@ -4,7 +4,7 @@
 #include "made.h"
 
 #include "allocations.h"
-#include "regression/compare.h"
+#include "regression/png_display.h"
 #include "pixels/pixels_internal.h"
 #include "png_parts.h"
 #include "pngs.h"

@@ -3,8 +3,8 @@
    erased, faded, moved by a pixel or with one wrong pixel they have. */
 #include "made.h"
 
-#include "regression/regression_internal.h"
-#include "regression/compare.h"
+#include "regression/antialias.h"
+#include "regression/image_compare.h"
 
 #include <math.h>
 

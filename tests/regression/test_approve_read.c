@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "regression/regression_internal.h"
+#include "regression/approve.h"
 
 #define HEAD "{\"format\": \"twinbox compare 1\", \"expected\": \"old\", \"actual\": \"new\""
 #define FILE_1 "{\"name\": \"1.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
@@ -15,7 +15,7 @@ TEST(failures_are_read_in_any_order_of_members) {
                        "{\"failed\": true, \"shown\": false, \"expected\": " FILE_0 ", \"actual\": null},\n"
                        "{\"failed\": false, \"shown\": true, \"expected\": " FILE_0 ", \"actual\": " FILE_0 "},\n"
                        "{\"other\": [1], \"actual\": " FILE_1 ", \"shown\": true, \"failed\": true}],\n"
-                       "\"fuzzy\": [0, 1e-3], \"actual\": \"n\\u0065w\", \"expected\": \"old\",\n"
+                       "\"extra\": [0, 1e-3], \"actual\": \"n\\u0065w\", \"expected\": \"old\",\n"
                        "\"format\": \"twinbox compare 1\"}\n";
     assert_ok(approval_read(&list, store(text), &error), error);
     assert_string_equal(list.expected, "old");

@@ -3,7 +3,7 @@
 #include "made.h"
 
 #include "regression/regression_internal.h"
-#include "regression/compare.h"
+#include "regression/image_compare.h"
 
 enum { LEVELS = 256 };
 
@@ -80,11 +80,9 @@ TEST(masked_pixels_are_hatched) {
 }
 
 TEST(what_limits_allow_is_blue) {
-    for (Ignored reason = IGNORED_EDGE; reason <= IGNORED_RULE; reason++) {
-        Image *drawn = draw_ignored((uint8_t)reason);
-        for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
-        image_destroy(drawn);
-    }
+    Image *drawn = draw_ignored(IGNORED_EDGE);
+    for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
+    image_destroy(drawn);
 }
 
 /* Two 16-bit pictures that differ in the last bit count as different by 1. */
@@ -94,26 +92,6 @@ TEST(sixteen_bits_count_in_full) {
     Image *drawn = draw(&expected, &actual, NULL);
     assert_pixel(drawn, 0, 200, 200, 200);
     assert_pixel(drawn, 1, 255, 176, 0);
-    image_destroy(drawn);
-}
-
-/* The header's colours at the ends; only 0 is black. */
-TEST(heat_goes_from_black_to_yellow) {
-    size_t size;
-    float values[LEVELS];
-    IndexedPng *png = heat_picture(LEVELS, 1, &error);
-    assert_ok(png != NULL, error);
-    FlipSink sink = heat_picture_sink(png);
-    for (int i = 0; i < LEVELS; i++) values[i] = (float)i / (LEVELS - 1);
-    values[1] = 1e-9f;
-    assert_ok(sink.row(sink.context, values, LEVELS, &error), error);
-    uint8_t *file = indexed_png_end(png, &size, &error);
-    Image *drawn = read_back(file, size);
-    assert_pixel(drawn, 0, 0, 0, 4);
-    assert_pixel(drawn, LEVELS - 1, 252, 255, 164);
-    for (int x = 1; x < LEVELS; x++)
-        assert_true(luma(drawn->pixels + 4 * x) >= (x == 1 ? 5 : luma(drawn->pixels + 4 * x - 4)));
-    indexed_png_destroy(png);
     image_destroy(drawn);
 }
 
@@ -147,11 +125,11 @@ TEST(what_only_one_picture_has_is_striped) {
     for (int i = 0; i < 24 * 12; i++) a->pixels[4 * i] = (uint8_t)(i % 24 + 9 * (i / 24));
     for (int i = 0; i < 16 * 20; i++) b->pixels[4 * i] = (uint8_t)(i % 16 + 9 * (i / 16));
     b->pixels[4 * (5 * 16 + 7)]++;
-    image_compare(a, b, &difference);
+    image_compare_masked(a, b, NULL, 0, &difference);
     assert_false(difference.same_size);
     image_cut_to_overlap(a, b);
     assert_true(a->width == 16 && a->height == 12 && b->width == 16 && b->height == 12);
-    image_compare(a, b, &difference);
+    image_compare_masked(a, b, NULL, 0, &difference);
     assert_true(difference.pixels == 1 && difference.first_x == 7 && difference.first_y == 5);
     uint8_t *file = difference_picture(a, b, NULL, 24, 20, &size, &error);
     Image *drawn = read_back(file, size);

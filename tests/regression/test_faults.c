@@ -3,10 +3,8 @@
 #include "made.h"
 
 #include "figures/sketch.h"
-#include "regression/compare.h"
-#include "regression/flip.h"
-#include "regression/regression_internal.h"
-#include "regression/regression.h"
+#include "regression/antialias.h"
+#include "regression/limits.h"
 
 #include <math.h>
 
@@ -49,17 +47,14 @@ static void add_noise(Image *image, int most) {
 }
 
 static bool passes(const Image *a, const Image *b, const Tolerance *tolerance) {
-    const size_t count = (size_t)a->width * (size_t)a->height;
-    uint8_t *masked = calloc(count, 1);
+    uint8_t *masked = calloc((size_t)a->width * (size_t)a->height, 1);
     ImageDifference difference;
-    FlipSummary flip;
     Error error = {0};
     assert_non_null(masked);
-    assert_ok(tolerance_mark(tolerance, a, b, masked, &error), error);
+    assert_ok(!tolerance->antialias || antialias_mark(a, b, masked, &error), error);
     image_compare_masked(a, b, masked, tolerance->tolerance, &difference);
-    assert_ok(flip_compare(a, b, FLIP_PIXELS_PER_DEGREE, NULL, &flip, &error), error);
     free(masked);
-    return tolerance_holds(tolerance, &difference, &flip);
+    return tolerance_holds(tolerance, &difference);
 }
 
 enum { NOISES = 3, SUGGESTED = 2 };
@@ -85,34 +80,6 @@ TEST(suggested_limits_catch_faults_and_pass_noise) {
         }
     }
     image_destroy(chart);
-}
-
-/* A text that moved by a pixel passes, alone of the faults, also beside noise. */
-TEST(shift_passes_moved_text_alone) {
-    static const Tolerance shift = {.given = LIMIT_SHIFT, .shift = 1},
-                           with_noise = {.given = LIMIT_SHIFT | LIMIT_TOLERANCE, .shift = 1, .tolerance = 6};
-    Image *chart = draw_chart(NO_FAULT);
-    for (Fault fault = NO_FAULT; fault < FAULTS; fault++) {
-        Image *other = draw_chart(fault);
-        const bool right = fault == NO_FAULT || fault == TEXT_SHIFTED;
-        if (passes(chart, other, &shift) != right) fail_msg("fault %d", fault);
-        add_noise(other, 3);
-        if (passes(chart, other, &with_noise) != right) fail_msg("fault %d with noise", fault);
-        image_destroy(other);
-    }
-    image_destroy(chart);
-}
-
-/* Why a mean of FLIP is no limit for charts: it is small where few pixels differ, however much. */
-TEST(no_mean_of_flip_divides_faults_from_noise) {
-    Image *chart = draw_chart(NO_FAULT), *lost = draw_chart(RING_LOST), *noisy = draw_chart(NO_FAULT);
-    const Tolerance flip = {.given = LIMIT_FLIP_MEAN, .flip_mean = 0.01};
-    add_noise(noisy, 1);
-    assert_true(passes(chart, lost, &flip));
-    assert_false(passes(chart, noisy, &flip));
-    image_destroy(chart);
-    image_destroy(lost);
-    image_destroy(noisy);
 }
 
 RUN_TESTS(NULL, NULL)

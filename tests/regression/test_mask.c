@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "made.h"
 
-#include "regression/compare.h"
+#include "regression/image_compare.h"
+#include "regression/mask.h"
 
 enum { WIDTH = 6, HEIGHT = 4 };
 static Mask mask;
@@ -91,8 +92,6 @@ TEST_WITH(masked_pixels_do_not_count, NULL, clear) {
     assert_int_equal(difference.largest, 7);
     assert_true(difference.first_x == 4 && difference.first_y == 1);
     assert_true(difference.left == 4 && difference.top == 1 && difference.right == 5 && difference.bottom == 4);
-    image_copy_masked(b, a, masked);
-    assert_true(a->pixels[4 * 8] == 0 && a->pixels[4 * 10] == 3);
     masked[10] = masked[22] = IGNORED_MASK;
     image_compare_masked(a, b, masked, 0, &difference);
     assert_true(difference.equal);

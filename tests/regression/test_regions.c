@@ -2,7 +2,9 @@
 /* Regions against a flood fill, and on the pictures that make most of them. */
 #include "testing.h"
 
-#include "regression/compare.h"
+#include "regression/image_compare.h"
+
+#include <math.h>
 
 static uint64_t random_state = 1;
 
@@ -10,6 +12,8 @@ static uint32_t random_bits(void) {
     random_state = random_state * 6364136223846793005U + 1442695040888963407U;
     return (uint32_t)(random_state >> 33);
 }
+
+static int any_below(int count) { return (int)(random_bits() % (uint32_t)count); }
 
 typedef struct Pair {
     Image *a, *b;
@@ -57,6 +61,7 @@ TEST(neighbours_within_the_gap_are_one_region) {
     ImageRegions regions = regions_of(&pair, NULL);
     assert_int_equal(regions.count, 3);
     assert_region(&regions.list[0], 2, 10, 10, 15, 15);
+    assert_int_equal(regions.list[0].largest, 9);
     assert_region(&regions.list[1], 1, 40, 10, 41, 11);
     assert_region(&regions.list[2], 1, 45, 10, 46, 11);
     uint8_t masked[64 * 48] = {[14 * 64 + 14] = 1};
@@ -153,6 +158,57 @@ TEST(a_grid_of_pixels_is_counted) {
     assert_int_equal(regions.kept, IMAGE_REGIONS_MAX);
     assert_region(&regions.list[1], 1, 5, 0, 6, 1);
     free_pair(&pair);
+}
+
+/* A disc with smooth edges on a pattern, by its place. */
+static void draw_disc(const Image *image, double x, double y) {
+    for (int i = 0; i < image->width * image->height; i++) {
+        const double far = hypot(i % image->width + 0.5 - x, i / image->width + 0.5 - y); /* NOLINT: whole numbers */
+        const double share = fmin(fmax(12.5 - far, 0), 1);
+        const int ground = i / image->width < 20 ? 230 : 250;
+        const uint8_t alpha = i % image->width < 40 ? 255 : 200;
+        const uint8_t value = (uint8_t)(ground + share * (40 - ground));
+        memcpy(image->pixels + 4 * i, (const uint8_t[]){value, value, (uint8_t)ground, alpha}, 4);
+    }
+}
+
+/* What row by row is found without rows that are far from differences is what whole pictures have: counts, regions,
+   largest differences, edges. Of a disc that moved by a fraction of a pixel, all are edges; by two pixels, few. */
+TEST(rows_give_what_whole_pictures_give) {
+    static const double moves[] = {0.3, 2, 0, 9};
+    for (int i = 0; i < 24; i++) {
+        Pair pair = make_pair(90 + i % 5, 60 + i);
+        draw_disc(pair.a, 45, 30);
+        draw_disc(pair.b, 45 + moves[i % 4], 30);
+        for (int k = 0; k < i % 4 * i; k++) /* some of them in the first and the last row */
+            change(&pair, any_below(pair.b->width),
+                   k % 2 == 0 ? any_below(pair.b->height) : k % 3 * (pair.b->height - 1) / 2);
+        ImageDifference difference;
+        RowCompare rows;
+        const ImageRegions whole = regions_of(&pair, NULL);
+        const size_t bytes = 4 * (size_t)pair.a->width;
+        image_compare_masked(pair.a, pair.b, NULL, 3, &difference);
+        assert_true(row_compare_begin(&rows, pair.a->width, pair.a->height, 3));
+        for (int y = 0; y < pair.a->height; y++) {
+            bool near = false;
+            for (int at = y - ROWS_AROUND; at <= y + ROWS_AROUND && !near; at++)
+                near = at >= 0 && at < pair.a->height &&
+                       memcmp(pair.a->pixels + bytes * (size_t)at, pair.b->pixels + bytes * (size_t)at, bytes) != 0;
+            const uint8_t *a = pair.a->pixels + bytes * (size_t)y, *b = pair.b->pixels + bytes * (size_t)y;
+            const bool differs = memcmp(a, b, bytes) != 0;
+            if (!near) continue;
+            memcpy(row_compare_place(&rows, 0, y), a, bytes);
+            if (differs) memcpy(row_compare_place(&rows, 1, y), b, bytes);
+            row_compare_row(&rows, y, differs);
+        }
+        assert_true(row_compare_end(&rows));
+        assert_memory_equal(&rows.difference, &difference, sizeof difference);
+        assert_memory_equal(&rows.regions, &whole, sizeof whole);
+        if (i % 4 == 0) assert_true(whole.edges == difference.pixels && difference.pixels > 20);
+        if (i == 1) assert_true(whole.edges < difference.pixels / 2);
+        row_compare_free(&rows);
+        free_pair(&pair);
+    }
 }
 
 RUN_TESTS(NULL, NULL)

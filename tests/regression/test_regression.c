@@ -110,15 +110,6 @@ static void assert_name(const Regression *regression, int frame, const char *nam
     assert_string_equal(region_name(regression->frames[frame].changes, 0).text, name);
 }
 
-/* By the pixels alone. */
-static void assert_moved(const Regression *regression, int frame, double right) {
-    assert_non_null(regression->frames[frame].changes);
-    const Change *change = &regression->frames[frame].changes->list[0];
-    assert_true(change->subject == SUBJECT_CONTENT && change->kind == CHANGE_MOVED);
-    assert_near(change->right, right, 0.3 * right); /* whole pixels exactly, parts nearly */
-    assert_near(change->up, 0, 0.02);
-}
-
 /* A picture as from another renderer: new pixels, but the frame's original texts. */
 static void replace_pixels(int frame, const Image *image) {
     static const char *const keys[] = {"Scene", "Frame", "State"};
@@ -183,7 +174,7 @@ TEST_WITH(a_box_moved_a_sixteenth_of_a_pixel, make, remove_folders) {
     regression = compared();
     assert_verdicts(&regression, "eeepee", "physics changed");
     assert_cause(&regression, 0, "frame 3: states differ in panel 1");
-    assert_moved(&regression, 3, 31.0 / 512);
+    assert_name(&regression, 3, "noise along edges");
     assert_string_equal(regression_begin(&regression).text, "");
     regression_free(&regression);
     /* A picture by itself says it in its own words, and nowhere else. */
@@ -237,7 +228,7 @@ TEST_WITH(a_run_of_other_pictures, make, remove_folders) {
     replace_pixels(3, image);
     assert_ok(trajectory_write(run, in(actual, "two_boxes-engine.npz"), &error), error);
     Regression regression = compared();
-    assert_moved(&regression, 3, 31);
+    assert_name(&regression, 3, "");
     assert_cause(&regression, 0, "frame 3: states differ, body 1 first");
     image_destroy(image);
     regression_free(&regression);

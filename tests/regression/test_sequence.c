@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "regression/compare.h"
+#include "regression/sequence.h"
 
 /* A folder of empty files with these names, separated by spaces. */
 static const char *folder_of(const char *name, const char *files) {

@@ -3,7 +3,7 @@
    view that does not come after megabytes of other members. */
 #include "testing.h"
 
-#include "regression/naming.h"
+#include "regression/view.h"
 
 #define VIEW                                                                      \
     "\"view\": {\"panels\": [{\"rectangle\": [4, 4, 72, 56], \"runs\": [\"%s\"]," \

@@ -34,8 +34,8 @@ else()
     set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "visual regression: compares folders of PNG files")
     set(CPACK_PACKAGE_DESCRIPTION
         "The commands compare and approve of twinbox, for pictures: which pixels of
-two folders of PNG files differ, with limits, masks, reports for people and
-CI systems, and a server with the protocol of odiff.")
+two folders of PNG files differ, with limits, masks, and reports for people
+and CI systems.")
     set(CPACK_DEBIAN_PACKAGE_CONFLICTS twinbox)
 endif()
 include(CPack)

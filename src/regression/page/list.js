@@ -22,8 +22,7 @@ function go(to) {
   get("name").textContent = f.name;
   get("frame-verdict").textContent = f.verdict;
   get("frame-verdict").className = look(f);
-  const flip = f.flip === null ? "" : `; FLIP ${f.flip}, 99th percentile ${f.flip_p99}`;
-  get("figures").textContent = f.words + flip;
+  get("figures").textContent = f.words;
   get("scrubber").max = listed.length;
   get("scrubber").value = at + 1;
   get("scrubber").setAttribute("aria-valuetext", f.name + ", " + f.verdict);
@@ -83,19 +82,17 @@ function row_of(index, row) {
   item.dataset.at = row;
   part("row-name", f.name);
   part(look(f), f.verdict);
-  const short = value => value === null ? "-" : Number(value.toPrecision(3));
-  const figures = [`FLIP ${short(f.flip)}`, `at most ${f.largest}`, `${short(100 * f.differing / f.counted)}%`];
-  if (f.differing > 0) part("row-figures", figures.join(" \u00b7 "));
+  if (f.differing > 0)
+    part("row-figures", `${Number((100 * f.differing / f.counted).toPrecision(3))}% \u00b7 at most ${f.largest}`);
   if (f.metadata) part("row-figures", "metadata differs");
   return item;
 }
 
-/* As regression_severity(). */
+/* As frame_severity(). */
 const severity = f => !f.failed ? -1 : f.severity === null ? Infinity : f.severity;
 
 /* By the order of the report, or the largest first. */
-const value_of = i => order === "name" ? 0 : order === "severity" ? severity(data.frames[i])
-  : data.frames[i][order] === null ? -1 : data.frames[i][order];
+const value_of = i => order === "name" ? 0 : order === "severity" ? severity(data.frames[i]) : data.frames[i][order];
 
 function list() {
   const index = at >= 0 ? listed[at] : -1, rows = get("rows");

@@ -16,17 +16,16 @@ function controls() {
   get("pause").textContent = running ? "Pause" : "Continue";
   get("blink-what").textContent = "Now: " + (second ? "actual" : "expected");
   get("difference-row").hidden = mode !== "difference";
-  get("flip-row").hidden = mode !== "flip";
   get("side-row").hidden = mode !== "side";
   get("ring-button").setAttribute("aria-pressed", String(ring));
   get("zoom").value = zoom;
   get("previous").disabled = at <= 0;
   get("next").disabled = at < 0 || at + 1 >= listed.length;
   clearInterval(timer);
-  if (mode === "blink" && running) timer = setInterval(flip, BLINK);
+  if (mode === "blink" && running) timer = setInterval(change_sides, BLINK);
 }
 
-function flip() {
+function change_sides() {
   second = !second;
   get("blink-what").textContent = "Now: " + (second ? "actual" : "expected");
   lay_out(false);
@@ -61,7 +60,7 @@ const KEYS = {
   "[": () => set_blend(blend - 5), "]": () => set_blend(blend + 5), a: toggle_all, m: toggle_ring,
   "+": () => set_zoom(ZOOMS[Math.min(ZOOMS.length - 1, ZOOMS.indexOf(zoom) + 1)]),
   "-": () => set_zoom(ZOOMS[Math.max(0, ZOOMS.indexOf(zoom) - 1)]), "0": () => set_zoom("fit"),
-  b: () => { if (mode === "blink") flip(); }, p: () => { if (mode === "blink") toggle_run(); },
+  b: () => { if (mode === "blink") change_sides(); }, p: () => { if (mode === "blink") toggle_run(); },
   "?": () => { get("help").open = true; get("help").querySelector("summary").focus(); },
 };
 MODES.forEach((name, i) => { KEYS[i + 1] = () => choose(name); get("mode-" + name).onclick = () => choose(name); });

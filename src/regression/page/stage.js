@@ -2,8 +2,8 @@
    scope, in the order stage.js, list.js, page.js. */
 const data = JSON.parse(document.getElementById("data").textContent);
 const get = id => document.getElementById(id);
-const MODES = ["expected", "actual", "difference", "flip", "swipe", "blink", "onion", "side"];
-const KINDS = {expected: "e", actual: "a", difference: "d", flip: "f"};
+const MODES = ["expected", "actual", "difference", "swipe", "blink", "onion", "side"];
+const KINDS = {expected: "e", actual: "a", difference: "d"};
 const MOST_ROWS = 2000, BLINK = 600, GAP = 8, NUMBER = 24; /* pixels: between two pictures; for a number above a mark */
 const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 
@@ -21,7 +21,7 @@ function look(f) { return f.failed ? "bad" : f.verdict === "equal" && !f.metadat
 
 function picture(kind) {
   const image = new Image();
-  image.alt = {e: "expected", a: "actual", d: "difference", f: "FLIP"}[kind] + " picture of " + frame().name;
+  image.alt = {e: "expected", a: "actual", d: "difference"}[kind] + " picture of " + frame().name;
   image.draggable = false;
   image.decoding = "sync"; /* prevents an empty flash before a new picture */
   image.loaded = new Promise(done => { image.onload = image.onerror = done; });
@@ -93,7 +93,7 @@ function list_regions() {
   const known = frame().regions || [], more = (frame().region_count || 0) - known.length;
   get("regions").replaceChildren(...known.map(region => {
     const item = document.createElement("li"), [left, top, right, bottom] = region.box;
-    const where = `${right - left} x ${bottom - top} pixels at (${left}, ${top}), ${region.pixels} of them differ`;
+    const where = `${right - left} x ${bottom - top} pixels at (${left}, ${top}), ${region.pixels} of them differ by at most ${region.largest}`;
     item.textContent = region.name ? `${region.name}: ${where}` : where;
     return item;
   }));
