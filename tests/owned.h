@@ -7,6 +7,7 @@
 #include "base/csv.h"
 #include "base/npz.h"
 #include "learning/dataset.h"
+#include "learning/launches.h"
 #include "learning/scene_training.h"
 #include "methods/block_lu.h"
 #include "methods/hybrid_memory.h"
@@ -46,6 +47,7 @@ OWNED_VALUE(GnsNet, gns_net_free)
 OWNED_VALUE(Reference, reference_free)
 OWNED_VALUE(SainNetwork, sain_network_destroy)
 OWNED_VALUE(SainNetworks, sain_networks_destroy)
+OWNED_VALUE(RecordedSteps, recorded_steps_free)
 OWNED_VALUE(SceneNetSamples, scene_net_samples_free)
 OWNED_VALUE(Subspace, subspace_free)
 OWNED_VALUE(Sweeps, sweeps_free)

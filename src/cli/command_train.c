@@ -330,8 +330,8 @@ bool command_train(int argc, char **argv, Error *error) {
         .options = options.rows,
         .input = {.value = texts.usage, .needed = "a dataset (or scene) is needed", OPTION_PATH(Options, input)},
         .inputs = {0, 1, "file"},
-        .help = "Train the network of a method, or its learned factors. Ctrl-C and SIGTERM stop it and keep the best "
-                "found so far.\v"
+        .help = "Train the network of a method. Ctrl-C and SIGTERM stop it: pair-net keeps its best network so far, "
+                "scene-net its latest, and the others a state, from which the same command continues.\v"
                 "Example: twinbox dataset single --bomb-x=-4:4:1 -o pairs.npz\n"
                 "         twinbox train pairs.npz -o net.npz --layers 10-10-2 --iterations 100\n"
                 "         twinbox train --kind scene-net stack -o scene-net.npz"};

@@ -181,8 +181,8 @@ typedef struct StabilityPages {
    how many pages there are, and what was left out. */
 bool stability_pages_write(const StabilityPages *pages, uint64_t key, Error *error);
 
-/* The kinds of network that `twinbox train` trains. To add a kind, write one file that defines train_NAME, and add one
-   line KIND(NAME) here. */
+/* The kinds of network that `twinbox train` trains. To add a kind, define train_NAME (train_launches.c has those that
+   learn from launches of scenes), and add one line KIND(NAME) here. */
 
 /* The first is the default of --kind. */
 #define TRAIN_KINDS(KIND) \

@@ -13,28 +13,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Poses of a scene's launches, recorded for training. */
-
-typedef struct LaunchRuns {
-    int count;        /* of launches */
-    int frames;       /* of each: steps + 1 */
-    int bodies;       /* with the bomb, the last */
-    Launch *launches; /* [count] */
-    BodyPose *poses;  /* [count, frames, bodies] NaN while the bomb does not exist */
-} LaunchRuns;
-
-/* Runs the launches [count] of a scene with a bomb by a method, in parallel; the same bits for any number of threads.
-   False with error set if a run fails, the poses take more than 1 GiB, or progress requests a stop. Free it in any
-   case. */
-bool launch_runs_record(LaunchRuns *runs, const Scene *scene, const Method *method, const Launch *launches, int count,
-                        const Progress *progress, Error *error);
-void launch_runs_free(LaunchRuns *runs);
-
-/* The poses[bodies] of a frame; frame 0 is the state before the first step. */
-static inline const BodyPose *launch_runs_frame(const LaunchRuns *runs, int launch, int frame) {
-    return runs->poses + ((size_t)launch * (size_t)runs->frames + (size_t)frame) * (size_t)runs->bodies;
-}
-
 /* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): inputs and changes by the solver, for touching pairs
    of bodies. A row is a pair in a step, or for TARGET_IMPULSE a pair in one sweep of a step. */
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The backward pass of gns: the steps of the forward pass in reverse. */
+#include "learning/gns_backward.h"
+
 #include "base/base.h"
-#include "learning/gns_training.h"
-#include "methods/steppers.h"
+#include "methods/gns_graph.h"
 #include "nets/kernels.h"
 #include "nets/kinds.h"
 
@@ -25,7 +26,7 @@ void gns_backward_free(GnsBackward *back) {
     *back = (GnsBackward){0};
 }
 
-static bool gns_backward_reserve(GnsBackward *back, const GnsGraph *graph, int width) {
+static bool reserve(GnsBackward *back, const GnsGraph *graph, int width) {
     const size_t most = (size_t)(graph->nodes > graph->edges ? graph->nodes : graph->edges) * (size_t)width;
     enum { ARRAYS = 8 };
     if (!array_reserve((void **)&back->numbers, &back->capacity, ARRAYS * most, sizeof *back->numbers)) return false;
@@ -35,7 +36,7 @@ static bool gns_backward_reserve(GnsBackward *back, const GnsGraph *graph, int w
     return true;
 }
 
-static void gns_backward_transpose(const float *from, float *to, int rows, int columns) {
+static void transpose(const float *from, float *to, int rows, int columns) {
     for (int r = 0; r < rows; r++)
         for (int c = 0; c < columns; c++) to[(ptrdiff_t)c * rows + r] = from[(ptrdiff_t)r * columns + c];
 }
@@ -43,10 +44,10 @@ static void gns_backward_transpose(const float *from, float *to, int rows, int c
 static void transpose_mlp(const GnsMlp *mlp, const float *parameters, float *transposed) {
     for (int part = 0; part + mlp->width <= mlp->inputs; part += mlp->width) {
         const int at = mlp->weights[0] + part * mlp->width;
-        gns_backward_transpose(parameters + at, transposed + at, mlp->width, mlp->width);
+        transpose(parameters + at, transposed + at, mlp->width, mlp->width);
     }
-    gns_backward_transpose(parameters + mlp->weights[1], transposed + mlp->weights[1], mlp->width, mlp->width);
-    gns_backward_transpose(parameters + mlp->weights[2], transposed + mlp->weights[2], mlp->width, mlp->outputs);
+    transpose(parameters + mlp->weights[1], transposed + mlp->weights[1], mlp->width, mlp->width);
+    transpose(parameters + mlp->weights[2], transposed + mlp->weights[2], mlp->width, mlp->outputs);
 }
 
 void gns_transpose(const GnsLayout *layout, const float *parameters, float *transposed) {
@@ -148,7 +149,7 @@ static void encoder_back(const Back *back, const GnsMlp *mlp, const GnsLayerTape
 
 bool gns_backward(GnsBackward *space, const GnsPass *pass, const GnsLayout *layout, const float *parameters,
                   const float *transposed, const GnsGraph *graph, const float *output_slopes, float *gradient) {
-    if (!gns_backward_reserve(space, graph, layout->width)) return false;
+    if (!reserve(space, graph, layout->width)) return false;
     const Back back = {space, pass->kernels, pass, graph, parameters, transposed, gradient, layout->width};
     const size_t width = (size_t)layout->width * sizeof(float);
     memcpy(space->slopes, output_slopes, (size_t)graph->nodes * GNS_OUTPUTS * sizeof(float));

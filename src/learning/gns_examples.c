@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Examples of gns: frames of recorded launches, with noise, and the accelerations that correct it. */
+#include "learning/gns_examples.h"
+
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
-#include "learning/dataset.h"
-#include "learning/gns_training.h"
+#include "learning/launches.h"
+#include "methods/gns_graph.h"
 #include "methods/methods.h"
-#include "methods/steppers.h"
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 
@@ -93,7 +94,7 @@ void gns_example_free(GnsExample *example) {
     *example = (GnsExample){.from = NULL};
 }
 
-static bool gns_examples_reserve(GnsExample *example, int bodies) {
+static bool reserve(GnsExample *example, int bodies) {
     const size_t count = (size_t)bodies * BOX_PARTICLES;
     GnsParticles *particles = &example->particles;
     return array_reserve((void **)&particles->body, &example->body_capacity, (size_t)bodies, sizeof *particles->body) &&
@@ -106,7 +107,7 @@ static bool gns_examples_reserve(GnsExample *example, int bodies) {
            array_reserve((void **)&example->counts, &example->count_capacity, (size_t)bodies, sizeof *example->counts);
 }
 
-static int gns_examples_below(uint64_t *random, int count) { return (int)(random_unit(random) * count); }
+static int below(uint64_t *random, int count) { return (int)(random_unit(random) * count); }
 
 /* Nearly normal, of deviation 1: four uniform numbers, each of variance 1/12. */
 static float normal(uint64_t *random) {
@@ -200,7 +201,7 @@ static int choose_middle(const GnsRuns *runs, int launch, int frame, int count, 
     int best = -1;
     float most = -1;
     for (int i = 0; i < tries; i++) {
-        const int body = body_of(runs, gns_examples_below(random, count));
+        const int body = body_of(runs, below(random, count));
         const float active = activity(runs, launch, body, frame);
         if (!(active > most)) continue;
         most = active;
@@ -233,10 +234,10 @@ static int choose_bodies(const GnsRuns *runs, int launch, int frame, int count, 
 /* *tries: boxes to choose the middle from; 1 where rest is to be shown, too. */
 static int choose_frame(const GnsRuns *runs, int launch, int *tries, uint64_t *random) {
     const int last = runs->runs.frames - 2;
-    const int kind = gns_examples_below(random, 4);
+    const int kind = below(random, 4);
     *tries = kind == 1 ? 1 : TOURNAMENT;
-    int frame = gns_examples_below(random, kind == 0 ? FIRST_FRAMES : last + 1);
-    if (kind >= 2) frame = runs->touch[launch] - BEFORE_TOUCH + gns_examples_below(random, AFTER_TOUCH);
+    int frame = below(random, kind == 0 ? FIRST_FRAMES : last + 1);
+    if (kind >= 2) frame = runs->touch[launch] - BEFORE_TOUCH + below(random, AFTER_TOUCH);
     return frame < 0 ? 0 : frame > last ? last : frame;
 }
 
@@ -246,20 +247,20 @@ static float often_small(uint64_t *random) {
     return (float)(x * x);
 }
 
-static float either_sign(uint64_t *random) { return gns_examples_below(random, 2) == 0 ? -1.0f : 1.0f; }
+static float either_sign(uint64_t *random) { return below(random, 2) == 0 ? -1.0f : 1.0f; }
 
 /* A box of the scene, or the bomb, alone, with a past of free flight or of constant velocity, as at the start of a
    run. */
 static void fill_flight(GnsExample *example, int launch, float noise, uint64_t *random) {
     const GnsRuns *runs = example->from;
-    const int body = body_of(runs, gns_examples_below(random, runs->moving_count + 1));
+    const int body = body_of(runs, below(random, runs->moving_count + 1));
     const BodyDef own = definition(runs, launch, body);
     const float dt = runs->scene->dt;
     const float x = either_sign(random) * flight_speed * often_small(random);
     const float y = either_sign(random) * flight_speed * often_small(random);
     const float spin = either_sign(random) * flight_spin * often_small(random);
     const float height = flight_low + flight_height * (float)random_unit(random);
-    const bool falls = gns_examples_below(random, 2) == 0;
+    const bool falls = below(random, 2) == 0;
     BodyPose poses[GNS_HISTORY + 2] = {{{x, height}, (float)(6.3 * random_unit(random))}};
     Vec2 velocity = vec2(x, y);
     for (int k = 1; k <= GNS_HISTORY + 1; k++) {
@@ -275,12 +276,11 @@ static void fill_flight(GnsExample *example, int launch, float noise, uint64_t *
 
 bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t number) {
     uint64_t random = examples->seed + number * UINT64_C(0x632be59bd9b4e019);
-    const GnsRuns *runs = example->from = &examples->scenes[gns_examples_below(&random, examples->count)];
+    const GnsRuns *runs = example->from = &examples->scenes[below(&random, examples->count)];
     int tries;
-    const int launch = gns_examples_below(&random, runs->runs.count),
-              frame = choose_frame(runs, launch, &tries, &random);
-    if (gns_examples_below(&random, FLIGHT_ONE_IN) == 0) {
-        if (!gns_examples_reserve(example, 1)) return false;
+    const int launch = below(&random, runs->runs.count), frame = choose_frame(runs, launch, &tries, &random);
+    if (below(&random, FLIGHT_ONE_IN) == 0) {
+        if (!reserve(example, 1)) return false;
         example->particles.bodies = 1;
         fill_flight(example, launch, examples->noise, &random);
         return true;
@@ -292,8 +292,8 @@ bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t
     const int bodies = choose_bodies(runs, launch, frame, count, middle, chosen, distances);
     const Vec2 size = definition(runs, launch, middle).size;
     const float reach = counting * (size.x > size.y ? size.x : size.y);
-    if (!gns_examples_reserve(example, bodies)) return false;
-    const float whole = (float)gns_examples_below(&random, 2);
+    if (!reserve(example, bodies)) return false;
+    const float whole = (float)below(&random, 2);
     example->particles.bodies = bodies;
     for (int i = 0; i < bodies; i++) {
         fill_body(example, i, runs, launch, chosen[i], frame);
@@ -301,14 +301,5 @@ bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t
         fill_target(example, i, &next, examples->noise, whole, &random);
         example->counts[i] = bodies == count || distances[i] <= reach * reach ? 1.0f : 0.0f;
     }
-    return true;
-}
-
-bool gns_example_frame(GnsExample *example, const GnsRuns *runs, int launch, int frame) {
-    const int count = runs->moving_count + (frame >= runs->scene->bomb.frame ? 1 : 0);
-    if (!gns_examples_reserve(example, count)) return false;
-    example->particles.bodies = count;
-    example->from = runs;
-    for (int i = 0; i < count; i++) fill_body(example, i, runs, launch, body_of(runs, i), frame);
     return true;
 }

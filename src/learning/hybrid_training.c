@@ -1,168 +1,422 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of hybrid, launch after launch. */
+/* Training of hybrid: what its memory learns from a step, and launch after launch.
+
+   A solved impact that the memory does not answer teaches it a larger ellipsoid, or a new entry. Source: Pope (1997),
+   3, and Lu, Pope (2009) for the checks of answers; the linear map is a fit over neighbours instead of a derivative
+   (hybrid_memory.h). A derivative by finite differences would take a converged solve for each direction of the key, most
+   of which no launch takes, and the contacts change their features under small turns. The fit takes none, and is exact
+   along the launches. */
 #include "learning/hybrid_training.h"
 
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
 #include "engine/engine.h"
+#include "learning/launches.h"
 #include "learning/learning.h"
-#include "learning/scene_training.h"
-#include "learning/scene_training_internal.h"
 #include "methods/hybrid.h"
 #include "methods/hybrid_memory.h"
-#include "methods/methods.h"
 #include "methods/pair.h"
-#include "nets/kinds.h"
+#include "methods/sweeps.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { STORE_EVERY = 50 }; /* launches */
+enum {
+    STORE_EVERY = 50,  /* launches */
+    KEY_LAUNCHES = 40, /* the first, whose keys find the directions */
+    CHECK_EVERY = 10
+};
+
+/* An ellipsoid grows by steps of at most this: farther points are accurate by chance. m/s; 2 are 17 cm of the bomb's
+   place. */
+static const float step_max = 2;
+/* Share of the neighbours' mean squared distance that is added to the normal equations: neighbours in one direction
+   leave them singular. */
+static const double ridge = 1e-4;
+/* Relative to the largest: smaller variances of keys are rounding. */
+static const double least_variance = 1e-10;
+
+/* A step that asked the memory, with copies of all. */
+typedef struct AskedStep {
+    ContactProblem problem;
+    ContactSolution solution; /* its arrays are in `block`, as `others` */
+    uint64_t hash;
+    float bomb[HYBRID_NUMBERS];
+    float *others; /* [6 (body_count - 1)] */
+    int entry;     /* that answered, or -1: the solution is converged */
+    char *block;
+} AskedStep;
 
 typedef struct Trainer {
     const Scene *scene;
     const HybridTraining *training;
-    World *prefix;
-    Launch *launches; /* [training->launches] */
-    AskedSteps asked; /* of the launch; at first of all launches so far */
+    World *past;
+    AskedStep *asked; /* [asked_count] of the launch; at first of all launches so far */
+    int asked_count;
+    size_t asked_capacity;
     ContactSolver interior;
     PairMoment answer, converged; /* work space */
     HybridMemory *memory;         /* NULL until the directions are fitted */
 } Trainer;
 
-/* Depends on the seed and i only. */
-Launch hybrid_launch(const Scene *scene, uint64_t seed, int i, bool turns) {
-    const SceneBomb *bomb = &scene->bomb;
-    uint64_t state = seed;
-    state = split_mix(&state) + (uint64_t)i;
-    Launch launch = launch_of(scene);
-    launch.x = scene_span_at(&bomb->x, random_unit(&state));
-    const double rotation = random_unit(&state), spin = random_unit(&state);
-    launch.rotation = scene_span_at(&bomb->rotation, rotation);
-    launch.spin = scene_span_at(&bomb->spin, spin);
-    if (turns) launch_turn(&launch, scene, rotation, spin);
-    return launch;
+/* A step, solved to convergence. */
+typedef struct SolvedStep {
+    const ContactProblem *problem;
+    const ContactSolution *solution;
+    HybridQuery query;
+} SolvedStep;
+
+/* An entry in the making. */
+typedef struct NewEntry {
+    int count; /* neighbours */
+    int32_t near[HYBRID_NEAR];
+    float from[HYBRID_NEAR][HYBRID_KEY_MAX]; /* x_j - x0 */
+    float distance[HYBRID_NEAR];             /* its squared length */
+    float weights[HYBRID_NEAR * HYBRID_KEY_MAX];
+    double images[HYBRID_NEAR][HYBRID_NEAR]; /* products of the velocity changes that P_j - P0 make */
+    float metric[HYBRID_KEY_MAX * (HYBRID_KEY_MAX + 1) / 2];
+} NewEntry;
+
+/* The nearest entries within 2 step_max: between them both ellipsoids can reach. */
+static void find_neighbours(NewEntry *fit, const HybridMemory *memory, const HybridQuery *query) {
+    const size_t size = (size_t)memory->key_size;
+    int count;
+    const int32_t *entries = hybrid_memory_about(memory, query, 2 * step_max, &count);
+    fit->count = 0;
+    for (int e = 0; e < count; e++) {
+        const float *other = memory->keys + (size_t)entries[e] * size;
+        float from[HYBRID_KEY_MAX], distance = 0;
+        for (size_t i = 0; i < size; i++) {
+            from[i] = other[i] - query->key[i];
+            distance += from[i] * from[i];
+        }
+        int at = fit->count < HYBRID_NEAR ? fit->count++ : HYBRID_NEAR;
+        if (at == HYBRID_NEAR && !(distance < fit->distance[--at])) continue;
+        for (; at > 0 && distance < fit->distance[at - 1]; at--) {
+            fit->near[at] = fit->near[at - 1];
+            fit->distance[at] = fit->distance[at - 1];
+            memcpy(fit->from[at], fit->from[at - 1], size * sizeof *from);
+        }
+        fit->near[at] = entries[e];
+        fit->distance[at] = distance;
+        memcpy(fit->from[at], from, size * sizeof *from);
+    }
+    while (fit->count > 0 && fit->distance[fit->count - 1] > 4 * step_max * step_max) fit->count--;
+    for (int n = fit->count; n < HYBRID_NEAR; n++) fit->near[n] = -1;
 }
 
-static void draw_launches(Trainer *trainer) {
-    const HybridTraining *training = trainer->training;
-    for (int i = 0; i < training->launches; i++)
-        trainer->launches[i] =
-            hybrid_launch(trainer->scene, training->seed, i, training->turned_from >= 0 && i >= training->turned_from);
+/* Rows of (D^T D + ridge)^-1 D^T, with the neighbours' x_j - x0 as columns of D; the inverse by Gauss and Jordan. */
+static void fit_weights(NewEntry *fit, int key_size) {
+    double normal[HYBRID_NEAR][HYBRID_NEAR], trace = 0;
+    const int count = fit->count;
+    for (int n = 0; n < count; n++)
+        for (int m = 0; m < count; m++) {
+            normal[n][m] = 0;
+            for (int i = 0; i < key_size; i++) normal[n][m] += (double)fit->from[n][i] * (double)fit->from[m][i];
+            trace += n == m ? normal[n][n] : 0;
+        }
+    for (int n = 0; n < count; n++) normal[n][n] += ridge * trace / count + 1e-12;
+    for (int p = 0; p < count; p++) {
+        const double pivot = 1 / normal[p][p];
+        normal[p][p] = 1;
+        for (int j = 0; j < count; j++) normal[p][j] *= pivot;
+        for (int i = 0; i < count; i++) {
+            if (i == p) continue;
+            const double factor = normal[i][p];
+            normal[i][p] = 0;
+            for (int j = 0; j < count; j++) normal[i][j] -= factor * normal[p][j];
+        }
+    }
+    for (int n = 0; n < HYBRID_NEAR; n++)
+        for (int i = 0; i < key_size; i++) {
+            double sum = 0;
+            for (int m = 0; n < count && m < count; m++) sum += normal[n][m] * (double)fit->from[m][i];
+            fit->weights[n * key_size + i] = (float)sum;
+        }
 }
 
-static bool fit_keys(Trainer *trainer, Error *error) {
-    const AskedSteps *asked = &trainer->asked;
-    if (asked->count == 0)
-        return error_input(error, trainer->scene->name, "no launch has an impact whose residual reaches the gate");
-    const ContactProblem *first = &asked->items[0].problem;
-    HybridMemory *memory = trainer->memory =
-        hybrid_memory_create(first->body_count, first->bomb, trainer->training->components, error);
-    if (memory == NULL) return false;
-    memory->gate = hybrid_gate;
-    memory->tolerance = trainer->training->tolerance;
-    snprintf(memory->scene, sizeof memory->scene, "%s", trainer->scene->name);
-    snprintf(memory->command, sizeof memory->command, "%s", trainer->training->command);
-    const size_t width = (size_t)memory->numbers;
-    float *others = malloc((size_t)asked->count * width * sizeof *others);
-    if (others == NULL) return error_memory(error, "hybrid");
-    for (int i = 0; i < asked->count; i++)
-        memcpy(others + (size_t)i * width, asked->items[i].others, width * sizeof *others);
-    const bool ok = key_fit(memory, others, asked->count, trainer->training->seed, error);
-    free(others);
-    return ok;
-}
-
-static bool hybrid_training_check(Trainer *trainer, SolvedStep *step, int entry, HybridLaunch *launch, Error *error) {
-    if (!pair_moment_reserve(&trainer->converged, step->problem)) return error_memory(error, "hybrid");
-    ContactSolution converged = pair_moment_solution(&trainer->converged),
-                    answer = pair_moment_solution(&trainer->answer);
-    if (!trainer->interior.kind->solve(trainer->interior.state, step->problem, &converged, error)) return false;
-    step->solution = &converged;
-    launch->error += (double)entry_check(trainer->memory, entry, step, &answer);
-    step->solution = NULL;
-    launch->checked++;
+/* Products of the velocity changes that P_j - P0 make, means over the bodies that move. */
+static bool find_images(NewEntry *fit, const HybridMemory *memory, const SolvedStep *step) {
+    const ContactProblem *problem = step->problem;
+    const size_t bodies = (size_t)problem->body_count;
+    BodyVelocity *changes = calloc(HYBRID_NEAR * bodies, sizeof *changes);
+    if (changes == NULL) return false;
+    int moving = 0;
+    for (size_t i = 0; i < bodies; i++) moving += problem->bodies[i].inv_mass > 0;
+    for (int n = 0; n < fit->count; n++) {
+        const ContactImpulse *other = memory->impulses + memory->entry_begin[fit->near[n]];
+        for (int i = 0; i < problem->contact_count; i++) {
+            const ContactImpulse own = step->solution->impulses[i];
+            contact_push(changes + (size_t)n * bodies, &problem->contacts[i], problem->bodies,
+                         (ContactImpulse){other[i].normal - own.normal, other[i].tangent - own.tangent});
+        }
+    }
+    for (int n = 0; n < fit->count; n++)
+        for (int m = 0; m < fit->count; m++) {
+            double sum = 0;
+            for (size_t i = 0; i < bodies; i++) {
+                const BodyVelocity *a = &changes[(size_t)n * bodies + i], *b = &changes[(size_t)m * bodies + i];
+                sum += (double)(a->linear.x * b->linear.x + a->linear.y * b->linear.y + a->angular * b->angular / 6);
+            }
+            fit->images[n][m] = moving > 0 ? sum / moving : 0;
+        }
+    free(changes);
     return true;
+}
+
+static bool add_entry(HybridMemory *memory, const SolvedStep *step, Error *error) {
+    NewEntry fit;
+    find_neighbours(&fit, memory, &step->query);
+    fit_weights(&fit, memory->key_size);
+    if (!find_images(&fit, memory, step)) return error_memory(error, "hybrid");
+    /* M = A^T A / tolerance^2 + 1 / tolerance^2, A here of velocities: inside the ellipsoid the linear term is at most
+       the tolerance, as in Pope (1997), and in directions that A does not know bodies are taken to follow the state one
+       to one. */
+    const int size = memory->key_size;
+    const double unit = 1 / ((double)memory->tolerance * (double)memory->tolerance);
+    float *metric = fit.metric;
+    for (int i = 0; i < size; i++)
+        for (int j = 0; j <= i; j++) {
+            double sum = i == j ? 1 : 0;
+            for (int n = 0; n < fit.count; n++)
+                for (int m = 0; m < fit.count; m++)
+                    sum += (double)fit.weights[n * size + i] * fit.images[n][m] * (double)fit.weights[m * size + j];
+            *metric++ = (float)(unit * sum);
+        }
+    const HybridEntry entry = {step->solution->impulses, fit.near, fit.weights, fit.metric,
+                               memory->tolerance * memory->tolerance};
+    return hybrid_memory_add(memory, &step->query, &entry, error);
+}
+
+/* Of an entry's answer, RMS over the dynamic bodies of |dv|^2 + dspin^2 / 6, as in methods/reference.h, m/s. */
+static float error_of(const HybridMemory *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
+    const ContactProblem *problem = step->problem;
+    const BodyVelocity *a = answer->velocities, *b = step->solution->velocities;
+    double sum = 0;
+    int count = 0;
+    hybrid_answer(memory, entry, step->query.key, problem, answer);
+    for (int i = 0; i < problem->body_count; i++) {
+        if (problem->bodies[i].inv_mass == 0) continue;
+        const double x = (double)(a[i].linear.x - b[i].linear.x), y = (double)(a[i].linear.y - b[i].linear.y),
+                     spin = (double)(a[i].angular - b[i].angular);
+        sum += x * x + y * y + spin * spin / 6;
+        count++;
+    }
+    return count > 0 ? (float)sqrt(sum / count) : 0;
+}
+
+static bool is_near(const HybridMemory *memory, int entry, const float *key) {
+    const float *centre = memory->keys + (size_t)entry * (size_t)memory->key_size;
+    float sum = 0;
+    for (int i = 0; i < memory->key_size; i++) sum += (key[i] - centre[i]) * (key[i] - centre[i]);
+    return sum <= step_max * step_max;
 }
 
 static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, HybridLaunch *launch, Error *error) {
+    HybridMemory *memory = trainer->memory;
     float key[HYBRID_KEY_MAX];
-    hybrid_memory_key(trainer->memory, asked->bomb, asked->others, key);
+    hybrid_memory_key(memory, asked->bomb, asked->others, key);
     SolvedStep step = {&asked->problem, &asked->solution, {asked->hash, asked->problem.contact_count, key}};
-    if (!pair_moment_reserve(&trainer->answer, &asked->problem)) return error_memory(error, "hybrid");
-    if (asked->entry >= 0) return !checks || hybrid_training_check(trainer, &step, asked->entry, launch, error);
+    if (!pair_moment_reserve(&trainer->answer, &asked->problem) ||
+        !pair_moment_reserve(&trainer->converged, &asked->problem))
+        return error_memory(error, "hybrid");
     ContactSolution answer = pair_moment_solution(&trainer->answer);
-    Lesson lesson;
-    if (!entry_learn(trainer->memory, &step, trainer->training->limit, &answer, &lesson, error)) return false;
-    launch->grown += lesson == LESSON_GROWN;
-    launch->added += lesson == LESSON_ADDED;
-    launch->full += lesson == LESSON_FULL;
+
+    /* An answer is checked, and its ellipsoid shrinks if it was wrong. */
+    if (asked->entry >= 0) {
+        if (!checks) return true;
+        ContactSolution converged = pair_moment_solution(&trainer->converged);
+        if (!trainer->interior.kind->solve(trainer->interior.state, step.problem, &converged, error)) return false;
+        step.solution = &converged;
+        const float wrong = error_of(memory, asked->entry, &step, &answer);
+        if (!(wrong <= memory->tolerance)) hybrid_memory_stretch(memory, asked->entry, key);
+        launch->error += (double)wrong;
+        launch->checked++;
+        return true;
+    }
+
+    /* A step that was not answered may be known by now, from the steps before it. */
+    const int entry = hybrid_memory_nearest(memory, &step.query, step_max);
+    if (entry >= 0 && hybrid_memory_distance(memory, entry, key) <= 1) return true;
+    if (entry >= 0 && is_near(memory, entry, key) && error_of(memory, entry, &step, &answer) <= memory->tolerance) {
+        hybrid_memory_stretch(memory, entry, key);
+        launch->grown++;
+        return true;
+    }
+    if (memory->entry_count == HYBRID_ENTRIES_MAX || step.query.contacts > HYBRID_CONTACTS_MAX ||
+        hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, step.query.contacts) >
+            trainer->training->limit) {
+        launch->full++;
+        return true;
+    }
+    launch->added++;
+    return add_entry(memory, &step, error);
+}
+
+/* Makes the memory: its centre is the mean of the bodies' numbers in the steps so far, its rows are their strongest
+   directions. */
+static bool fit_keys(Trainer *trainer, Error *error) {
+    const HybridTraining *training = trainer->training;
+    if (trainer->asked_count == 0)
+        return error_input(error, trainer->scene->name, "no launch has an impact whose residual reaches the gate");
+    const ContactProblem *first = &trainer->asked[0].problem;
+    HybridMemory *memory = trainer->memory =
+        hybrid_memory_create(first->body_count, first->bomb, training->components, error);
+    if (memory == NULL) return false;
+    memory->gate = hybrid_gate;
+    memory->tolerance = training->tolerance;
+    snprintf(memory->scene, sizeof memory->scene, "%s", trainer->scene->name);
+    snprintf(memory->command, sizeof memory->command, "%s", training->command);
+    const size_t width = (size_t)memory->numbers, count = (size_t)trainer->asked_count;
+    float *others = malloc(count * width * sizeof *others);
+    double *mean = malloc((2 + width) * width * sizeof *mean), *values = mean + width, *vectors = values + width;
+    bool ok = (others != NULL && mean != NULL) || error_memory(error, "hybrid");
+    for (size_t i = 0; ok && i < count; i++)
+        memcpy(others + i * width, trainer->asked[i].others, width * sizeof *others);
+    const PrincipalRows rows = {others, count, memory->numbers, 1};
+    if (ok) principal_mean(&rows, mean);
+    ok = ok && principal_components(&rows, mean, values, vectors, error);
+    for (size_t i = 0; ok && i < width; i++) {
+        memory->centre[i] = (float)mean[i];
+        for (size_t c = 0; c < (size_t)memory->components; c++)
+            memory->rows[i * (size_t)memory->components + c] =
+                c < width && values[c] > least_variance * values[0] ? (float)vectors[c * width + i] : 0;
+    }
+    free(others);
+    free(mean);
+    return ok;
+}
+
+static void forget_asked(Trainer *trainer) {
+    for (int i = 0; i < trainer->asked_count; i++) {
+        problem_copy_free(&trainer->asked[i].problem);
+        free(trainer->asked[i].block);
+    }
+    trainer->asked_count = 0;
+}
+
+static bool keep_asked(void *context, const HybridStep *step, Error *error) {
+    Trainer *trainer = context;
+    const size_t bodies = (size_t)step->problem->body_count, contacts = (size_t)step->problem->contact_count;
+    const size_t velocities = bodies * sizeof(BodyVelocity), impulses = contacts * sizeof(ContactImpulse),
+                 numbers = HYBRID_NUMBERS * (bodies - 1) * sizeof(float);
+    if (!array_reserve((void **)&trainer->asked, &trainer->asked_capacity, (size_t)trainer->asked_count + 1,
+                       sizeof *trainer->asked))
+        return error_memory(error, "hybrid");
+    AskedStep *copy = &trainer->asked[trainer->asked_count++];
+    *copy = (AskedStep){.hash = step->query.hash, .entry = step->entry};
+    copy->block = malloc(velocities + impulses + numbers + 1); /* all of four-byte numbers */
+    if (!problem_copy(&copy->problem, step->problem) || copy->block == NULL) return error_memory(error, "hybrid");
+    copy->solution.velocities = (BodyVelocity *)copy->block;
+    copy->solution.impulses = (ContactImpulse *)(copy->block + velocities);
+    copy->others = (float *)(copy->block + velocities + impulses);
+    memcpy(copy->solution.velocities, step->solution->velocities, velocities);
+    if (impulses > 0) memcpy(copy->solution.impulses, step->solution->impulses, impulses);
+    memcpy(copy->others, step->others, numbers);
+    memcpy(copy->bomb, step->bomb, sizeof copy->bomb);
     return true;
+}
+
+static bool make_hybrid(void *context, int i, ContactSolver *solver, Error *error) {
+    Trainer *trainer = context;
+    (void)i;
+    return hybrid_make(solver, trainer->memory, &(HybridWatch){keep_asked, trainer}, error);
+}
+
+static bool see_nothing(void *context, const LaunchStep *step, Error *error) {
+    (void)context, (void)step, (void)error;
+    return true;
+}
+
+/* Launch i depends on the seed and i only. */
+static Launch draw_launch(const Trainer *trainer, int i) {
+    const SceneBomb *bomb = &trainer->scene->bomb;
+    uint64_t state = trainer->training->seed;
+    state = split_mix(&state) + (uint64_t)i;
+    Launch launch = launch_of(trainer->scene);
+    launch.x = scene_span_at(&bomb->x, random_unit(&state));
+    launch.rotation = scene_span_at(&bomb->rotation, random_unit(&state));
+    launch.spin = scene_span_at(&bomb->spin, random_unit(&state));
+    return launch;
 }
 
 /* Runs a launch and learns from it. The launches before the directions are fitted are learned together. */
 static bool do_launch(Trainer *trainer, int i, Error *error) {
+    const HybridTraining *training = trainer->training;
+    const Launch drawn = draw_launch(trainer, i);
+    const LaunchWatch watch = {.scene = trainer->scene,
+                               .launches = &drawn,
+                               .count = 1,
+                               .impact_frames = training->steps,
+                               .after_frames = 1,
+                               .may_fail = true,
+                               .make = make_hybrid,
+                               .see = see_nothing,
+                               .context = trainer,
+                               .past = trainer->past};
     HybridLaunch launch = {.number = i + 1};
-    const int before = trainer->asked.count, last = trainer->training->launches - 1;
-    const int64_t steps_before = trainer->asked.steps;
-    const double seconds_before = trainer->asked.seconds;
-    if (!launch_steps_run(trainer->scene, trainer->prefix, &trainer->launches[i], trainer->memory,
-                          trainer->training->steps, &trainer->asked, error))
+    const int before = trainer->asked_count;
+    if (!launches_observe(&watch, NULL, NULL, error)) return false;
+    launch.asked = trainer->asked_count - before;
+    for (int k = before; k < trainer->asked_count; k++) launch.answered += trainer->asked[k].entry >= 0;
+    if (trainer->memory == NULL && (i + 1 == KEY_LAUNCHES || i == training->launches - 1) && !fit_keys(trainer, error))
         return false;
-    launch.asked = trainer->asked.count - before;
-    launch.steps = trainer->asked.steps - steps_before;
-    const double copying = trainer->asked.seconds - seconds_before;
-    for (int k = before; k < trainer->asked.count; k++) launch.answered += trainer->asked.items[k].entry >= 0;
-    const double begin = clock_thread_seconds();
-    const bool first = trainer->memory == NULL;
-    if (first && (i + 1 == HYBRID_FIRST || i == last) && !fit_keys(trainer, error)) return false;
     if (trainer->memory != NULL) {
-        const bool checks = i % HYBRID_CHECK_EVERY == 0;
-        for (int k = 0; k < trainer->asked.count; k++)
-            if (!learn_step(trainer, &trainer->asked.items[k], checks, &launch, error)) return false;
-        asked_steps_clear(&trainer->asked);
+        for (int k = 0; k < trainer->asked_count; k++)
+            if (!learn_step(trainer, &trainer->asked[k], i % CHECK_EVERY == 0, &launch, error)) return false;
+        forget_asked(trainer);
         trainer->memory->launches = i + 1;
     }
-    launch.learning += clock_thread_seconds() - begin + copying;
     launch.memory = trainer->memory;
-    const HybridTraining *training = trainer->training;
-    return training->on_launch == NULL || training->on_launch(training->context, &launch, error);
+    if (training->on_launch != NULL) training->on_launch(training->context, &launch);
+    return true;
 }
 
-/* A state of the same command, or nothing. */
+/* The memory of a state of the same command, or nothing. */
 static bool resume(Trainer *trainer, Error *error) {
     const HybridTraining *training = trainer->training;
     bool there;
     if (training->state_path == NULL) return true;
     if (!file_find(training->state_path, &there, error)) return false;
     if (!there) return true;
-    trainer->memory = hybrid_memory_read(training->state_path, error);
-    if (trainer->memory == NULL) return false;
-    if (strcmp(trainer->memory->command, training->command) == 0 && trainer->memory->launches <= training->launches)
-        return true;
-    hybrid_memory_destroy(trainer->memory);
-    trainer->memory = NULL;
+    HybridMemory *memory = hybrid_memory_read(training->state_path, error);
+    if (memory == NULL) return false;
+    if (strcmp(memory->command, training->command) == 0 && memory->launches <= training->launches)
+        trainer->memory = memory;
+    else
+        hybrid_memory_destroy(memory);
     return true;
 }
 
-static bool hybrid_training_store(const Trainer *trainer, Error *error) {
-    const HybridMemory *memory = trainer->memory;
-    if (trainer->training->state_path == NULL || memory == NULL || memory->entry_count == 0) return true;
-    return hybrid_memory_write(memory, trainer->training->state_path, error);
+static bool check_launches(const Trainer *trainer, Error *error) {
+    const int count = trainer->training->launches;
+    Launch *launches = malloc((size_t)count * sizeof *launches);
+    if (launches == NULL) return error_memory(error, "hybrid");
+    for (int i = 0; i < count; i++) launches[i] = draw_launch(trainer, i);
+    const bool ok = launches_check(trainer->scene, launches, count, error);
+    free(launches);
+    return ok;
 }
 
-static bool hybrid_training_train(Trainer *trainer, const Progress *progress, Error *error) {
-    const int launches = trainer->training->launches;
-    if (!launches_check(trainer->scene, trainer->launches, launches, error) || !resume(trainer, error)) return false;
-    trainer->prefix = hybrid_prefix(trainer->scene, error);
-    if (trainer->prefix == NULL || !hybrid_make(&trainer->interior, NULL, NULL, error)) return false;
+static bool train(Trainer *trainer, const Progress *progress, Error *error) {
+    const HybridTraining *training = trainer->training;
+    const int launches = training->launches;
+    if (!check_launches(trainer, error) || !resume(trainer, error) ||
+        !hybrid_make(&trainer->interior, NULL, NULL, error))
+        return false;
+    trainer->past = launches_past(trainer->scene, &trainer->interior, error);
+    if (trainer->past == NULL) return false;
     for (int i = trainer->memory != NULL ? trainer->memory->launches : 0; i < launches; i++) {
         if (!do_launch(trainer, i, error)) return false;
         const bool goes_on = progress_report(progress, i + 1, launches);
-        if ((!goes_on || (i + 1) % STORE_EVERY == 0) && !hybrid_training_store(trainer, error)) return false;
+        const HybridMemory *memory = trainer->memory;
+        if ((!goes_on || (i + 1) % STORE_EVERY == 0) && training->state_path != NULL && memory != NULL &&
+            memory->entry_count > 0 && !hybrid_memory_write(memory, training->state_path, error))
+            return false;
         if (!goes_on) break;
     }
     return trainer->memory != NULL || error_interrupted(error, "hybrid", "stopped before anything was learned");
@@ -171,18 +425,12 @@ static bool hybrid_training_train(Trainer *trainer, const Progress *progress, Er
 HybridMemory *hybrid_training_run(const Scene *scene, const HybridTraining *training, const Progress *progress,
                                   Error *error) {
     if (!scene->bomb.present) return error_input(error, scene->name, "has no bomb to launch"), NULL;
-    Trainer trainer = {.scene = scene,
-                       .training = training,
-                       .launches = malloc((size_t)training->launches * sizeof *trainer.launches)};
-    bool ok = trainer.launches != NULL || error_memory(error, "hybrid");
-    if (ok) {
-        draw_launches(&trainer);
-        ok = hybrid_training_train(&trainer, progress, error);
-    }
-    world_destroy(trainer.prefix);
+    Trainer trainer = {.scene = scene, .training = training};
+    const bool ok = train(&trainer, progress, error);
+    forget_asked(&trainer);
+    free(trainer.asked);
+    world_destroy(trainer.past);
     solver_destroy(&trainer.interior);
-    asked_steps_free(&trainer.asked);
-    free(trainer.launches);
     pair_moment_free(&trainer.answer);
     pair_moment_free(&trainer.converged);
     if (ok) return trainer.memory;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of sain: the loss and its gradient, normalisation and ranges, steps, held-out errors. */
+/* The fit of a form of sain: the loss and its gradient, normalisation and ranges, steps, errors on other samples. */
+#include "learning/sain_fit.h"
+
 #include "base/base.h"
 #include "learning/learning.h"
-#include "learning/sain_training.h"
 #include "methods/sain.h"
 #include "methods/sain_view.h"
 #include "nets/nets.h"
@@ -36,40 +37,22 @@ void sain_loss_free(SainLoss *loss) {
     *loss = (SainLoss){0};
 }
 
-static int row_count(const SainPart *part) {
+static int block_count(const SainPart *part) {
     int rows = 0;
     for (int i = 0; i < part->count; i++) rows += part->samples->items[part->items[i]].rows;
-    return rows;
+    return (rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
 }
 
-static bool reserve_blocks(SainLoss *loss, int blocks) {
-    Error error = {0};
-    if (!array_reserve((void **)&loss->relation, &loss->block_capacity, (size_t)blocks, sizeof *loss->relation))
-        return false;
-    while (loss->block_count < blocks) {
-        NetworkBlock *block = network_block_create(loss->network->relation, &error);
-        if (block == NULL) return false;
-        loss->relation[loss->block_count++] = block;
-    }
-    return true;
-}
-
-/* What normalises inputs, and the ranges that they are moved into; NULL: they stay. */
-typedef struct Inputs {
-    const Normalisation *by;
-    const float *low, *high;
-} Inputs;
-
-static void sain_fit_normalise(double *values, int row, const float *numbers, int count, const Inputs *inputs) {
+/* Normalised numbers to row `row` of a block. The form without an engine moves its inputs into the ranges, as at run
+   time; samples that are trained on are within them anyway. */
+static void fill_row(double *values, int row, const float *numbers, int count, const Normalisation *by, bool moves,
+                     const float *low, const float *high) {
     for (int i = 0; i < count; i++) {
         float x = numbers[i];
-        if (inputs->low != NULL) x = x < inputs->low[i] ? inputs->low[i] : x > inputs->high[i] ? inputs->high[i] : x;
-        values[i * BLOCK_ROWS + row] = ((double)x - (double)inputs->by->offset[i]) * (double)inputs->by->scale[i];
+        if (moves) x = x < low[i] ? low[i] : x > high[i] ? high[i] : x;
+        values[i * BLOCK_ROWS + row] = ((double)x - (double)by->offset[i]) * (double)by->scale[i];
     }
 }
-
-/* As at run time, for the form without an engine. Samples that are trained on are within the ranges anyway. */
-static bool moves_into_ranges(const SainPart *part) { return part->samples->form == SAIN_ALONE; }
 
 /* The effects of row r of the part. */
 static double *effects_of(const SainLoss *loss, int r) {
@@ -77,29 +60,33 @@ static double *effects_of(const SainLoss *loss, int r) {
     return block->values[block->shape->layers] + r % BLOCK_ROWS;
 }
 
-static void fill_rows(SainLoss *loss, const SainPart *part) {
+/* Answers to a part: object->values of its last layer, [SAIN_OUTPUTS, BLOCK_ROWS]. False when memory is short. */
+static bool forward(SainLoss *loss, const SainPart *part, const double *weights) {
     const SainNetwork *network = loss->network;
-    const bool moves = moves_into_ranges(part);
-    const Inputs inputs = {&network->relation->input, moves ? network->pair_low : NULL, network->pair_high};
-    int r = 0;
-    for (int i = 0; i < part->count; i++) {
-        const SainSample *sample = &part->samples->items[part->items[i]];
-        for (int k = 0; k < sample->rows; k++, r++)
-            sain_fit_normalise(loss->relation[r / BLOCK_ROWS]->values[0], r % BLOCK_ROWS,
-                               part->samples->rows[sample->first + k].numbers, SAIN_PAIR_INPUTS, &inputs);
-    }
-}
+    const SainSamples *samples = part->samples;
+    const bool moves = samples->form == SAIN_ALONE;
+    const int blocks = block_count(part);
+    Error error = {0};
+    if (!array_reserve((void **)&loss->relation, &loss->block_capacity, (size_t)blocks, sizeof *loss->relation))
+        return false;
+    for (; loss->block_count < blocks; loss->block_count++)
+        if ((loss->relation[loss->block_count] = network_block_create(network->relation, &error)) == NULL) return false;
 
-/* Body inputs, then sums of effects. */
-static void fill_objects(SainLoss *loss, const SainPart *part) {
-    const Normalisation *by = &loss->network->object->input;
-    const bool moves = moves_into_ranges(part);
-    const Inputs inputs = {by, moves ? loss->network->body_low : NULL, loss->network->body_high};
+    for (int i = 0, r = 0; i < part->count; i++) {
+        const SainSample *sample = &samples->items[part->items[i]];
+        for (int k = 0; k < sample->rows; k++, r++)
+            fill_row(loss->relation[r / BLOCK_ROWS]->values[0], r % BLOCK_ROWS,
+                     samples->rows[sample->first + k].numbers, SAIN_PAIR_INPUTS, &network->relation->input, moves,
+                     network->pair_low, network->pair_high);
+    }
+    for (int b = 0; b < blocks; b++) network_forward(loss->relation[b], weights);
+
+    /* The object network sees the body's inputs, then sums of effects. */
+    const Normalisation *by = &network->object->input;
     double *values = loss->object->values[0];
-    int r = 0;
-    for (int i = 0; i < part->count; i++) {
-        const SainSample *sample = &part->samples->items[part->items[i]];
-        sain_fit_normalise(values, i, sample->body, SAIN_BODY_INPUTS, &inputs);
+    for (int i = 0, r = 0; i < part->count; i++) {
+        const SainSample *sample = &samples->items[part->items[i]];
+        fill_row(values, i, sample->body, SAIN_BODY_INPUTS, by, moves, network->body_low, network->body_high);
         for (int e = 0; e < SAIN_EFFECTS; e++) {
             const int at = SAIN_BODY_INPUTS + e;
             double sum = 0;
@@ -108,71 +95,48 @@ static void fill_objects(SainLoss *loss, const SainPart *part) {
         }
         r += sample->rows;
     }
-}
-
-/* Answers to a part: object->values of its last layer, [SAIN_OUTPUTS, BLOCK_ROWS]. False when memory is short. */
-static bool sain_loss_forward(SainLoss *loss, const SainPart *part, const double *weights) {
-    const int blocks = (row_count(part) + BLOCK_ROWS - 1) / BLOCK_ROWS;
-    if (!reserve_blocks(loss, blocks)) return false;
-    fill_rows(loss, part);
-    for (int b = 0; b < blocks; b++) network_forward(loss->relation[b], weights);
-    fill_objects(loss, part);
-    network_forward(loss->object, weights + network_parameter_count(loss->network->relation));
+    network_forward(loss->object, weights + network_parameter_count(network->relation));
     return true;
 }
 
-static double sain_fit_smooth(double error, double *slope) {
-    const double size = fabs(error);
-    if (size >= smooth_below) {
-        *slope = error > 0 ? smooth_below : -smooth_below;
-        return smooth_below * (size - smooth_below / 2);
-    }
-    *slope = error;
-    return error * error / 2;
-}
-
-/* Fills the slopes of the outputs; 0 in unused rows. */
-static double sain_fit_judge(SainLoss *loss, const SainPart *part) {
+/* Returns the loss of the answers; fills the slopes of the outputs, 0 in unused rows. */
+static double judge(SainLoss *loss, const SainPart *part) {
     const int last = loss->object->shape->layers;
     double *deltas = loss->object->deltas[last - 1], sum = 0;
     const double *outputs = loss->object->values[last];
     memset(deltas, 0, (size_t)SAIN_OUTPUTS * BLOCK_ROWS * sizeof *deltas);
     for (int i = 0; i < part->count; i++) {
         const SainSample *sample = &part->samples->items[part->items[i]];
-        const double scale = (double)sample->scale;
+        const double scale = (double)sample->scale, by = 1 / (scale + slow);
         for (int o = 0; o < SAIN_OUTPUTS; o++) {
-            double slope;
-            const double by = 1 / (scale + slow);
-            sum += sain_fit_smooth(by * (scale * outputs[o * BLOCK_ROWS + i] - (double)sample->target[o]), &slope);
-            deltas[o * BLOCK_ROWS + i] = by * scale * slope;
+            const double error = by * (scale * outputs[o * BLOCK_ROWS + i] - (double)sample->target[o]),
+                         size = fabs(error);
+            const bool small = size < smooth_below;
+            sum += small ? error * error / 2 : smooth_below * (size - smooth_below / 2);
+            deltas[o * BLOCK_ROWS + i] = by * scale * (small ? error : copysign(smooth_below, error));
         }
     }
     return sum;
 }
 
-/* From the slopes of the sums to those of each row's effects. */
-static void sain_fit_spread(SainLoss *loss, const SainPart *part, int blocks) {
-    const Normalisation *by = &loss->network->object->input;
-    const int last = loss->network->relation->layers - 1;
-    for (int b = 0; b < blocks; b++)
-        memset(loss->relation[b]->deltas[last], 0, (size_t)SAIN_EFFECTS * BLOCK_ROWS * sizeof(double));
-    int r = 0;
-    for (int i = 0; i < part->count; i++)
-        for (int k = 0; k < part->samples->items[part->items[i]].rows; k++, r++)
-            for (int e = 0; e < SAIN_EFFECTS; e++)
-                loss->relation[r / BLOCK_ROWS]->deltas[last][e * BLOCK_ROWS + r % BLOCK_ROWS] =
-                    loss->slopes[(SAIN_BODY_INPUTS + e) * BLOCK_ROWS + i] * (double)by->scale[SAIN_BODY_INPUTS + e];
-}
-
 bool sain_loss_add(SainLoss *loss, const SainPart *part, const double *weights, double *sum, double *gradient) {
-    const int object = network_parameter_count(loss->network->relation),
-              blocks = (row_count(part) + BLOCK_ROWS - 1) / BLOCK_ROWS;
-    if (!sain_loss_forward(loss, part, weights)) return false;
-    *sum += sain_fit_judge(loss, part);
+    const Network *relation = loss->network->relation;
+    const int object = network_parameter_count(relation), blocks = block_count(part), last = relation->layers - 1;
+    const float *scale = loss->network->object->input.scale + SAIN_BODY_INPUTS;
+    if (!forward(loss, part, weights)) return false;
+    *sum += judge(loss, part);
     network_backward(loss->object, weights + object);
     network_add_gradient(loss->object, gradient + object);
     network_backward_to_inputs(loss->object, weights + object, loss->slopes);
-    sain_fit_spread(loss, part, blocks);
+
+    /* From the slopes of the sums to those of each row's effects. */
+    for (int b = 0; b < blocks; b++)
+        memset(loss->relation[b]->deltas[last], 0, (size_t)SAIN_EFFECTS * BLOCK_ROWS * sizeof(double));
+    for (int i = 0, r = 0; i < part->count; i++)
+        for (int k = 0; k < part->samples->items[part->items[i]].rows; k++, r++)
+            for (int e = 0; e < SAIN_EFFECTS; e++)
+                loss->relation[r / BLOCK_ROWS]->deltas[last][e * BLOCK_ROWS + r % BLOCK_ROWS] =
+                    loss->slopes[(SAIN_BODY_INPUTS + e) * BLOCK_ROWS + i] * (double)scale[e];
     for (int b = 0; b < blocks; b++) {
         network_backward(loss->relation[b], weights);
         network_add_gradient(loss->relation[b], gradient);
@@ -289,19 +253,15 @@ void sain_fit_free(SainFit *fit) {
     *fit = (SainFit){0};
 }
 
-/* Drawn with replacement: what a step draws depends on no other step. */
-static void sain_fit_draw(SainFit *fit, uint64_t seed, int64_t number) {
-    uint64_t state = seed + (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
-    split_mix(&state);
-    for (int i = 0; i < fit->batch; i++)
-        fit->items[i % SAIN_PARTS][i / SAIN_PARTS] = random_below(&state, (int)fit->samples->count);
-}
-
 bool sain_fit_step(SainFit *fit, Adam *adam, uint64_t seed, int64_t number, double rate, double *loss, Error *error) {
     const size_t weights = (size_t)adam->count;
     double sums[SAIN_PARTS] = {0};
     bool ok = true;
-    sain_fit_draw(fit, seed, number);
+    /* Drawn with replacement: what a step draws depends on no other step. */
+    uint64_t state = seed + (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
+    split_mix(&state);
+    for (int i = 0; i < fit->batch; i++)
+        fit->items[i % SAIN_PARTS][i / SAIN_PARTS] = random_below(&state, (int)fit->samples->count);
     memset(fit->gradients, 0, SAIN_PARTS * weights * sizeof *fit->gradients);
 #pragma omp parallel for schedule(dynamic, 1) reduction(&& : ok)
     for (int p = 0; p < SAIN_PARTS; p++) {
@@ -323,19 +283,6 @@ bool sain_fit_step(SainFit *fit, Adam *adam, uint64_t seed, int64_t number, doub
     return true;
 }
 
-static void mean_target(const SainSamples *samples, double mean[SAIN_OUTPUTS]) {
-    for (int o = 0; o < SAIN_OUTPUTS; o++) {
-        double sum = 0;
-        for (size_t i = 0; i < samples->count; i++) sum += (double)samples->items[i].target[o];
-        mean[o] = sum / (double)samples->count;
-    }
-}
-
-/* Squared errors, summed over bodies. */
-typedef struct Squares {
-    double with, without, constant;
-} Squares;
-
 /* Whether the method would use the answer (methods/sain.c). */
 static bool is_used(const SainNetwork *network, const SainSamples *samples, const SainSample *sample,
                     const double *outputs) {
@@ -352,33 +299,32 @@ static bool is_used(const SainNetwork *network, const SainSamples *samples, cons
     return used;
 }
 
-static void add_squares(const SainSample *sample, const double *outputs, bool used, const double *mean, Squares *sum) {
-    for (int o = 0; o < SAIN_OUTPUTS; o++) {
-        const double target = (double)sample->target[o], constant = mean[o] - target,
-                     with = (used ? (double)sample->scale * outputs[o * BLOCK_ROWS] : 0) - target;
-        sum->with += with * with;
-        sum->without += target * target;
-        sum->constant += constant * constant;
-    }
-}
-
 bool sain_fit_errors(SainFit *fit, const double *weights, const SainSamples *samples, SainErrors *errors,
                      Error *error) {
     SainLoss *loss = &fit->losses[0];
-    double mean[SAIN_OUTPUTS];
+    double mean[SAIN_OUTPUTS] = {0}, with = 0, without = 0, constant = 0;
     const double count = (double)samples->count;
-    Squares sum = {0};
-    mean_target(fit->samples, mean);
+    for (int o = 0; o < SAIN_OUTPUTS; o++) {
+        for (size_t i = 0; i < fit->samples->count; i++) mean[o] += (double)fit->samples->items[i].target[o];
+        mean[o] /= (double)fit->samples->count;
+    }
     for (size_t first = 0; first < samples->count;) {
         SainPart part = {samples, fit->items[0], 0};
         for (; part.count < BLOCK_ROWS && first < samples->count; first++) fit->items[0][part.count++] = (int)first;
-        if (!sain_loss_forward(loss, &part, weights)) return error_memory(error, "sain");
+        if (!forward(loss, &part, weights)) return error_memory(error, "sain");
         for (int i = 0; i < part.count; i++) {
             const SainSample *sample = &samples->items[part.items[i]];
             const double *outputs = loss->object->values[loss->object->shape->layers] + i;
-            add_squares(sample, outputs, is_used(fit->network, samples, sample, outputs), mean, &sum);
+            const bool used = is_used(fit->network, samples, sample, outputs);
+            for (int o = 0; o < SAIN_OUTPUTS; o++) {
+                const double target = (double)sample->target[o], off = mean[o] - target,
+                             left = (used ? (double)sample->scale * outputs[o * BLOCK_ROWS] : 0) - target;
+                with += left * left;
+                without += target * target;
+                constant += off * off;
+            }
         }
     }
-    *errors = (SainErrors){sqrt(sum.with / count), sqrt(sum.without / count), sqrt(sum.constant / count)};
+    *errors = (SainErrors){sqrt(with / count), sqrt(without / count), sqrt(constant / count)};
     return true;
 }

@@ -2,11 +2,12 @@
 /* The first network of scene-net, from samples: its slots, projections, scales and weights. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "learning/scene_training.h"
-#include "learning/scene_training_internal.h"
+#include "learning/learning.h"
+#include "learning/scene_net_fit.h"
 #include "methods/scene_net.h"
 #include "nets/kinds.h"
 
+#include <float.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
 #include <math.h>
@@ -28,12 +29,12 @@ static int compare_slots(const void *first, const void *second) {
 /* The distinct contacts of the samples that occur often enough. The caller frees the array. */
 static Slot *find_slots(const SceneNetSamples *samples, int *count, Error *error) {
     size_t contacts = 0;
-    for (int i = 0; i < samples->count; i++) contacts += (size_t)samples->items[i].problem.contact_count;
+    for (int i = 0; i < samples->count; i++) contacts += (size_t)samples->items[i].step.problem.contact_count;
     Slot *slots = malloc((contacts + 1) * sizeof *slots);
     if (slots == NULL) return error_memory(error, "slots"), NULL;
     size_t filled = 0, kept = 0;
     for (int i = 0; i < samples->count; i++) {
-        const ContactProblem *problem = &samples->items[i].problem;
+        const ContactProblem *problem = &samples->items[i].step.problem;
         for (int k = 0; k < problem->contact_count; k++) {
             const ContactPoint *contact = &problem->contacts[k];
             slots[filled++] = (Slot){contact->a, contact->b, scene_view_feature(problem, contact)};
@@ -52,8 +53,8 @@ static Slot *find_slots(const SceneNetSamples *samples, int *count, Error *error
    the step before. */
 static void find_caps(SceneNet *network, const SceneNetSamples *samples) {
     for (int i = 0; i < samples->count; i++) {
-        const ContactProblem *problem = &samples->items[i].problem;
-        for (int k = 0; samples->items[i].since == 0 && k < problem->contact_count; k++) {
+        const ContactProblem *problem = &samples->items[i].step.problem;
+        for (int k = 0; samples->items[i].step.since == 0 && k < problem->contact_count; k++) {
             const ContactPoint *contact = &problem->contacts[k];
             const int slot = scene_net_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
             if (slot >= 0 && network->cap[slot] < contact->warm_normal) network->cap[slot] = contact->warm_normal;
@@ -71,8 +72,9 @@ static bool find_scales(SceneNet *network, const SceneNetSamples *samples) {
         const SceneNetSample *sample = &samples->items[i];
         for (int k = 0; k < sample->view.slots.slot_count; k++) {
             const int contact = sample->view.contacts[k], slot = sample->view.slots.slots[k];
-            const double normal = (double)(sample->goal[contact].normal - sample->view.base[contact].normal);
-            const double tangent = (double)(sample->goal[contact].tangent - sample->view.base[contact].tangent);
+            const double normal = (double)(sample->step.impulses[contact].normal - sample->view.base[contact].normal);
+            const double tangent =
+                (double)(sample->step.impulses[contact].tangent - sample->view.base[contact].tangent);
             sums[slot] += sqrt(sqrt(normal * normal + tangent * tangent));
             counts[slot]++;
         }
@@ -86,118 +88,92 @@ static bool find_scales(SceneNet *network, const SceneNetSamples *samples) {
     return true;
 }
 
-/* Sparse rows under construction. */
-typedef struct Numbers {
-    int64_t *begin;
-    int32_t *column;
-    float *value;
-    int64_t count;
-} Numbers;
-
-static bool make_numbers(Numbers *numbers, const SceneNetSamples *samples, size_t each) {
-    const size_t rows = (size_t)samples->count;
-    *numbers = (Numbers){malloc((rows + 1) * sizeof(int64_t)), malloc((rows * each + 1) * sizeof(int32_t)),
-                         malloc((rows * each + 1) * sizeof(float)), 0};
-    return numbers->begin != NULL && numbers->column != NULL && numbers->value != NULL;
-}
-
-static void scene_net_init_append(Numbers *numbers, int column, float value) {
-    numbers->column[numbers->count] = column;
-    numbers->value[numbers->count++] = value;
-}
-
 static bool touches_bomb(const SceneNet *network, int slot) {
     return network->slots[slot].a == network->bomb || network->slots[slot].b == network->bomb;
 }
 
-static bool fit(Numbers *numbers, const SceneNetSamples *samples, uint64_t seed, Projection *projection, Error *error) {
-    numbers->begin[samples->count] = numbers->count;
-    const SparseRows rows = {samples->count, projection->from, numbers->begin, numbers->column, numbers->value};
-    bool ok = principal_fit(&rows, seed, projection, error);
-    numbers->count = 0;
+/* The whitened principal components of rows [samples, projection->from]: over the rows, components have mean 0, variance
+   1 and no correlation, strongest first; those beyond the rank are 0. */
+static bool fit_projection(const float *numbers, int samples, Projection *projection, Error *error) {
+    const PrincipalRows rows = {numbers, (size_t)samples, projection->from, 1};
+    const size_t from = (size_t)projection->from, to = (size_t)projection->to;
+    double *mean = malloc((2 + from) * from * sizeof *mean), *values = mean + from, *vectors = values + from;
+    bool ok = mean != NULL || error_memory(error, "projections");
+    if (ok) principal_mean(&rows, mean);
+    ok = ok && principal_components(&rows, mean, values, vectors, error);
+    if (ok) {
+        memset(projection->rows, 0, from * to * sizeof *projection->rows);
+        memset(projection->centre, 0, to * sizeof *projection->centre);
+        /* Smaller ones are rounding errors of the float rows; below FLT_MIN^2 a direction would overflow float. */
+        const double least = fmax(1e-10 * values[0] / samples, (double)FLT_MIN * (double)FLT_MIN);
+        for (size_t c = 0; c < to && c < from; c++) {
+            const double variance = values[c] / samples;
+            if (!(variance > least)) continue;
+            double centre = 0;
+            for (size_t j = 0; j < from; j++) {
+                const float number = (float)(vectors[c * from + j] / sqrt(variance));
+                projection->rows[j * to + c] = number;
+                centre += mean[j] * (double)number;
+            }
+            projection->centre[c] = (float)centre;
+        }
+    }
+    free(mean);
     return ok;
 }
 
-static void weigh_row(Projection *projection, int i, float weight) {
-    for (int k = 0; k < projection->to; k++) projection->rows[(size_t)i * (size_t)projection->to + (size_t)k] *= weight;
+/* What the projections see of a sample, one row after the other: the states of the bomb and of the other bodies, which
+   contacts there are, and their warm impulses. */
+static void fill_row(const SceneNet *network, const SceneView *view, int which, float *row) {
+    const SceneNetView *slots = &view->slots;
+    if (which == 0) memcpy(row, view->bomb, (size_t)network->bomb_state.from * sizeof *row);
+    if (which == 1) memcpy(row, view->state, (size_t)network->state.from * sizeof *row);
+    for (int k = 0; which == 2 && k < slots->slot_count; k++) row[slots->slots[k]] = 1;
+    for (int k = 0; which == 3 && k < 2 * slots->slot_count; k++) row[slots->impulses[k]] = slots->warm[k];
 }
 
-/* 1 / spread of each state variable; `least` keeps irrelevant variations small. */
-static void find_units(const SceneNetSamples *samples, bool bomb, int count, float *units) {
+/* The weight of each number: 1 / spread of a state variable, where `least` keeps irrelevant variations small; more for
+   the bomb's contacts. */
+static void find_weights(const SceneNet *network, const float *numbers, int samples, int which, int count,
+                         float *weights) {
     static const double least[SLOT_BODY_NUMBERS] = {0.01, 0.01, 0.01, 0.1, 0.1, 0.1}; /* m, rad, m/s, rad/s */
     for (int k = 0; k < count; k++) {
+        weights[k] = which == 2 && touches_bomb(network, k) ? bomb_weight : 1;
+        if (which > 1) continue;
         double sum = 0, squares = 0;
-        for (int i = 0; i < samples->count; i++) {
-            const SceneView *view = &samples->items[i].view;
-            const double x = (double)(bomb ? view->bomb[k] : view->state[k]);
+        for (int i = 0; i < samples; i++) {
+            const double x = (double)numbers[(size_t)i * (size_t)count + (size_t)k];
             sum += x;
             squares += x * x;
         }
-        const double mean = sum / samples->count, variance = fmax(squares / samples->count - mean * mean, 0);
+        const double mean = sum / samples, variance = fmax(squares / samples - mean * mean, 0);
         const double small = least[k % SLOT_BODY_NUMBERS];
-        units[k] = (float)(1 / sqrt(variance + small * small));
+        weights[k] = (float)(1 / sqrt(variance + small * small));
     }
 }
 
-static bool fit_body_projections(SceneNet *network, const SceneNetSamples *samples, Numbers *numbers, uint64_t seed,
-                                 Error *error) {
-    Projection *projections[] = {&network->bomb_state, &network->state};
-    for (int p = 0; p < 2; p++) {
-        const int count = projections[p]->from;
-        float *units = malloc((size_t)count * sizeof *units);
-        if (units == NULL) return error_memory(error, "projections");
-        find_units(samples, p == 0, count, units);
-        for (int i = 0; i < samples->count; i++) {
-            const SceneView *view = &samples->items[i].view;
-            numbers->begin[i] = numbers->count;
-            for (int k = 0; k < count; k++)
-                scene_net_init_append(numbers, k, units[k] * (p == 0 ? view->bomb[k] : view->state[k]));
-        }
-        bool ok = fit(numbers, samples, seed, projections[p], error);
-        for (int k = 0; k < count; k++) weigh_row(projections[p], k, units[k]);
-        free(units);
+static bool find_projections(SceneNet *network, const SceneNetSamples *samples, Error *error) {
+    Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
+    for (int which = 0; which < 4; which++) {
+        Projection *projection = projections[which];
+        const size_t count = (size_t)projection->from;
+        float *numbers = calloc(((size_t)samples->count + 1) * count, sizeof *numbers),
+              *weights = numbers + (size_t)samples->count * count;
+        if (numbers == NULL) return error_memory(error, "projections");
+        for (int i = 0; i < samples->count; i++)
+            fill_row(network, &samples->items[i].view, which, numbers + (size_t)i * count);
+        find_weights(network, numbers, samples->count, which, projection->from, weights);
+        for (size_t i = 0; i < (size_t)samples->count * count; i++) numbers[i] *= weights[i % count];
+        const bool ok = fit_projection(numbers, samples->count, projection, error);
+        for (size_t k = 0; ok && k < count * (size_t)projection->to; k++)
+            projection->rows[k] *= weights[k / (size_t)projection->to];
+        free(numbers);
         if (!ok) return false;
     }
     return true;
 }
 
-static bool fit_contact_projections(SceneNet *network, const SceneNetSamples *samples, Numbers *numbers, uint64_t seed,
-                                    Error *error) {
-    for (int i = 0; i < samples->count; i++) {
-        const SceneNetView *slots = &samples->items[i].view.slots;
-        numbers->begin[i] = numbers->count;
-        for (int k = 0; k < slots->slot_count; k++)
-            scene_net_init_append(numbers, slots->slots[k], touches_bomb(network, slots->slots[k]) ? bomb_weight : 1);
-    }
-    if (!fit(numbers, samples, seed, &network->present, error)) return false;
-    for (int slot = 0; slot < network->slot_count; slot++)
-        if (touches_bomb(network, slot)) weigh_row(&network->present, slot, bomb_weight);
-    for (int i = 0; i < samples->count; i++) {
-        const SceneNetView *slots = &samples->items[i].view.slots;
-        numbers->begin[i] = numbers->count;
-        for (int k = 0; k < 2 * slots->slot_count; k++)
-            scene_net_init_append(numbers, slots->impulses[k], slots->warm[k]);
-    }
-    return fit(numbers, samples, seed, &network->warm, error);
-}
-
-static bool find_projections(SceneNet *network, const SceneNetSamples *samples, uint64_t seed, Error *error) {
-    size_t each = (size_t)network->state.from;
-    for (int i = 0; i < samples->count; i++) {
-        const size_t impulses = 2 * (size_t)samples->items[i].view.slots.slot_count;
-        if (each < impulses) each = impulses;
-    }
-    Numbers numbers;
-    bool ok = make_numbers(&numbers, samples, each) || error_memory(error, "projections");
-    ok = ok && fit_body_projections(network, samples, &numbers, seed, error) &&
-         fit_contact_projections(network, samples, &numbers, seed, error);
-    free(numbers.begin);
-    free(numbers.column);
-    free(numbers.value);
-    return ok;
-}
-
-static void scene_net_init_draw(float *numbers, size_t count, double spread, gsl_rng *generator) {
+static void draw(float *numbers, size_t count, double spread, gsl_rng *generator) {
     for (size_t i = 0; i < count; i++) numbers[i] = (float)gsl_ran_gaussian(generator, spread);
 }
 
@@ -209,9 +185,9 @@ static bool draw_weights(SceneNet *network, uint64_t seed) {
     if (generator == NULL) return false;
     gsl_rng_set(generator, (unsigned long)seed);
     const size_t inputs = (size_t)scene_net_inputs(network), hidden = (size_t)scene_net_hidden(network);
-    scene_net_init_draw(network->first.rows, inputs * hidden, 1 / sqrt((double)inputs), generator);
-    scene_net_init_draw(network->second.rows, hidden * hidden, 1 / sqrt((double)hidden), generator);
-    scene_net_init_draw(network->rows, 2 * (size_t)network->slot_count * hidden, 0.1 / sqrt((double)hidden), generator);
+    draw(network->first.rows, inputs * hidden, 1 / sqrt((double)inputs), generator);
+    draw(network->second.rows, hidden * hidden, 1 / sqrt((double)hidden), generator);
+    draw(network->rows, 2 * (size_t)network->slot_count * hidden, 0.1 / sqrt((double)hidden), generator);
     gsl_rng_free(generator);
     return true;
 }
@@ -230,7 +206,7 @@ static void recentre(SceneNet *network, const SceneNetSamples *samples) {
 SceneNet *scene_net_from_samples(SceneNetSamples *samples, const SceneNetWidths *widths, uint64_t seed, Error *error) {
     if (samples->count == 0)
         return error_input(error, "scene-net", "no launch has an impact whose residual reaches the gate"), NULL;
-    const ContactProblem *problem = &samples->items[0].problem;
+    const ContactProblem *problem = &samples->items[0].step.problem;
     SceneNetShape shape = {problem->body_count, problem->bomb, 0, widths->state, widths->present,
                            widths->warm,        widths->hidden};
     Slot *slots = find_slots(samples, &shape.slot_count, error);
@@ -238,14 +214,14 @@ SceneNet *scene_net_from_samples(SceneNetSamples *samples, const SceneNetWidths 
     free(slots);
     if (network == NULL) return NULL;
     find_caps(network, samples);
-    bool ok = scene_net_samples_compute_inputs(samples, 0, network, error) &&
+    bool ok = scene_net_samples_look(samples, 0, network, error) &&
               (find_scales(network, samples) || error_memory(error, "scene-net")) &&
-              find_projections(network, samples, seed, error) &&
+              find_projections(network, samples, error) &&
               (draw_weights(network, seed) || error_memory(error, "scene-net"));
     if (ok) scene_net_pack(network);
-    ok = ok && scene_net_samples_compute_inputs(samples, 0, network, error);
+    ok = ok && scene_net_samples_look(samples, 0, network, error);
     if (ok) recentre(network, samples);
-    if (ok && scene_net_samples_compute_inputs(samples, 0, network, error)) return network;
+    if (ok && scene_net_samples_look(samples, 0, network, error)) return network;
     scene_net_destroy(network);
     return NULL;
 }

@@ -5,36 +5,64 @@
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
-#include "learning/scene_training_internal.h"
+#include "learning/launches.h"
 #include "methods/methods.h"
 #include "methods/momentum.h"
 #include "methods/pair.h"
 #include "methods/reference.h"
+#include "methods/residual.h"
 #include "methods/scene_net.h"
+#include "methods/sweeps.h"
 #include "nets/kinds.h"
+#include "runs/runs.h"
 #include "scenes/scenes.h"
 
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* Sweeps of the timed rivals, between which time is linear; most sweeps; turns of all rivals. */
-enum { FEW_SWEEPS = 10, MANY_SWEEPS = 60, MOST_SWEEPS = 200, PASSES = 7 };
+/* Of the verdict: sweeps of the timed rivals, between which time is linear; most sweeps; turns of all rivals. */
+enum { FEW_SWEEPS = 10, MANY_SWEEPS = 60, MOST_SWEEPS = 200, PASSES = 7, RIVALS = 3 };
 
-/* No sweeps follow by the stopping rule. */
-static const float never = 1e9f; /* m/s */
+static const float never = 1e9f; /* m/s: no sweeps follow by the stopping rule */
+
+/* STEPS_AFTER: steps after the scene's impact frames that are samples too. */
+enum { STEPS_AFTER = 2, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
+
+/* RMS residual of the warm start over the contacts, m/s: below it at rest, above it during a shock. Only the latter are
+   samples. */
+static const float recording_gate = 0.3f;
+
+static const float recording_near = 0.05f; /* m/s: the setting `near` of scene-net in the runs that are recorded */
+
+static const double impulse_weight = 0.02, first_rate = 3e-3;
+
+typedef struct Trainer {
+    const Scene *scene;
+    const SceneTraining *training;
+    gsl_rng *generator;
+    Launch *launches; /* [training->launches] of the round */
+    int round;
+    bool by_reference; /* the launches that are recorded are run by the reference, or by momentum */
+    SceneNetSamples samples, held_out;
+    SceneNet *network; /* runs the launches of later rounds */
+    ProgressStage stage;
+    Progress progress; /* of the stage */
+} Trainer;
 
 /* Solves all samples. s: the time of the solver alone, if shorter than before. m/s: the mean error. */
 static bool solve_all(ContactSolver *solver, const SceneNetSamples *samples, PairMoment *space, double *seconds,
                       double *mean, Error *error) {
     double sum = 0, passed = 0;
     for (int i = 0; i < samples->count; i++) {
-        const SceneNetSample *sample = &samples->items[i];
-        if (!pair_moment_reserve(space, &sample->problem)) return error_memory(error, "scene-net");
+        const RecordedStep *step = &samples->items[i].step;
+        if (!pair_moment_reserve(space, &step->problem)) return error_memory(error, "scene-net");
         ContactSolution solution = pair_moment_solution(space);
         const double begin = clock_seconds();
-        if (!solver->kind->solve(solver->state, &sample->problem, &solution, error)) return false;
+        if (!solver->kind->solve(solver->state, &step->problem, &solution, error)) return false;
         passed += clock_seconds() - begin;
-        sum += solution_error(&sample->problem, solution.velocities, sample->reference).rms;
+        sum += solution_error(&step->problem, solution.velocities, step->velocities).rms;
     }
     if (passed < *seconds) *seconds = passed;
     *mean = sum / samples->count;
@@ -55,86 +83,102 @@ static bool momentum_error(const SceneNetSamples *samples, int sweeps, PairMomen
     return ok;
 }
 
-/* The number of sweeps whose time is nearest. */
-static int sweeps_of(double seconds, double few, double many) {
-    const double sweep = (many - few) / (MANY_SWEEPS - FEW_SWEEPS);
-    const double sweeps = sweep > 0 ? round(FEW_SWEEPS + (seconds - few) / sweep) : MOST_SWEEPS;
-    return (int)fmin(fmax(sweeps, 1), MOST_SWEEPS);
-}
-
-static bool scene_training_measure(ContactSolver rivals[3], const SceneNetSamples *samples, PairMoment *space,
-                                   SceneNetVerdict *verdict, Error *error) {
-    double seconds[3] = {INFINITY, INFINITY, INFINITY}, mean[3];
-    for (int pass = 0; pass < PASSES; pass++)
-        for (int i = 0; i < 3; i++)
-            if (!solve_all(&rivals[i], samples, space, &seconds[i], &mean[i], error)) return false;
-    verdict->samples = samples->count;
-    verdict->network = mean[0];
-    verdict->microseconds = 1e6 * seconds[0] / samples->count;
-    verdict->sweeps = sweeps_of(seconds[0], seconds[1], seconds[2]);
-    return momentum_error(samples, verdict->sweeps, space, &verdict->at_equal_time, error) &&
-           momentum_error(samples, 20, space, &verdict->at_20, error);
-}
-
-/* Solves the samples by the method scene-net and by momentum, in turns, and keeps the shortest time of each. The errors
-   are the same on every machine; `sweeps` depends on it. */
-static bool scene_net_verdict(const SceneNet *network, const SceneNetSamples *held_out, SceneNetVerdict *verdict,
-                              Error *error) {
-    ContactSolver rivals[3] = {{0}};
+/* Solves the held-out samples by the method scene-net and by momentum, in turns, and keeps the shortest time of each.
+   The errors are the same on every machine; `sweeps` depends on it. */
+static bool find_verdict(const Trainer *trainer, SceneNetVerdict *verdict, Error *error) {
+    const SceneNetSamples *samples = &trainer->held_out;
+    ContactSolver rivals[RIVALS] = {{0}};
     PairMoment space = {0};
-    *verdict = (SceneNetVerdict){.samples = 0};
-    bool ok = held_out->count == 0 ||
-              (scene_net_make(&rivals[0], network, never, error) && make_momentum(&rivals[1], FEW_SWEEPS, error) &&
-               make_momentum(&rivals[2], MANY_SWEEPS, error) &&
-               scene_training_measure(rivals, held_out, &space, verdict, error));
-    for (int i = 0; i < 3; i++) solver_destroy(&rivals[i]);
+    double seconds[RIVALS] = {INFINITY, INFINITY, INFINITY}, mean[RIVALS];
+    *verdict = (SceneNetVerdict){.samples = samples->count};
+    if (samples->count == 0) return true;
+    bool ok = scene_net_make(&rivals[0], trainer->network, never, error) &&
+              make_momentum(&rivals[1], FEW_SWEEPS, error) && make_momentum(&rivals[2], MANY_SWEEPS, error);
+    for (int i = 0; ok && i < PASSES * RIVALS; i++)
+        ok = solve_all(&rivals[i % RIVALS], samples, &space, &seconds[i % RIVALS], &mean[i % RIVALS], error);
+    if (ok) {
+        const double sweep = (seconds[2] - seconds[1]) / (MANY_SWEEPS - FEW_SWEEPS);
+        const double sweeps = sweep > 0 ? round(FEW_SWEEPS + (seconds[0] - seconds[1]) / sweep) : MOST_SWEEPS;
+        verdict->network = mean[0];
+        verdict->microseconds = 1e6 * seconds[0] / samples->count;
+        verdict->sweeps = (int)fmin(fmax(sweeps, 1), MOST_SWEEPS);
+        ok = momentum_error(samples, verdict->sweeps, &space, &verdict->at_equal_time, error) &&
+             momentum_error(samples, 20, &space, &verdict->at_20, error);
+    }
+    for (int i = 0; i < RIVALS; i++) solver_destroy(&rivals[i]);
     pair_moment_free(&space);
     return ok;
 }
 
-/* Mean error of the network and its sweeps. */
-static bool network_error(const SceneNet *network, const SceneNetSamples *samples, double *result, Error *error) {
-    double *errors = malloc(((size_t)samples->count + 1) * sizeof *errors), sum = 0;
-    bool ok = errors != NULL || error_memory(error, "scene-net");
-    ok = ok && slot_errors(network, samples, 0, errors, error);
-    for (int i = 0; ok && i < samples->count; i++) sum += errors[i];
-    *result = samples->count > 0 ? sum / samples->count : NAN;
-    free(errors);
-    return ok;
+/* Draws the launches of a round: every second one has a random rotation and spin. The mass is the scene's: a network is
+   for one mass. */
+static bool draw_launches(Trainer *trainer, int count, Error *error) {
+    const Scene *scene = trainer->scene;
+    for (int i = 0; i < count; i++) {
+        Launch *launch = &trainer->launches[i];
+        *launch = launch_of(scene);
+        launch->x = scene_span_at(&scene->bomb.x, gsl_rng_uniform(trainer->generator));
+        if (i % 2 == 0) continue;
+        const double rotation = gsl_rng_uniform(trainer->generator), spin = gsl_rng_uniform(trainer->generator);
+        launch_turn(launch, scene, rotation, spin);
+    }
+    return launches_check(scene, trainer->launches, count, error);
 }
 
-/* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs
-   (scene_net_samples_compute_inputs). */
-static bool scene_net_score(const SceneNet *network, const SceneNetSamples *samples, const SceneNetSamples *held_out,
-                            SceneNetScore *score, Error *error) {
-    PairMoment space = {0};
-    score->samples = samples->count;
-    const bool ok = network_error(network, samples, &score->train, error) &&
-                    network_error(network, held_out, &score->held_out, error) &&
-                    momentum_error(held_out, 20, &space, &score->momentum, error);
-    pair_moment_free(&space);
-    return ok;
+static bool make_driver(void *context, int i, ContactSolver *solver, Error *error) {
+    const Trainer *trainer = context;
+    (void)i;
+    if (trainer->round > 0) return scene_net_make(solver, trainer->network, recording_near, error);
+    return trainer->by_reference ? solver_with(solver, &solver_reference, "", error)
+                                 : solver_with(solver, &solver_momentum, "k=20", error);
 }
 
-static const double impulse_weight = 0.02, first_rate = 3e-3;
+static bool keep_impact(void *context, const LaunchStep *step, Error *error) {
+    (void)context;
+    Sweeps sweeps = {0};
+    if (step->phase != PHASE_IMPACT) return true;
+    const bool begun = sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), step->problem);
+    const bool reached = begun && residual_reaches(&sweeps, step->problem->contact_count, recording_gate);
+    sweeps_free(&sweeps);
+    if (!begun) return error_memory(error, "scene-net");
+    return !reached || (reference_solve(step->reference, step->problem, NULL, error) &&
+                        launch_step_record(step, reference_converged(step->reference), error));
+}
 
-typedef struct Trainer {
-    const Scene *scene;
-    const SceneTraining *training;
-    SceneRecording recording;
-    SceneNetSamples samples, held_out;
-    SceneNet *network;
-    ProgressStage stage;
-    Progress progress; /* of the stage */
-} Trainer;
-
-static bool scene_training_take(Trainer *trainer, SceneSet set, SceneNetSamples *samples, double share, Error *error) {
+/* Runs launches first to end - 1 of the round, and appends their impacts. */
+static bool record(Trainer *trainer, int first, int end, double share, SceneNetSamples *samples, Error *error) {
+    const LaunchWatch watch = {.scene = trainer->scene,
+                               .launches = trainer->launches + first,
+                               .count = end - first,
+                               .first = trainer->round * trainer->training->launches + first,
+                               .impact_frames = trainer->scene->bomb.impact_frames + STEPS_AFTER,
+                               .may_fail = trainer->round > 0,
+                               .make = make_driver,
+                               .see = keep_impact,
+                               .context = trainer};
+    RecordedSteps steps = {0};
     progress_next_stage(&trainer->stage, share);
-    return scene_recording_take(&trainer->recording, set, samples, &trainer->progress, error);
+    const bool ok = launches_observe(&watch, &steps, &trainer->progress, error) &&
+                    (scene_net_samples_take(samples, &steps) || error_memory(error, "scene-net"));
+    recorded_steps_free(&steps);
+    return ok;
 }
 
-/* The range of each input over the samples, with a margin. */
-static void find_bounds(SceneNet *network, const SceneNetSamples *samples) {
+/* Fits the network to all samples so far, finds the ranges of its inputs, and scores it. */
+static bool fit_round(Trainer *trainer, double share, Error *error) {
+    const SceneTraining *training = trainer->training;
+    const SceneNetSamples *samples = &trainer->samples;
+    SceneNet *network = trainer->network;
+    const int round = trainer->round, epochs = round == 0 ? training->epochs : (training->epochs + 1) / 2;
+    const SceneNetFit fit = {.impulse_weight = impulse_weight,
+                             .impulse_epochs = round == 0 ? epochs / 12 : 0,
+                             .epochs = epochs,
+                             .rate = round == 0 ? first_rate : first_rate / 2,
+                             .learn_factors = training->momentum,
+                             .seed = training->seed + (uint64_t)round};
+    progress_next_stage(&trainer->stage, share);
+    if (!scene_net_fit(network, samples, &fit, &trainer->progress, error)) return false;
+
     const float margin = 0.1f;
     for (int k = 0; k < scene_net_inputs(network); k++) {
         float low = samples->items[0].inputs[k], high = low;
@@ -145,72 +189,72 @@ static void find_bounds(SceneNet *network, const SceneNetSamples *samples) {
         network->low[k] = low - margin * (high - low) - 1e-6f;
         network->high[k] = high + margin * (high - low) + 1e-6f;
     }
+
+    PairMoment space = {0};
+    SceneNetScore score = {.round = round,
+                           .samples = samples->count,
+                           .unconverged = (int)(samples->unconverged + trainer->held_out.unconverged)};
+    const bool ok = scene_net_error(network, samples, &score.train, error) &&
+                    scene_net_error(network, &trainer->held_out, &score.held_out, error) &&
+                    momentum_error(&trainer->held_out, 20, &space, &score.momentum, error);
+    pair_moment_free(&space);
+    if (ok && training->on_score != NULL) training->on_score(training->context, &score);
+    return ok;
 }
 
+/* The held-out launches have their own random seed. The launches of all rounds are checked first: those of the last must
+   not be the first to be refused. */
+static bool begin(Trainer *trainer, Error *error) {
+    const Scene *scene = trainer->scene;
+    const SceneTraining *training = trainer->training;
+    if (!scene->bomb.present) return error_input(error, scene->name, "has no bomb to launch");
+    if (!scene_span_varies(&scene->bomb.x))
+        return error_input(error, scene->name, "the bomb has one x; write a family of launches, x: {from: A, to: B}");
+    gsl_set_error_handler_off(); /* its default aborts */
+    trainer->generator = gsl_rng_alloc(gsl_rng_mt19937);
+    trainer->launches = malloc((size_t)training->launches * sizeof *trainer->launches);
+    if (trainer->generator == NULL || trainer->launches == NULL) return error_memory(error, "scene-net");
+    gsl_rng_set(trainer->generator, (unsigned long)training->seed);
+    for (int round = 0; round < training->rounds; round++)
+        if (!draw_launches(trainer, training->launches, error)) return false;
+    const int held_out = training->launches < HELD_OUT_LAUNCHES ? training->launches : HELD_OUT_LAUNCHES;
+    gsl_rng_set(trainer->generator, (unsigned long)training->seed + HELD_OUT_SEED);
+    return draw_launches(trainer, held_out, error) && record(trainer, 0, held_out, 0.02, &trainer->held_out, error);
+}
+
+/* Half of the launches are run by momentum, half by the reference. */
 static bool first_round(Trainer *trainer, Error *error) {
     const SceneTraining *training = trainer->training;
-    if (!scene_training_take(trainer, SCENE_BY_MOMENTUM, &trainer->samples, 0.1, error) ||
-        !scene_training_take(trainer, SCENE_BY_REFERENCE, &trainer->samples, 0.1, error))
+    const int half = training->launches / 2;
+    gsl_rng_set(trainer->generator, (unsigned long)training->seed);
+    if (!draw_launches(trainer, training->launches, error) || !record(trainer, 0, half, 0.1, &trainer->samples, error))
         return false;
-    trainer->network = scene_net_from_samples(&trainer->samples, &training->widths, training->seed, error);
-    if (trainer->network == NULL) return false;
-    SceneNet *network = trainer->network;
+    trainer->by_reference = true;
+    if (!record(trainer, half, training->launches, 0.1, &trainer->samples, error)) return false;
+    SceneNet *network = trainer->network =
+        scene_net_from_samples(&trainer->samples, &training->widths, training->seed, error);
+    if (network == NULL) return false;
     snprintf(network->scene, sizeof network->scene, "%s", trainer->scene->name);
-    network->gate = SCENE_RECORDING_GATE;
-    network->bomb_inv_mass = trainer->samples.items[0].problem.bodies[network->bomb].inv_mass;
+    network->gate = recording_gate;
+    network->bomb_inv_mass = trainer->samples.items[0].step.problem.bodies[network->bomb].inv_mass;
     network->sweeps = training->sweeps;
     for (int s = 0; s < training->sweeps && training->momentum; s++)
         network->factors[s] = momentum_factor_tuned(s, training->sweeps);
-    return true;
+    return scene_net_samples_look(&trainer->held_out, 0, network, error);
 }
 
-static bool next_round(Trainer *trainer, double share, Error *error) {
-    const int had = trainer->samples.count;
-    progress_next_stage(&trainer->stage, share);
-    return scene_recording_next(&trainer->recording, trainer->network, &trainer->samples, &trainer->progress, error) &&
-           scene_net_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
-}
-
-static bool scene_training_score(const Trainer *trainer, int round, Error *error) {
-    SceneNetScore result = {.round = round,
-                            .unconverged = trainer->samples.unconverged + trainer->held_out.unconverged};
-    if (!scene_net_score(trainer->network, &trainer->samples, &trainer->held_out, &result, error)) return false;
-    if (trainer->training->on_score != NULL) trainer->training->on_score(trainer->training->context, &result);
-    return true;
-}
-
-static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
+static bool train(Trainer *trainer, Error *error) {
     const SceneTraining *training = trainer->training;
-    const int epochs = round == 0 ? training->epochs : (training->epochs + 1) / 2;
-    const SceneNetFit fit = {.impulse_weight = impulse_weight,
-                             .impulse_epochs = round == 0 ? epochs / 12 : 0,
-                             .epochs = epochs,
-                             .rate = round == 0 ? first_rate : first_rate / 2,
-                             .learn_factors = training->momentum,
-                             .seed = training->seed + (uint64_t)round};
-    progress_next_stage(&trainer->stage, share);
-    if (!scene_net_fit(trainer->network, &trainer->samples, &fit, &trainer->progress, error)) return false;
-    find_bounds(trainer->network, &trainer->samples);
-    return scene_training_score(trainer, round, error);
-}
-
-static bool scene_training_train(Trainer *trainer, Error *error) {
-    const int rounds = trainer->training->rounds;
-    const double share = 0.78 / rounds;
-    if (!scene_recording_begin(&trainer->recording, trainer->scene, trainer->training, error) ||
-        !scene_training_take(trainer, SCENE_HELD_OUT, &trainer->held_out, 0.02, error) ||
-        !first_round(trainer, error) ||
-        !scene_net_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error) ||
-        !fit_round(trainer, 0, share, error))
-        return false;
-    for (int round = 1; round < rounds && !trainer->stage.stopped; round++) {
+    const double share = 0.78 / training->rounds;
+    if (!begin(trainer, error) || !first_round(trainer, error) || !fit_round(trainer, share, error)) return false;
+    while (++trainer->round < training->rounds && !trainer->stage.stopped) {
         Error failure = {0};
-        if (next_round(trainer, 0.3 * share, &failure)) {
-            if (!fit_round(trainer, round, 0.7 * share, error)) return false;
-        } else if (!trainer->stage.stopped) {
-            *error = failure;
-            return false;
-        }
+        const int had = trainer->samples.count;
+        if (!draw_launches(trainer, training->launches, &failure) ||
+            !record(trainer, 0, training->launches, 0.3 * share, &trainer->samples, &failure) ||
+            !scene_net_samples_look(&trainer->samples, had, trainer->network, &failure))
+            return trainer->stage.stopped || (*error = failure, false); /* a stopped training keeps its network */
+        if (!fit_round(trainer, 0.7 * share, error)) return false;
     }
     return true;
 }
@@ -219,10 +263,10 @@ SceneNet *scene_training_run(const Scene *scene, const SceneTraining *training, 
                              Error *error) {
     Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
     trainer.progress = (Progress){progress_stage, &trainer.stage};
-    bool ok = scene_training_train(&trainer, error);
-    if (ok && training->verdict != NULL)
-        ok = scene_net_verdict(trainer.network, &trainer.held_out, training->verdict, error);
-    scene_recording_end(&trainer.recording);
+    bool ok = train(&trainer, error);
+    if (ok && training->verdict != NULL) ok = find_verdict(&trainer, training->verdict, error);
+    if (trainer.generator != NULL) gsl_rng_free(trainer.generator);
+    free(trainer.launches);
     scene_net_samples_free(&trainer.samples);
     scene_net_samples_free(&trainer.held_out);
     if (ok) return trainer.network;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits a predictor of subspace: its linear term, its scales, and slopes through windows of predictions. */
 #include "base/base.h"
-#include "learning/subspace_training.h"
+#include "learning/subspace_fit.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"
 
@@ -12,6 +12,10 @@
 /* Shares of a component's root mean square: noise of the two states that a window starts with, and of their
    difference. */
 static const double noise_of_state = 0.01, noise_of_change = 0.01;
+
+static const float *window_state(const WindowData *data, int launch, int state) {
+    return data->components + ((size_t)launch * (size_t)data->rows->states + (size_t)state) * (size_t)data->stride;
+}
 
 void window_linear(const WindowData *data, double *linear) {
     for (int k = 0; k < data->count; k++) {
@@ -35,38 +39,36 @@ static double inverse_root(double squares, double count) {
     return root > 1e-9 ? 1 / root : 0;
 }
 
-static void scale_component(const WindowData *data, int k, WindowScales *scales) {
-    double values = 0, changes = 0, left = 0;
-    const double count = (double)data->rows->launches * (data->rows->states - 2);
-    for (int launch = 0; launch < data->rows->launches; launch++)
-        for (int s = 2; s < data->rows->states; s++) {
-            const double x = (double)window_state(data, launch, s - 1)[k],
-                         y = (double)window_state(data, launch, s - 2)[k], z = (double)window_state(data, launch, s)[k];
-            const double error = z - data->linear[k] * x - data->linear[data->count + k] * y;
-            values += x * x, changes += (x - y) * (x - y), left += error * error;
-        }
-    scales->value[k] = inverse_root(values, count);
-    scales->change[k] = inverse_root(changes, count);
-    scales->output[k] = sqrt(left / count);
-    scales->noise[k] = noise_of_state * sqrt(values / count);
-    scales->change_noise[k] = noise_of_change * sqrt(changes / count);
-}
-
-static void scale_launch(const PoseRows *rows, int j, WindowScales *scales) {
-    double sum = 0, squares = 0;
-    for (int i = 0; i < rows->launches; i++) sum += (double)rows->launch[i * SUBSPACE_LAUNCH + j];
-    const double mean = sum / rows->launches;
-    for (int i = 0; i < rows->launches; i++) {
-        const double away = (double)rows->launch[i * SUBSPACE_LAUNCH + j] - mean;
-        squares += away * away;
+static void find_scales(const WindowData *data, WindowScales *scales) {
+    const PoseRows *rows = data->rows;
+    const double count = (double)rows->launches * (rows->states - 2);
+    for (int k = 0; k < data->count; k++) {
+        double values = 0, changes = 0, left = 0;
+        for (int launch = 0; launch < rows->launches; launch++)
+            for (int s = 2; s < rows->states; s++) {
+                const double x = (double)window_state(data, launch, s - 1)[k],
+                             y = (double)window_state(data, launch, s - 2)[k],
+                             z = (double)window_state(data, launch, s)[k];
+                const double error = z - data->linear[k] * x - data->linear[data->count + k] * y;
+                values += x * x, changes += (x - y) * (x - y), left += error * error;
+            }
+        scales->value[k] = inverse_root(values, count);
+        scales->change[k] = inverse_root(changes, count);
+        scales->output[k] = sqrt(left / count);
+        scales->noise[k] = noise_of_state * sqrt(values / count);
+        scales->change_noise[k] = noise_of_change * sqrt(changes / count);
     }
-    scales->launch_offset[j] = mean;
-    scales->launch[j] = inverse_root(squares, rows->launches);
-}
-
-static void window_scales_find(const WindowData *data, WindowScales *scales) {
-    for (int k = 0; k < data->count; k++) scale_component(data, k, scales);
-    for (int j = 0; j < SUBSPACE_LAUNCH; j++) scale_launch(data->rows, j, scales);
+    for (int j = 0; j < SUBSPACE_LAUNCH; j++) {
+        double sum = 0, squares = 0;
+        for (int i = 0; i < rows->launches; i++) sum += (double)rows->launch[i * SUBSPACE_LAUNCH + j];
+        const double mean = sum / rows->launches;
+        for (int i = 0; i < rows->launches; i++) {
+            const double away = (double)rows->launch[i * SUBSPACE_LAUNCH + j] - mean;
+            squares += away * away;
+        }
+        scales->launch_offset[j] = mean;
+        scales->launch[j] = inverse_root(squares, rows->launches);
+    }
 }
 
 /* rows[from, lanes] = weights[to, from], transposed; row i times in[i], lane j times out[j] (NULL: 1). */
@@ -83,8 +85,9 @@ static const double *store_layer(const double *weights, int to, const double *in
     return biases + to;
 }
 
-void window_scales_store(const WindowData *data, const WindowScales *scales, const double *parameters,
-                         SubspacePredictor *predictor) {
+void window_fit_store(const WindowFit *fit, const double *parameters, SubspacePredictor *predictor) {
+    const WindowData *data = fit->data;
+    const WindowScales *scales = &fit->scales;
     const int count = data->count, hidden = predictor->second.from;
     double in[2 * SUBSPACE_COMPONENTS_MAX + SUBSPACE_LAUNCH];
     for (int k = 0; k < count; k++) {
@@ -112,7 +115,7 @@ static const double robust_length = 0.05;
 /* s: an error of a change in a step counts as much as this many such changes in the state. */
 static const double change_weight = 4;
 
-typedef struct Part {
+struct WindowPart {
     NetworkBlock *blocks[WINDOW_FRAMES];
     double *states;   /* [WINDOW_FRAMES + 2, count, BLOCK_ROWS] z: two of the start, then predicted */
     double *targets;  /* the same, recorded */
@@ -120,27 +123,30 @@ typedef struct Part {
     double *inputs;   /* [inputs, BLOCK_ROWS] d loss / d inputs */
     double *gradient; /* [parameters] */
     double loss;
-} Part;
-
-struct WindowFit {
-    const WindowData *data;
-    Network *shape;
-    WindowScales scales;
-    Part parts[WINDOW_PARTS];
 };
 
-static bool make_part(WindowFit *fit, Part *part, Error *error) {
+static void destroy_part(WindowPart *part) {
+    if (part == NULL) return;
+    for (int t = 0; t < WINDOW_FRAMES; t++) network_block_destroy(part->blocks[t]);
+    free(part->states);
+    free(part);
+}
+
+static WindowPart *make_part(const WindowFit *fit, Error *error) {
     const size_t states = (size_t)(WINDOW_FRAMES + 2) * (size_t)fit->data->count * BLOCK_ROWS;
     const size_t inputs = (size_t)fit->shape->widths[0] * BLOCK_ROWS;
-    for (int t = 0; t < WINDOW_FRAMES; t++)
-        if ((part->blocks[t] = network_block_create(fit->shape, error)) == NULL) return false;
+    WindowPart *part = calloc(1, sizeof *part);
+    if (part == NULL) return error_memory(error, "subspace"), NULL;
     part->states = calloc(3 * states + inputs + (size_t)network_parameter_count(fit->shape), sizeof *part->states);
-    if (part->states == NULL) return error_memory(error, "subspace");
+    bool ok = part->states != NULL || error_memory(error, "subspace");
+    for (int t = 0; ok && t < WINDOW_FRAMES; t++)
+        ok = (part->blocks[t] = network_block_create(fit->shape, error)) != NULL;
+    if (!ok) return destroy_part(part), NULL;
     part->targets = part->states + states;
     part->slopes = part->targets + states;
     part->inputs = part->slopes + states;
     part->gradient = part->inputs + inputs;
-    return true;
+    return part;
 }
 
 WindowFit *window_fit_create(const WindowData *data, int hidden, Error *error) {
@@ -151,34 +157,25 @@ WindowFit *window_fit_create(const WindowData *data, int hidden, Error *error) {
     fit->shape = network_create(3, widths, error);
     bool ok = fit->shape != NULL;
     if (ok) fit->shape->activations[0] = fit->shape->activations[1] = ACTIVATION_TANH;
-    for (int p = 0; ok && p < WINDOW_PARTS; p++) ok = make_part(fit, &fit->parts[p], error);
-    if (!ok) {
-        window_fit_destroy(fit);
-        return NULL;
-    }
-    window_scales_find(data, &fit->scales);
+    for (int p = 0; ok && p < WINDOW_PARTS; p++) ok = (fit->parts[p] = make_part(fit, error)) != NULL;
+    if (!ok) return window_fit_destroy(fit), NULL;
+    find_scales(data, &fit->scales);
     return fit;
 }
 
 void window_fit_destroy(WindowFit *fit) {
     if (fit == NULL) return;
-    for (int p = 0; p < WINDOW_PARTS; p++) {
-        for (int t = 0; t < WINDOW_FRAMES; t++) network_block_destroy(fit->parts[p].blocks[t]);
-        free(fit->parts[p].states);
-    }
+    for (int p = 0; p < WINDOW_PARTS; p++) destroy_part(fit->parts[p]);
     network_destroy(fit->shape);
     free(fit);
 }
-
-const Network *window_fit_shape(const WindowFit *fit) { return fit->shape; }
-const WindowScales *window_fit_scales(const WindowFit *fit) { return &fit->scales; }
 
 static double *plane(const WindowFit *fit, double *states, int t, int k) {
     return states + ((size_t)t * (size_t)fit->data->count + (size_t)k) * BLOCK_ROWS;
 }
 
 /* Starts are denser near the launch: the square of a uniform number, as boxes rest in most of the later frames. */
-static void choose_windows(const WindowFit *fit, Part *part, uint64_t seed) {
+static void choose_windows(const WindowFit *fit, WindowPart *part, uint64_t seed) {
     const WindowData *data = fit->data;
     const int starts = data->rows->states - WINDOW_FRAMES - 1;
     uint64_t random = seed;
@@ -208,7 +205,7 @@ static void choose_windows(const WindowFit *fit, Part *part, uint64_t seed) {
 }
 
 /* States t + 1 -> t + 2. */
-static void forward_step(const WindowFit *fit, Part *part, const double *parameters, int t) {
+static void forward_step(const WindowFit *fit, WindowPart *part, const double *parameters, int t) {
     const WindowData *data = fit->data;
     NetworkBlock *block = part->blocks[t];
     for (int k = 0; k < data->count; k++) {
@@ -236,7 +233,7 @@ static void forward_step(const WindowFit *fit, Part *part, const double *paramet
 
 /* Adds the loss of states t and t + 1, of which t + 1 is predicted, and its slopes: sqrt(e^2 + l^2) - l of the length e
    of the error of all components, and of the error of their change. */
-static void add_loss(const WindowFit *fit, Part *part, int t) {
+static void add_loss(const WindowFit *fit, WindowPart *part, int t) {
     const int count = fit->data->count;
     double position[BLOCK_ROWS] = {0}, change[BLOCK_ROWS] = {0};
     for (int k = 0; k < count; k++) {
@@ -270,7 +267,7 @@ static void add_loss(const WindowFit *fit, Part *part, int t) {
 }
 
 /* From the slopes of state t + 2 to those of t + 1 and t, and of the parameters. */
-static void backward_step(const WindowFit *fit, Part *part, const double *parameters, int t) {
+static void backward_step(const WindowFit *fit, WindowPart *part, const double *parameters, int t) {
     const WindowData *data = fit->data;
     NetworkBlock *block = part->blocks[t];
     for (int k = 0; k < data->count; k++) {
@@ -298,7 +295,7 @@ static void backward_step(const WindowFit *fit, Part *part, const double *parame
     }
 }
 
-static void run_part(const WindowFit *fit, Part *part, const double *parameters, uint64_t seed) {
+static void run_part(const WindowFit *fit, WindowPart *part, const double *parameters, uint64_t seed) {
     const size_t states = (size_t)(WINDOW_FRAMES + 2) * (size_t)fit->data->count * BLOCK_ROWS;
     memset(part->slopes, 0, states * sizeof *part->slopes);
     memset(part->gradient, 0, (size_t)network_parameter_count(fit->shape) * sizeof *part->gradient);
@@ -313,12 +310,12 @@ double window_fit_slopes(WindowFit *fit, const double *parameters, uint64_t seed
     const int count = network_parameter_count(fit->shape);
     double loss = 0;
 #pragma omp parallel for schedule(static, 1)
-    for (int p = 0; p < WINDOW_PARTS; p++) run_part(fit, &fit->parts[p], parameters, seed * WINDOW_PARTS + (uint64_t)p);
+    for (int p = 0; p < WINDOW_PARTS; p++) run_part(fit, fit->parts[p], parameters, seed * WINDOW_PARTS + (uint64_t)p);
     for (int i = 0; i < count; i++) {
         slopes[i] = 0;
-        for (int p = 0; p < WINDOW_PARTS; p++) slopes[i] += fit->parts[p].gradient[i] / WINDOW_PARTS;
+        for (int p = 0; p < WINDOW_PARTS; p++) slopes[i] += fit->parts[p]->gradient[i] / WINDOW_PARTS;
     }
-    for (int p = 0; p < WINDOW_PARTS; p++) loss += fit->parts[p].loss / WINDOW_PARTS;
+    for (int p = 0; p < WINDOW_PARTS; p++) loss += fit->parts[p]->loss / WINDOW_PARTS;
     return loss;
 }
 

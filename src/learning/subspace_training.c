@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of subspace: errors of predictors, recording, components, and a fit for each number of components. */
+/* Training of subspace: recorded poses and their components, errors of predictors, and a fit for each of them. */
 #include "learning/subspace_training.h"
 
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
-#include "learning/dataset.h"
+#include "learning/launches.h"
 #include "learning/learning.h"
 #include "methods/methods.h"
-#include "methods/steppers.h"
+#include "methods/subspace.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"
 #include "scenes/scenes.h"
@@ -17,6 +17,78 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double apart = 0.1; /* m */
+
+/* The method that the launches are recorded with. */
+static const char offline[] = "interior:near=0.001";
+
+static const int sizes[SUBSPACE_PREDICTORS_MAX] = {8, 32, SUBSPACE_COMPONENTS_MAX};
+
+static const double first_rate = 1e-2;
+static const double longest_slopes = 1;    /* a window through an impact may have any slope */
+static const double recording_share = 0.1; /* of the progress */
+
+static bool moves(const Scene *scene, int body) { return body == scene->body_count || !scene->bodies[body].fixed; }
+
+/* One step before the bomb appears: recorded, or, in the first state of a scene and of the bomb, from the velocity. */
+static void fill_earlier(const Scene *launched, const LaunchRuns *runs, int launch, int body, const BodyDef *def,
+                         float numbers[SUBSPACE_POSE]) {
+    const int frame = launched->bomb.frame;
+    if (frame > 0 && body < launched->body_count) {
+        const BodyPose *pose = &launch_runs_frame(runs, launch, frame - 1)[body];
+        subspace_pose_numbers(def->size, pose->position, pose->angle, numbers);
+        return;
+    }
+    subspace_pose_numbers(def->size, vec2_sub(def->position, vec2_scale(launched->dt, def->velocity)),
+                          def->angle - launched->dt * def->angular_velocity, numbers);
+}
+
+static bool make_rows(PoseRows *rows, const Scene *scene, const LaunchRuns *runs, Error *error) {
+    int moving = 0;
+    for (int body = 0; body < runs->bodies; body++) moving += moves(scene, body);
+    *rows = (PoseRows){
+        .launches = runs->count, .states = runs->frames - scene->bomb.frame + 1, .numbers = SUBSPACE_POSE * moving};
+    const size_t count = (size_t)rows->states * (size_t)rows->numbers;
+    rows->rows = malloc((size_t)rows->launches * (count + SUBSPACE_LAUNCH) * sizeof *rows->rows);
+    if (rows->rows == NULL) return error_memory(error, "subspace");
+    rows->launch = rows->rows + (size_t)rows->launches * count;
+    for (int launch = 0; launch < rows->launches; launch++) {
+        const Scene launched = launch_scene(scene, &runs->launches[launch]);
+        float *at = rows->rows + (size_t)launch * count;
+        subspace_launch(&launched, rows->launch + (size_t)launch * SUBSPACE_LAUNCH);
+        for (int state = 0; state < rows->states; state++)
+            for (int body = 0; body < runs->bodies; body++) {
+                if (!moves(scene, body)) continue;
+                const BodyDef def = body == scene->body_count ? scene_bomb_body(&launched) : launched.bodies[body];
+                const BodyPose *pose =
+                    &launch_runs_frame(runs, launch, launched.bomb.frame + (state > 0 ? state - 1 : 0))[body];
+                if (state == 0)
+                    fill_earlier(&launched, runs, launch, body, &def, at);
+                else
+                    subspace_pose_numbers(def.size, pose->position, pose->angle, at);
+                at += SUBSPACE_POSE;
+            }
+    }
+    return true;
+}
+
+void pose_rows_free(PoseRows *rows) {
+    free(rows->rows);
+    *rows = (PoseRows){0};
+}
+
+bool subspace_record(PoseRows *rows, const Scene *scene, const Launch *launches, int count, const Progress *progress,
+                     Error *error) {
+    Method recorder;
+    LaunchRuns runs = {0};
+    *rows = (PoseRows){0};
+    const bool ok = method_parse(&recorder, offline, error) &&
+                    launch_runs_record(&runs, scene, &recorder, launches, count, progress, error) &&
+                    make_rows(rows, scene, &runs, error);
+    launch_runs_free(&runs);
+    return ok;
+}
+
 typedef enum Kind { FLOOR, LINEAR, NET, KINDS } Kind;
 
 /* Of one launch. */
@@ -24,18 +96,6 @@ typedef struct LaunchErrors {
     double squares; /* m^2 */
     int frames;
 } LaunchErrors;
-
-/* Adds a state; true while no body is apart. */
-static bool add_state(const float *numbers, const float *recorded, int bodies, double *squares) {
-    double most = 0;
-    for (int i = 0; i < bodies; i++) {
-        const double x = (double)numbers[SUBSPACE_POSE * i] - (double)recorded[SUBSPACE_POSE * i],
-                     y = (double)numbers[SUBSPACE_POSE * i + 1] - (double)recorded[SUBSPACE_POSE * i + 1];
-        *squares += x * x + y * y;
-        most = fmax(most, x * x + y * y);
-    }
-    return most <= SUBSPACE_APART * SUBSPACE_APART;
-}
 
 static void run_launch(Subspace *subspace, const PoseRows *rows, int launch, Kind kind, LaunchErrors *errors) {
     bool near = true;
@@ -48,24 +108,21 @@ static void run_launch(Subspace *subspace, const PoseRows *rows, int launch, Kin
         else
             subspace_step(subspace, rows->launch + (size_t)launch * SUBSPACE_LAUNCH);
         subspace_reconstruct(subspace);
-        near = add_state(subspace->numbers, recorded, rows->numbers / SUBSPACE_POSE, &errors->squares) && near;
+        double most = 0;
+        for (int i = 0; i < rows->numbers; i += SUBSPACE_POSE) {
+            const double x = (double)subspace->numbers[i] - (double)recorded[i],
+                         y = (double)subspace->numbers[i + 1] - (double)recorded[i + 1];
+            errors->squares += x * x + y * y;
+            most = fmax(most, x * x + y * y);
+        }
+        near = near && most <= apart * apart;
         errors->frames += near;
     }
 }
 
-static int subspace_training_compare(const void *a, const void *b) {
+static int compare_frames(const void *a, const void *b) {
     const int x = ((const LaunchErrors *)a)->frames, y = ((const LaunchErrors *)b)->frames;
     return (x > y) - (x < y);
-}
-
-/* Sums the launches in their order. */
-static SubspaceErrors subspace_training_total(const PoseRows *rows, LaunchErrors *errors) {
-    double squares = 0;
-    const double bodies = rows->numbers / SUBSPACE_POSE;
-    for (int i = 0; i < rows->launches; i++) squares += errors[i].squares;
-    qsort(errors, (size_t)rows->launches, sizeof *errors, subspace_training_compare);
-    return (SubspaceErrors){sqrt(squares / (bodies * (rows->states - 2) * rows->launches)),
-                            (double)errors[rows->launches / 2].frames};
 }
 
 static bool score_kind(const SubspaceNet *net, const SubspacePredictor *predictor, const PoseRows *rows, Kind kind,
@@ -74,8 +131,17 @@ static bool score_kind(const SubspaceNet *net, const SubspacePredictor *predicto
     LaunchErrors *errors = calloc((size_t)rows->launches, sizeof *errors);
     const bool ok = subspace_make(&subspace, net, predictor, kind == NET, error) &&
                     (errors != NULL || error_memory(error, "subspace"));
-    for (int i = 0; ok && i < rows->launches; i++) run_launch(&subspace, rows, i, kind, &errors[i]);
-    if (ok) *result = subspace_training_total(rows, errors);
+    double squares = 0;
+    for (int i = 0; ok && i < rows->launches; i++) {
+        run_launch(&subspace, rows, i, kind, &errors[i]);
+        squares += errors[i].squares;
+    }
+    if (ok) {
+        const double bodies = rows->numbers / SUBSPACE_POSE;
+        qsort(errors, (size_t)rows->launches, sizeof *errors, compare_frames);
+        *result = (SubspaceErrors){sqrt(squares / (bodies * (rows->states - 2) * rows->launches)),
+                                   (double)errors[rows->launches / 2].frames};
+    }
     subspace_free(&subspace);
     free(errors);
     return ok;
@@ -83,39 +149,11 @@ static bool score_kind(const SubspaceNet *net, const SubspacePredictor *predicto
 
 bool subspace_score(const SubspaceNet *net, const SubspacePredictor *predictor, const PoseRows *rows,
                     SubspaceScore *score, Error *error) {
-    SubspaceErrors *const results[KINDS] = {&score->floor, &score->linear, &score->net};
     score->components = predictor->components;
-    for (int kind = 0; kind < KINDS; kind++)
-        if (!score_kind(net, predictor, rows, (Kind)kind, results[kind], error)) return false;
-    return true;
+    return score_kind(net, predictor, rows, FLOOR, &score->floor, error) &&
+           score_kind(net, predictor, rows, LINEAR, &score->linear, error) &&
+           score_kind(net, predictor, rows, NET, &score->net, error);
 }
-
-bool subspace_distance(const PoseRows *rows, const PoseRows *others, SubspaceErrors *errors, Error *error) {
-    LaunchErrors *launches = calloc((size_t)rows->launches, sizeof *launches);
-    if (launches == NULL) return error_memory(error, "subspace");
-    for (int i = 0; i < rows->launches; i++) {
-        bool near = true;
-        for (int state = 2; state < rows->states; state++) {
-            near = add_state(pose_row(others, i, state), pose_row(rows, i, state), rows->numbers / SUBSPACE_POSE,
-                             &launches[i].squares) &&
-                   near;
-            launches[i].frames += near;
-        }
-    }
-    *errors = subspace_training_total(rows, launches);
-    free(launches);
-    return true;
-}
-
-static const int sizes[SUBSPACE_PREDICTORS_MAX] = {8, 32, SUBSPACE_COMPONENTS_MAX};
-
-static const double first_rate = 1e-2;
-
-/* A window through an impact may have any slope. */
-static const double longest_slopes = 1;
-
-/* Shares of the progress. */
-static const double recording_share = 0.1;
 
 typedef struct Trainer {
     const Scene *scene;
@@ -131,88 +169,113 @@ typedef struct Trainer {
     double *slopes;
 } Trainer;
 
-bool subspace_record(PoseRows *rows, const Scene *scene, const char *method, const Launch *launches, int count,
-                     const Progress *progress, Error *error) {
-    Method recorder;
-    LaunchRuns runs = {0};
-    *rows = (PoseRows){0};
-    const bool ok = method_parse(&recorder, method, error) &&
-                    launch_runs_record(&runs, scene, &recorder, launches, count, progress, error) &&
-                    pose_rows_make(rows, scene, &runs, error);
-    launch_runs_free(&runs);
-    return ok;
-}
-
-static bool subspace_training_record(Trainer *trainer, PoseRows *rows, bool scoring, int count, Error *error) {
+static bool record(Trainer *trainer, PoseRows *rows, bool scoring, int count, Error *error) {
     Launch *launches = malloc((size_t)count * sizeof *launches);
     bool ok = launches != NULL || error_memory(error, "subspace");
     ok = ok && (scoring ? launches_for_scoring : launches_for_training)(trainer->scene, count, launches, error) &&
-         subspace_record(rows, trainer->scene, SUBSPACE_OFFLINE, launches, count, &trainer->fit.progress, error);
+         subspace_record(rows, trainer->scene, launches, count, &trainer->fit.progress, error);
     free(launches);
     return ok;
 }
 
-/* The run in which no bomb appears. */
-static bool record_rest(Trainer *trainer, LaunchRuns *rest, Error *error) {
-    Method offline;
-    Launch never = launch_of(trainer->scene);
-    never.frame = trainer->scene->frames + 1;
-    return method_parse(&offline, SUBSPACE_OFFLINE, error) &&
-           launch_runs_record(rest, trainer->scene, &offline, &never, 1, NULL, error);
-}
-
 static bool make_net(Trainer *trainer, Error *error) {
     const Scene *scene = trainer->scene;
-    SubspaceShape shape = {.bodies = trainer->rows.numbers / SUBSPACE_POSE,
-                           .hidden = trainer->training->hidden,
-                           .frames_before = scene->bomb.frame};
-    for (int i = 0; i < SUBSPACE_PREDICTORS_MAX && shape.components < trainer->rows.numbers; i++) {
-        shape.components = sizes[i] < trainer->rows.numbers ? sizes[i] : trainer->rows.numbers;
+    const int numbers = trainer->rows.numbers;
+    SubspaceShape shape = {
+        .bodies = numbers / SUBSPACE_POSE, .hidden = trainer->training->hidden, .frames_before = scene->bomb.frame};
+    for (int i = 0; i < SUBSPACE_PREDICTORS_MAX && shape.components < numbers; i++) {
+        shape.components = sizes[i] < numbers ? sizes[i] : numbers;
         shape.predictors[shape.predictor_count++] = shape.components;
     }
     if (!subspace_shape_check(&shape, scene->name, error)) return false;
-    trainer->net = subspace_net_create(&shape, error);
-    if (trainer->net == NULL) return false;
-    trainer->net->physics = subspace_physics(scene);
-    snprintf(trainer->net->scene, sizeof trainer->net->scene, "%s", scene->name);
-    snprintf(trainer->net->command, sizeof trainer->net->command, "%s", trainer->training->command);
+    SubspaceNet *net = trainer->net = subspace_net_create(&shape, error);
+    if (net == NULL) return false;
+    net->physics = subspace_physics(scene);
+    snprintf(net->scene, sizeof net->scene, "%s", scene->name);
+    snprintf(net->command, sizeof net->command, "%s", trainer->training->command);
     return true;
 }
 
-static void fill_before(const Trainer *trainer, const LaunchRuns *rest) {
-    float *at = trainer->net->before;
-    for (int frame = 1; frame <= trainer->net->shape.frames_before; frame++)
-        for (int body = 0; body < trainer->scene->body_count; body++) {
-            if (trainer->scene->bodies[body].fixed) continue;
-            const BodyPose *pose = &launch_runs_frame(rest, 0, frame)[body];
-            *at++ = pose->position.x;
-            *at++ = pose->position.y;
-            *at++ = pose->angle;
+/* What the net has of the run in which no bomb appears: its poses up to the bomb's frame, and where the bodies rest; the
+   rest of the bomb is the mean of its rows. */
+static void take_rest(const Trainer *trainer, const LaunchRuns *quiet) {
+    const Scene *scene = trainer->scene;
+    const PoseRows *rows = &trainer->rows;
+    float *before = trainer->net->before, *rest = trainer->net->rest;
+    for (int frame = 1; frame <= scene->bomb.frame; frame++)
+        for (int body = 0; body < scene->body_count; body++) {
+            if (scene->bodies[body].fixed) continue;
+            const BodyPose *pose = &launch_runs_frame(quiet, 0, frame)[body];
+            *before++ = pose->position.x;
+            *before++ = pose->position.y;
+            *before++ = pose->angle;
         }
+    for (int body = 0; body < scene->body_count; body++) {
+        if (scene->bodies[body].fixed) continue;
+        const BodyPose *pose = &launch_runs_frame(quiet, 0, scene->frames)[body];
+        subspace_pose_numbers(scene->bodies[body].size, pose->position, pose->angle, rest);
+        rest += SUBSPACE_POSE;
+    }
+    for (int j = 0; j < SUBSPACE_POSE; j++) {
+        double sum = 0;
+        for (int launch = 0; launch < rows->launches; launch++)
+            for (int state = 0; state < rows->states; state++)
+                sum += (double)pose_row(rows, launch, state)[rows->numbers - SUBSPACE_POSE + j];
+        rest[j] = (float)(sum / ((double)rows->launches * rows->states));
+    }
 }
 
-static bool fit_components(Trainer *trainer, Error *error) {
-    LaunchRuns rest = {0};
+/* The basis of the net, the components of all rows, and their ranges. */
+static bool find_components(Trainer *trainer, Error *error) {
+    SubspaceNet *net = trainer->net;
     const PoseRows *rows = &trainer->rows;
-    bool ok = record_rest(trainer, &rest, error) && make_net(trainer, error);
+    const size_t numbers = (size_t)rows->numbers, count = (size_t)net->shape.components;
+    const size_t states = (size_t)rows->launches * (size_t)rows->states;
+    const PrincipalRows of = {rows->rows, states, rows->numbers, (size_t)rows->states};
+    double *centre = malloc((2 + numbers) * numbers * sizeof *centre), *values = centre + numbers,
+           *vectors = values + numbers;
+    trainer->components = malloc(states * count * sizeof *trainer->components);
+    bool ok = (centre != NULL && trainer->components != NULL) || error_memory(error, "subspace");
+    for (size_t j = 0; ok && j < numbers; j++) centre[j] = (double)net->rest[j];
+    ok = ok && principal_components(&of, centre, values, vectors, error);
     if (ok) {
-        trainer->components = malloc((size_t)rows->launches * (size_t)rows->states *
-                                     (size_t)trainer->net->shape.components * sizeof *trainer->components);
-        ok = trainer->components != NULL || error_memory(error, "subspace");
+        const size_t lanes = (size_t)subspace_lanes(rows->numbers);
+        for (size_t k = 0; k < count; k++)
+            for (size_t j = 0; j < numbers; j++) net->basis[k * lanes + j] = (float)vectors[k * numbers + j];
+#pragma omp parallel for schedule(static)
+        for (size_t i = 0; i < states; i++)
+            for (size_t k = 0; k < count; k++)
+                trainer->components[i * count + k] = subspace_component(net, rows->rows + i * numbers, (int)k);
+        for (size_t k = 0; k < count; k++) {
+            net->low[k] = net->high[k] = trainer->components[k];
+            for (size_t i = 0; i < states; i++) {
+                const float z = trainer->components[i * count + k];
+                if (z < net->low[k]) net->low[k] = z;
+                if (z > net->high[k]) net->high[k] = z;
+            }
+        }
     }
-    if (ok) {
-        fill_before(trainer, &rest);
-        ok = pose_components_fit(rows, trainer->scene, launch_runs_frame(&rest, 0, trainer->scene->frames),
-                                 trainer->net, error);
-    }
-    if (ok) pose_components_project(rows, trainer->net, trainer->components);
-    launch_runs_free(&rest);
+    free(centre);
     return ok;
 }
 
+static bool fit_components(Trainer *trainer, Error *error) {
+    Method recorder;
+    LaunchRuns quiet = {0};
+    Launch never = launch_of(trainer->scene);
+    never.frame = trainer->scene->frames + 1;
+    bool ok = method_parse(&recorder, offline, error) &&
+              launch_runs_record(&quiet, trainer->scene, &recorder, &never, 1, NULL, error) && make_net(trainer, error);
+    if (ok) take_rest(trainer, &quiet);
+    launch_runs_free(&quiet);
+    return ok && find_components(trainer, error);
+}
+
 static bool make_fits(Trainer *trainer, Error *error) {
+    const SubspaceTraining *training = trainer->training;
     SubspaceNet *net = trainer->net;
-    for (int i = 0; i < net->shape.predictor_count; i++) {
+    const int count = net->shape.predictor_count;
+    for (int i = 0; i < count; i++) {
         WindowData *data = &trainer->data[i];
         *data = (WindowData){.rows = &trainer->rows,
                              .components = trainer->components,
@@ -224,14 +287,8 @@ static bool make_fits(Trainer *trainer, Error *error) {
         window_linear(data, trainer->linear[i]);
         trainer->fits[i] = window_fit_create(data, net->shape.hidden, error);
         if (trainer->fits[i] == NULL) return false;
-        trainer->first[i + 1] = trainer->first[i] + network_parameter_count(window_fit_shape(trainer->fits[i]));
+        trainer->first[i + 1] = trainer->first[i] + network_parameter_count(trainer->fits[i]->shape);
     }
-    return true;
-}
-
-static bool begin_fit(Trainer *trainer, Error *error) {
-    const SubspaceTraining *training = trainer->training;
-    const int count = trainer->net->shape.predictor_count;
     Fit *fit = &trainer->fit;
     bool found;
     trainer->slopes = malloc((size_t)trainer->first[count] * sizeof *trainer->slopes);
@@ -245,75 +302,50 @@ static bool begin_fit(Trainer *trainer, Error *error) {
 }
 
 /* The rate falls to 0 by the square of what is left. */
-static double rate_at(const SubspaceTraining *training, int64_t steps) {
-    const double left = 1 - (double)steps / ((double)training->epochs * training->batches);
-    return first_rate * left * left;
-}
-
-static bool subspace_training_step(void *context, Adam *adam, double *loss, Error *error) {
+static bool take_step(void *context, Adam *adam, double *loss, Error *error) {
     Trainer *trainer = context;
     const SubspaceTraining *training = trainer->training;
     const int i = trainer->fit.stage;
     const uint64_t seed = (training->seed << 32) + ((uint64_t)i << 24) + (uint64_t)adam->steps;
+    const double left = 1 - (double)adam->steps / ((double)training->epochs * training->batches);
     *loss += window_fit_slopes(trainer->fits[i], adam->weights, seed, trainer->slopes) / training->batches;
     if (!slopes_limit(trainer->slopes, adam->count, longest_slopes) || !isfinite(*loss))
         return error_input(error, "subspace", "training diverged in epoch %d", trainer->fit.epoch + 1);
-    adam_step(adam, trainer->slopes, rate_at(training, adam->steps));
-    return true;
-}
-
-static bool subspace_training_score(Trainer *trainer, int i, double loss, Error *error) {
-    SubspacePredictor *predictor = &trainer->net->predictors[i];
-    SubspaceScore result;
-    window_scales_store(&trainer->data[i], window_fit_scales(trainer->fits[i]),
-                        trainer->fit.adam.weights + trainer->first[i], predictor);
-    if (trainer->training->on_score == NULL) return true;
-    if (!subspace_score(trainer->net, predictor, &trainer->held_out, &result, error)) return false;
-    trainer->training->on_score(trainer->training->context, &result, loss);
+    adam_step(adam, trainer->slopes, first_rate * left * left);
     return true;
 }
 
 /* The time of an epoch grows with the weights. */
 static bool fit_networks(Trainer *trainer, Error *error) {
     const SubspaceTraining *training = trainer->training;
-    const FitSteps steps = {(int64_t)training->epochs * training->batches, training->batches, subspace_training_step,
-                            NULL, trainer};
+    const FitSteps steps = {(int64_t)training->epochs * training->batches, training->batches, take_step, NULL, trainer};
     const int begun = trainer->fit.stage, count = trainer->net->shape.predictor_count;
     const double all = 1 - trainer->fit.share.begin - trainer->fit.share.share;
     for (int i = 0; i < count; i++) {
         const int64_t first = trainer->first[i], weights = trainer->first[i + 1] - first;
+        SubspacePredictor *predictor = &trainer->net->predictors[i];
+        SubspaceScore score;
         double loss = 0;
         progress_next_stage(&trainer->fit.share, all * (double)weights / (double)trainer->first[count]);
         if (i > begun) fit_stage(&trainer->fit, i);
-        if ((i >= begun && !fit_run(&trainer->fit, first, weights, &steps, &loss, error)) ||
-            !subspace_training_score(trainer, i, loss, error))
-            return false;
+        if (i >= begun && !fit_run(&trainer->fit, first, weights, &steps, &loss, error)) return false;
+        window_fit_store(trainer->fits[i], trainer->fit.adam.weights + first, predictor);
+        if (training->on_score == NULL) continue;
+        if (!subspace_score(trainer->net, predictor, &trainer->held_out, &score, error)) return false;
+        training->on_score(training->context, &score, loss);
     }
     return true;
 }
 
-static bool subspace_training_run(Trainer *trainer, Error *error) {
-    const SubspaceTraining *training = trainer->training;
+static bool run(Trainer *trainer, Error *error) {
     progress_next_stage(&trainer->fit.share, recording_share);
-    if (!subspace_training_record(trainer, &trainer->rows, false, training->launches, error)) return false;
+    if (!record(trainer, &trainer->rows, false, trainer->training->launches, error)) return false;
     if (trainer->rows.states < WINDOW_FRAMES + 3)
         return error_input(error, trainer->scene->name, "%d frames with the bomb; training needs %d",
                            trainer->rows.states - 1, WINDOW_FRAMES + 2);
     progress_next_stage(&trainer->fit.share, recording_share / 10);
-    if (!subspace_training_record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error)) return false;
-    return fit_components(trainer, error) && make_fits(trainer, error) && begin_fit(trainer, error) &&
-           fit_networks(trainer, error);
-}
-
-static void trainer_free(Trainer *trainer) {
-    pose_rows_free(&trainer->rows);
-    pose_rows_free(&trainer->held_out);
-    free(trainer->components);
-    free(trainer->slopes);
-    fit_free(&trainer->fit);
-    for (int i = 0; i < SUBSPACE_PREDICTORS_MAX; i++) window_fit_destroy(trainer->fits[i]);
-    subspace_net_destroy(trainer->net);
-    free(trainer);
+    return record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error) && fit_components(trainer, error) &&
+           make_fits(trainer, error) && fit_networks(trainer, error);
 }
 
 SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training, const Progress *progress,
@@ -323,11 +355,15 @@ SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training
     trainer->scene = scene;
     trainer->training = training;
     fit_init(&trainer->fit, training->command, training->state_path, progress);
-    SubspaceNet *net = NULL;
-    if (subspace_training_run(trainer, error)) {
-        net = trainer->net;
-        trainer->net = NULL;
-    }
-    trainer_free(trainer);
+    const bool ok = run(trainer, error);
+    SubspaceNet *net = ok ? trainer->net : NULL;
+    if (!ok) subspace_net_destroy(trainer->net);
+    pose_rows_free(&trainer->rows);
+    pose_rows_free(&trainer->held_out);
+    free(trainer->components);
+    free(trainer->slopes);
+    fit_free(&trainer->fit);
+    for (int i = 0; i < SUBSPACE_PREDICTORS_MAX; i++) window_fit_destroy(trainer->fits[i]);
+    free(trainer);
     return net;
 }

@@ -22,6 +22,7 @@
    counted as unlike the training. */
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/gns_graph.h"
 #include "methods/methods.h"
 #include "methods/steppers.h"
 #include "nets/kinds.h"
@@ -56,7 +57,7 @@ static const SettingSpec settings[] = {
     {"rigid", "off: particles are not put back to rigid boxes (default: on)", SETTING_BOOL(Gns, rigid)},
     {0}};
 
-static void gns_destroy(void *state) {
+static void destroy(void *state) {
     Gns *gns = state;
     gns_net_free(&gns->net);
     free(gns->arrays.memory);
@@ -69,7 +70,7 @@ static void gns_destroy(void *state) {
     free(gns);
 }
 
-static void *gns_create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Gns standard = {.uses_net = true, .rigid = true};
     Gns *gns = settings_make(chosen, settings, &standard, sizeof standard, "gns", error);
     if (gns == NULL || !gns->uses_net) return gns;
@@ -78,20 +79,8 @@ static void *gns_create(const Settings *chosen, const Scene *scene, Error *error
     if (path != NULL ? gns_net_read(&gns->net, path, error)
                      : error_input(error, "gns", "needs a network: network=FILE, or the scene's `networks`"))
         return gns;
-    gns_destroy(gns);
+    destroy(gns);
     return NULL;
-}
-
-static bool gns_reserve(Gns *gns, int bodies) {
-    const size_t count = (size_t)bodies, particles = count * BOX_PARTICLES;
-    GnsParticles *now = &gns->particles, *last = &gns->last;
-    return array_reserve((void **)&gns->place, &gns->place_capacity, count, sizeof *gns->place) &&
-           array_reserve((void **)&last->position, &gns->position_capacity, particles, sizeof *last->position) &&
-           array_reserve((void **)&last->velocity, &gns->velocity_capacity, particles, sizeof *last->velocity) &&
-           ARRAY_BLOCK_RESERVE(&gns->arrays, ARRAY_PART(now->body, count), ARRAY_PART(now->position, particles),
-                               ARRAY_PART(now->velocity, particles), ARRAY_PART(gns->body, count),
-                               ARRAY_PART(gns->ground, count), ARRAY_PART(gns->poses, count),
-                               ARRAY_PART(gns->touched, count));
 }
 
 /* A past of constant velocity and spin: the particles of the poses dt, 2 dt, ... ago. */
@@ -110,19 +99,22 @@ static void begin_past(Gns *gns, int i, const Body *body, float dt) {
     }
 }
 
-static void take_past(Gns *gns, int i, int place) {
-    const ptrdiff_t to = (ptrdiff_t)i * BOX_PARTICLES, from = (ptrdiff_t)place * BOX_PARTICLES;
-    memcpy(gns->particles.position + to, gns->last.position + from, BOX_PARTICLES * sizeof *gns->last.position);
-    memcpy(gns->particles.velocity + to, gns->last.velocity + from, BOX_PARTICLES * sizeof *gns->last.velocity);
-}
-
 /* Particles of all bodies that move, and the boxes that do not. */
-static bool gns_begin(Gns *gns, const BegunStep *begun) {
+static bool begin(Gns *gns, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
-    if (!gns_reserve(gns, problem->body_count + 1) || !step_memory_match(&gns->memory, begun->world, begun->step))
+    const size_t count = (size_t)problem->body_count + 1, particles = count * BOX_PARTICLES;
+    GnsParticles *now = &gns->particles, *last = &gns->last;
+    if (!array_reserve((void **)&gns->place, &gns->place_capacity, count, sizeof *gns->place) ||
+        !array_reserve((void **)&last->position, &gns->position_capacity, particles, sizeof *last->position) ||
+        !array_reserve((void **)&last->velocity, &gns->velocity_capacity, particles, sizeof *last->velocity) ||
+        !ARRAY_BLOCK_RESERVE(&gns->arrays, ARRAY_PART(now->body, count), ARRAY_PART(now->position, particles),
+                             ARRAY_PART(now->velocity, particles), ARRAY_PART(gns->body, count),
+                             ARRAY_PART(gns->ground, count), ARRAY_PART(gns->poses, count),
+                             ARRAY_PART(gns->touched, count)) ||
+        !step_memory_match(&gns->memory, begun->world, begun->step))
         return false;
     const Body *bodies = world_bodies(begun->world);
-    gns->particles.bodies = gns->ground_count = 0;
+    now->bodies = gns->ground_count = 0;
     for (int i = 0; i < problem->body_count; i++) {
         const Body *body = &bodies[i];
         gns->poses[i] = (BodyPose){body->position, body->angle};
@@ -130,28 +122,25 @@ static bool gns_begin(Gns *gns, const BegunStep *begun) {
             gns->ground[gns->ground_count++] = box_make(body->position, body->size, body->angle);
             continue;
         }
-        const int at = gns->particles.bodies++;
-        gns->particles.body[at] = (GnsBody){body->size, 1.0f / body->inv_mass, i == problem->bomb};
+        const int at = now->bodies++;
+        now->body[at] = (GnsBody){body->size, 1.0f / body->inv_mass, i == problem->bomb};
         gns->body[at] = i;
-        if (gns->memory.known[i])
-            take_past(gns, at, gns->place[i]);
-        else
+        if (!gns->memory.known[i]) {
             begin_past(gns, at, body, problem->dt);
+            continue;
+        }
+        const ptrdiff_t to = (ptrdiff_t)at * BOX_PARTICLES, from = (ptrdiff_t)gns->place[i] * BOX_PARTICLES;
+        memcpy(now->position + to, last->position + from, BOX_PARTICLES * sizeof *now->position);
+        memcpy(now->velocity + to, last->velocity + from, BOX_PARTICLES * sizeof *now->velocity);
     }
     return true;
 }
 
-/* False for a body with an acceleration that is NaN, infinite or far beyond the training's. */
-static bool credible(const Gns *gns, int i) {
-    const float most = beyond_strongest * gns->net.scales.strongest / gns->net.scales.acceleration;
-    const float *outputs = gns->pass.outputs + (ptrdiff_t)i * BOX_PARTICLES * GNS_OUTPUTS;
-    bool ok = true;
-    for (int k = 0; k < BOX_PARTICLES * GNS_OUTPUTS; k++) ok = ok && fabsf(outputs[k]) <= most;
-    return ok;
-}
-
 static void move_particles(Gns *gns, int i, Vec2 gravity, float dt, NetworkFallbacks *fallbacks) {
-    const bool learned = gns->uses_net && credible(gns, i);
+    const float most = beyond_strongest * gns->net.scales.strongest / gns->net.scales.acceleration;
+    bool learned = gns->uses_net; /* and no acceleration is NaN, infinite or far beyond the training's */
+    for (int k = i * BOX_PARTICLES * GNS_OUTPUTS; learned && k < (i + 1) * BOX_PARTICLES * GNS_OUTPUTS; k++)
+        learned = fabsf(gns->pass.outputs[k]) <= most;
     if (gns->uses_net && !learned) fallbacks->not_finite++;
     for (int p = i * BOX_PARTICLES; p < (i + 1) * BOX_PARTICLES; p++) {
         Vec2 *velocity = gns->particles.velocity[p], change = vec2_scale(dt, gravity);
@@ -167,42 +156,37 @@ static void move_particles(Gns *gns, int i, Vec2 gravity, float dt, NetworkFallb
     }
 }
 
-/* The particles of the box's pose; their newest velocities lead there. */
-static void make_rigid(Gns *gns, int i, const BodyPose *before, const BodyPose *after, float dt) {
-    const Vec2 size = gns->particles.body[i].size;
-    Vec2 from[BOX_PARTICLES], *to = gns->particles.position + (ptrdiff_t)i * BOX_PARTICLES;
-    Vec2(*velocity)[GNS_HISTORY] = gns->particles.velocity + (ptrdiff_t)i * BOX_PARTICLES;
-    box_particles_place(from, size, before);
-    box_particles_place(to, size, after);
-    for (int p = 0; p < BOX_PARTICLES; p++)
-        velocity[p][GNS_HISTORY - 1] = vec2_scale(1.0f / dt, vec2_sub(to[p], from[p]));
-}
-
-/* Poses and velocities of the bodies that move, from their particles. */
+/* Pose and velocity of a body that moves, from its particles. If it is rigid, these take their places on it, and their
+   newest velocities lead there. */
 static void end_body(Gns *gns, int i, const ContactProblem *problem, ContactSolution *solution) {
     const int body = gns->body[i];
+    const float per = 1.0f / problem->dt;
+    const Vec2 size = gns->particles.body[i].size;
     const BodyPose before = gns->poses[body];
     BodyPose *pose = &gns->poses[body];
-    *pose =
-        box_particles_fit(gns->particles.position + (ptrdiff_t)i * BOX_PARTICLES, gns->particles.body[i].size, &before);
-    if (gns->rigid) make_rigid(gns, i, &before, pose, problem->dt);
-    const float per = 1.0f / problem->dt;
+    Vec2 from[BOX_PARTICLES], *to = gns->particles.position + (ptrdiff_t)i * BOX_PARTICLES;
+    *pose = box_particles_fit(to, size, &before);
+    if (gns->rigid) {
+        box_particles_place(from, size, &before);
+        box_particles_place(to, size, pose);
+        for (int p = 0; p < BOX_PARTICLES; p++)
+            gns->particles.velocity[i * BOX_PARTICLES + p][GNS_HISTORY - 1] = vec2_scale(per, vec2_sub(to[p], from[p]));
+    }
     solution->velocities[body] =
         (BodyVelocity){vec2_scale(per, vec2_sub(pose->position, before.position)), per * (pose->angle - before.angle)};
 }
 
-static bool gns_predict(Gns *gns) {
-    return gns_graph_build(&gns->graph, &gns->particles, gns->ground, gns->ground_count, &gns->net.scales) &&
-           gns_forward(&gns->pass, &gns->net.layout, gns->net.parameters, &gns->graph);
-}
-
-static bool gns_solve(void *state, BegunStep *begun, Error *error) {
+static bool solve(void *state, BegunStep *begun, Error *error) {
     Gns *gns = state;
     const ContactProblem *problem = begun->problem;
     ContactSolution *solution = begun->solution;
-    if (!gns_begin(gns, begun) || (gns->uses_net && !gns_predict(gns))) return error_memory(error, "gns");
+    const GnsNet *net = &gns->net;
+    if (!begin(gns, begun) || (gns->uses_net && (!gns_graph_build(&gns->graph, &gns->particles, gns->ground,
+                                                                  gns->ground_count, &net->scales) ||
+                                                 !gns_forward(&gns->pass, &net->layout, net->parameters, &gns->graph))))
+        return error_memory(error, "gns");
     const Vec2 gravity = begun->step->scene->gravity;
-    const bool other_gravity = gravity.x != gns->net.gravity[0] || gravity.y != gns->net.gravity[1];
+    const bool other_gravity = gravity.x != net->gravity[0] || gravity.y != net->gravity[1];
     solution->fallbacks.beyond_training += gns->uses_net && (gns->graph.beyond || other_gravity);
     memset(solution->velocities, 0, (size_t)problem->body_count * sizeof *solution->velocities);
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0};
@@ -214,26 +198,17 @@ static bool gns_solve(void *state, BegunStep *begun, Error *error) {
     return true;
 }
 
-static void gns_measure(void *state, const BegunStep *begun) {
+static void measure(void *state, const BegunStep *begun) {
     begun->solution->momentum_error = free_flight_momentum(begun->problem, begun->solution, ((Gns *)state)->touched);
 }
 
-static void gns_keep(void *state, const World *world) {
+static void keep(void *state, const World *world) {
     Gns *gns = state;
     const size_t count = (size_t)gns_particle_count(&gns->particles);
     memcpy(gns->last.position, gns->particles.position, count * sizeof *gns->last.position);
     memcpy(gns->last.velocity, gns->particles.velocity, count * sizeof *gns->last.velocity);
     for (int i = 0; i < gns->particles.bodies; i++) gns->place[gns->body[i]] = i;
     step_memory_keep(&gns->memory, world);
-}
-
-float gns_shape_distance(const void *state) {
-    const Gns *gns = state;
-    float sum = 0;
-    for (int i = 0; i < gns->particles.bodies; i++)
-        sum += box_particles_distance(gns->last.position + (ptrdiff_t)i * BOX_PARTICLES, gns->particles.body[i].size,
-                                      &gns->poses[gns->body[i]]);
-    return gns->particles.bodies > 0 ? sum / (float)gns->particles.bodies : 0;
 }
 
 const SteppingKind stepping_gns = {
@@ -249,8 +224,8 @@ const SteppingKind stepping_gns = {
                     .chart = METHOD_RUNS("", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = gns_create,
-    .solve = gns_solve,
-    .measure = gns_measure,
-    .keep = gns_keep,
-    .destroy = gns_destroy};
+    .create = create,
+    .solve = solve,
+    .measure = measure,
+    .keep = keep,
+    .destroy = destroy};

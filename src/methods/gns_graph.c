@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Boxes as particles, the graph of particles, and the forward pass over it (methods/steppers.h). */
+/* Boxes as particles, the graph of particles, and the forward pass over it (methods/gns_graph.h). */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "methods/steppers.h"
+#include "methods/gns_graph.h"
 #include "nets/kernels.h"
 #include "nets/kinds.h"
 

@@ -13,6 +13,8 @@
 
    Fails by what it does not know: nothing keeps boxes apart or momentum constant; poses that differ from all launches
    of the training have no components. Another scene, and another size or mass of its bodies, is refused. */
+#include "methods/subspace.h"
+
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

@@ -27,7 +27,6 @@ equal "problems left out" "$(awk '$1 ~ /^(on|off|shuffled)$/ { print $4 }' out |
 run 0 train --kind hybrid stack.yaml -o memory.npz --launches 3 --steps 4 --limit 0.03
 says "  full"
 run 0 train --kind gns -o gns.npz --scenes single.yaml --launches 2 --steps 20 --rounds 1
-says "would take"
 stored() { /usr/bin/python3 -c "import numpy; print(numpy.load('$1')['command'])"; }
 equal "command of pair-net" "$(stored pair.npz)" \
     "twinbox train pairs.npz -o pair.npz --layers 10-10-2 --optimizer adam --iterations 3 --seed 1 --hidden tanh --loss smooth-l1"

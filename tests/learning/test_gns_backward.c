@@ -2,7 +2,7 @@
 /* The backward pass of gns is the slope of its forward pass. */
 #include "methods/particle_heap.h"
 
-#include "learning/gns_training.h"
+#include "learning/gns_backward.h"
 
 /* Two boxes, one of which is static: with more, some unit of ReLU would switch within almost any step. */
 enum { FEW_BODIES = 2, PARTICLES = FEW_BODIES * BOX_PARTICLES };

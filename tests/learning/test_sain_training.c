@@ -4,7 +4,6 @@
 #include "owned.h"
 
 #include "learning/sain_training.h"
-#include "learning/scene_training.h"
 #include "methods/reference.h"
 
 static Scene *scene;
@@ -52,7 +51,7 @@ TEST(an_interrupted_training_has_the_same_bits) {
 TEST(problems_without_a_solution_are_left_out_and_counted) {
     scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge_launches.yaml");
     const SainLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 3, .rounds = 1};
-    ImpactProblems problems = {.unconverged = 0};
+    OWN(RecordedSteps) problems = {0};
     SainSamples samples = {.unconverged = 1};
     OWN(Reference) reference = {0};
     assert_ok(sain_launches_record(&launches, &problems, NULL, &error), error);
@@ -64,7 +63,6 @@ TEST(problems_without_a_solution_are_left_out_and_counted) {
     assert_ok(sain_samples_add(&samples, &problems, false, &error), error);
     assert_int_equal(samples.unconverged, 1 + 3 * 2);
     sain_samples_free(&samples);
-    impact_problems_free(&problems);
     scene_destroy(scene);
 }
 
@@ -74,9 +72,8 @@ TEST(a_failed_step_of_the_engine_is_refused) {
     scene->gravity.y = -INFINITY;
     scene->overlaps_allowed = true; /* the launches are not tried before */
     const SainLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 1, .rounds = 1};
-    ImpactProblems problems = {.unconverged = 0};
+    OWN(RecordedSteps) problems = {0};
     assert_refused(sain_launches_record(&launches, &problems, NULL, &error), "NaN or infinite");
-    impact_problems_free(&problems);
     scene_destroy(scene);
 }
 

@@ -41,10 +41,9 @@ static void fit_to(SceneNet *network, const SceneNetSamples *samples, SceneNetFi
 
 static double mean_error(const SceneNet *network, const SceneNetSamples *samples) {
     Error error = {0};
-    double errors[SAMPLES], sum = 0;
-    assert_ok(slot_errors(network, samples, 0, errors, &error), error);
-    for (int i = 0; i < samples->count; i++) sum += errors[i];
-    return sum / samples->count;
+    double mean;
+    assert_ok(scene_net_error(network, samples, &mean, &error), error);
+    return mean;
 }
 
 TEST(a_few_samples_are_learned) {
@@ -103,12 +102,12 @@ TEST(a_loss_of_nan_is_an_error_naming_the_epoch) {
     SceneNet *network = begin(&samples);
     const SceneNetFit fit = fit_of(2, 9, 0.01, false);
     /* The velocity loss starts in the third epoch. */
-    samples.items[7].reference[3].x = NAN;
+    samples.items[7].step.velocities[3].x = NAN;
     assert_refused(scene_net_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 3");
     end(&samples, network);
     error = (Error){0};
     network = begin(&samples);
-    samples.items[7].goal[samples.items[7].view.contacts[0]].normal = INFINITY;
+    samples.items[7].step.impulses[samples.items[7].view.contacts[0]].normal = INFINITY;
     assert_refused(scene_net_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 1");
     end(&samples, network);
 }

@@ -2,6 +2,7 @@
 /* The initial network: slots, caps and scales against independent counts; the distribution of its inputs and
    outputs. */
 #include "impacts.h"
+#include "owned.h"
 
 enum { LAUNCHES = 20 };
 
@@ -19,9 +20,9 @@ FIXTURE(end) {
 }
 
 static const ContactPoint *contact_in(const SceneNetSample *sample, int a, int b, uint32_t feature) {
-    for (int k = 0; k < sample->problem.contact_count; k++) {
-        const ContactPoint *contact = &sample->problem.contacts[k];
-        if (contact->a == a && contact->b == b && scene_view_feature(&sample->problem, contact) == feature)
+    for (int k = 0; k < sample->step.problem.contact_count; k++) {
+        const ContactPoint *contact = &sample->step.problem.contacts[k];
+        if (contact->a == a && contact->b == b && scene_view_feature(&sample->step.problem, contact) == feature)
             return contact;
     }
     return NULL;
@@ -41,9 +42,9 @@ static bool is_below(const Slot *x, const Slot *y) {
 TEST(slots_are_contacts_of_at_least_three_samples) {
     int left_out = 0, known = 0;
     for (int i = 0; i < samples.count; i++)
-        for (int k = 0; k < samples.items[i].problem.contact_count; k++) {
-            const ContactPoint *contact = &samples.items[i].problem.contacts[k];
-            const uint32_t feature = scene_view_feature(&samples.items[i].problem, contact);
+        for (int k = 0; k < samples.items[i].step.problem.contact_count; k++) {
+            const ContactPoint *contact = &samples.items[i].step.problem.contacts[k];
+            const uint32_t feature = scene_view_feature(&samples.items[i].step.problem, contact);
             const bool slot = scene_net_find(network, contact->a, contact->b, feature) >= 0;
             assert_int_equal(slot, samples_with(contact->a, contact->b, feature) >= 3);
             left_out += !slot;
@@ -55,8 +56,8 @@ TEST(slots_are_contacts_of_at_least_three_samples) {
         assert_true(i == 0 || is_below(slot - 1, slot));
         assert_true(samples_with(slot->a, slot->b, slot->feature) >= 3);
     }
-    assert_int_equal(network->body_count, samples.items[0].problem.body_count);
-    assert_int_equal(network->bomb, samples.items[0].problem.bomb);
+    assert_int_equal(network->body_count, samples.items[0].step.problem.body_count);
+    assert_int_equal(network->bomb, samples.items[0].step.problem.bomb);
 }
 
 TEST(caps_are_the_largest_warm_impulses_at_the_touch) {
@@ -68,7 +69,7 @@ TEST(caps_are_the_largest_warm_impulses_at_the_touch) {
             const ContactPoint *contact = contact_in(&samples.items[k], slot->a, slot->b, slot->feature);
             if (contact == NULL) continue;
             ever = fmaxf(ever, contact->warm_normal);
-            if (samples.items[k].since == 0) before = fmaxf(before, contact->warm_normal);
+            if (samples.items[k].step.since == 0) before = fmaxf(before, contact->warm_normal);
         }
         assert_true(network->cap[i] == before);
         capped += before > 0;
@@ -87,9 +88,9 @@ TEST(scales_are_how_far_the_goal_is) {
             const SceneNetSample *sample = &samples.items[k];
             const ContactPoint *contact = contact_in(sample, slot->a, slot->b, slot->feature);
             if (contact == NULL) continue;
-            const long at = contact - sample->problem.contacts;
-            sum += sqrt(hypot((double)(sample->goal[at].normal - sample->view.base[at].normal),
-                              (double)(sample->goal[at].tangent - sample->view.base[at].tangent)));
+            const long at = contact - sample->step.problem.contacts;
+            sum += sqrt(hypot((double)(sample->step.impulses[at].normal - sample->view.base[at].normal),
+                              (double)(sample->step.impulses[at].tangent - sample->view.base[at].tangent)));
             count++;
         }
         const double expected = sum / count * (sum / count) + 0.05;
@@ -141,11 +142,16 @@ TEST(initial_outputs_are_near_0) {
 
 TEST(samples_without_slots_are_refused) {
     SceneNetSamples few = {0};
+    RecordedSteps steps = {0};
+    OWN(Reference) reference = {0};
+    const LaunchStep step = {.problem = &samples.items[0].step.problem, .steps = &steps, .reference = &reference};
     assert_refused(scene_net_from_samples(&few, &small_widths, 1, &error),
                    "no launch has an impact whose residual reaches the gate");
     error = (Error){0};
-    for (int i = 0; i < 2; i++) assert_true(scene_net_samples_add(&few, &samples.items[0].problem, i, 0));
-    assert_ok(scene_net_samples_label(&few, 0, NULL, &error), error);
+    assert_ok(reference_solve(&reference, step.problem, NULL, &error), error);
+    for (int i = 0; i < 2; i++) assert_ok(launch_step_record(&step, true, &error), error);
+    assert_true(scene_net_samples_take(&few, &steps));
+    recorded_steps_free(&steps);
     assert_refused(scene_net_from_samples(&few, &small_widths, 1, &error), "0 slots");
     scene_net_samples_free(&few);
 }

@@ -5,7 +5,6 @@
 
 #include "engine/uniform.h"
 #include "methods/reference.h"
-#include "learning/scene_training_internal.h"
 
 enum { LAUNCHES = 4, SWEEPS = 6, OF_EACH_BLOCK = 6 };
 
@@ -54,7 +53,7 @@ static double loss_of(Trial *trial) {
 
 /* The pieces that the sweeps took. If they differ between two evaluations, there is a kink between these. */
 static uint8_t *pieces_of(const Trial *trial) {
-    const size_t count = (SWEEPS + 1) * (size_t)trial->sample->problem.contact_count;
+    const size_t count = (SWEEPS + 1) * (size_t)trial->sample->step.problem.contact_count;
     uint8_t *pieces = malloc(count + 1);
     assert_non_null(pieces);
     memcpy(pieces, trial->loss.unrolled.pieces, count);
@@ -69,7 +68,7 @@ typedef struct Tally {
    precision of the outputs. */
 static void compare(Trial *trial, double ahead, const uint8_t *taken, double behind, double expected, double unit,
                     Tally *tally) {
-    const size_t count = (SWEEPS + 1) * (size_t)trial->sample->problem.contact_count;
+    const size_t count = (SWEEPS + 1) * (size_t)trial->sample->step.problem.contact_count;
     if (trial->task.velocity_weight > 0 && memcmp(taken, trial->loss.unrolled.pieces, count) != 0) {
         tally->kinks++;
         return;
@@ -216,12 +215,13 @@ TEST(the_error_is_that_of_the_studies) {
         SceneNetErrors score;
         assert_true(scene_net_loss(&trial.loss, trial.network, trial.sample, &trial.task, NULL, NULL, &score));
         BodyVelocity velocities[16];
-        assert_in_range(trial.sample->problem.body_count, 2, 16);
-        for (int k = 0; k < trial.sample->problem.body_count; k++) {
+        assert_in_range(trial.sample->step.problem.body_count, 2, 16);
+        for (int k = 0; k < trial.sample->step.problem.body_count; k++) {
             const double *v = trial.loss.unrolled.velocities + 3 * k;
             velocities[k] = (BodyVelocity){vec2((float)v[0], (float)v[1]), (float)v[2]};
         }
-        assert_near(score.error, solution_error(&trial.sample->problem, velocities, trial.sample->reference).rms, 1e-5);
+        assert_near(score.error,
+                    solution_error(&trial.sample->step.problem, velocities, trial.sample->step.velocities).rms, 1e-5);
         assert_near(score.loss, 3 * hypot(score.error, 0.01), 1e-12 * (1 + score.loss));
     }
     end(&trial);
@@ -241,7 +241,8 @@ TEST(impulse_loss_is_a_mean_over_slots) {
         const SceneView *view = &trial.sample->view;
         double sum = 0;
         for (int k = 0; k < view->slots.slot_count; k++) {
-            const ContactImpulse base = view->base[view->contacts[k]], goal = trial.sample->goal[view->contacts[k]];
+            const ContactImpulse base = view->base[view->contacts[k]],
+                                 goal = trial.sample->step.impulses[view->contacts[k]];
             const double scale = (double)network->scale[view->slots.slots[k]];
             const double apart[2] = {fabs((double)base.normal - (double)goal.normal) / scale,
                                      fabs((double)base.tangent - (double)goal.tangent) / scale};

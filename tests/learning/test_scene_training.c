@@ -79,7 +79,7 @@ static bool stop_share(void *context, double done, double total) {
     return done < stop->at * total;
 }
 
-/* Stopped in the first fit, in the labels after it, in the second fit. */
+/* Stopped in the first fit, in the launches after it, in the second fit. */
 TEST(a_stopped_training_keeps_the_rounds_so_far) {
     OWN(Scene) *scene = scene_named("stack");
     static const double at[] = {0.27, 0.67, 0.87};
@@ -101,7 +101,7 @@ TEST(a_training_stopped_before_the_first_network_fails) {
     Scores scores;
     Stop stop = {.at = 0.1};
     assert_null(train(scene, &scores, &(Progress){stop_share, &stop}, &error));
-    assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
+    assert_error(error, ERROR_INTERRUPTED, "launches: error: stopped after");
 }
 
 RUN_TESTS(NULL, NULL)

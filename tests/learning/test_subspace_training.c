@@ -47,7 +47,7 @@ TEST(rows_are_the_recorded_poses) {
     PoseRows rows;
     scene = short_scene();
     assert_ok(launches_for_training(scene, 2, launches, &error), error);
-    assert_ok(subspace_record(&rows, scene, SUBSPACE_OFFLINE, launches, 2, NULL, &error), error);
+    assert_ok(subspace_record(&rows, scene, launches, 2, NULL, &error), error);
     assert_int_equal(rows.states, scene->frames + 2);
     assert_int_equal(rows.numbers, 8);
     const Scene launched = launch_scene(scene, &launches[1]);

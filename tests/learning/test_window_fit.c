@@ -3,7 +3,7 @@
 #include "owned.h"
 
 #include "engine/uniform.h"
-#include "learning/subspace_training.h"
+#include "learning/subspace_fit.h"
 
 enum { LAUNCHES = 3, STATES = 40, COMPONENTS = 3, HIDDEN = 16 };
 
@@ -54,7 +54,7 @@ TEST(slopes_are_differences) {
     make(&c);
     for (int k = 0; k < COMPONENTS; k++) c.linear[k] = 1.7, c.linear[COMPONENTS + k] = -0.7;
     WindowFit *fit = fit_of(&c);
-    const int count = network_parameter_count(window_fit_shape(fit));
+    const int count = network_parameter_count(fit->shape);
     double *parameters = calloc(3 * (size_t)count, sizeof *parameters), *slopes = parameters + count;
     assert_non_null(parameters);
     window_fit_begin(fit, 1, parameters);
@@ -79,8 +79,8 @@ TEST(the_stored_predictor_is_the_trained_one) {
     window_linear(&c.data, c.linear);
     c.linear[0] = 0.5;
     WindowFit *fit = fit_of(&c);
-    const WindowScales *scales = window_fit_scales(fit);
-    const Network *shape = window_fit_shape(fit);
+    const WindowScales *scales = &fit->scales;
+    const Network *shape = fit->shape;
     FREED double *parameters = calloc((size_t)network_parameter_count(shape), sizeof *parameters);
     assert_non_null(parameters);
     window_fit_begin(fit, 4, parameters);
@@ -91,7 +91,7 @@ TEST(the_stored_predictor_is_the_trained_one) {
     OWN(SubspaceNet) *net = subspace_net_create(&sizes, &error);
     assert_ok(net != NULL, error);
     for (int k = 0; k < COMPONENTS; k++) net->low[k] = -100, net->high[k] = 100;
-    window_scales_store(&c.data, scales, parameters, &net->predictors[0]);
+    window_fit_store(fit, parameters, &net->predictors[0]);
     OWN(Subspace) subspace;
     assert_ok(subspace_make(&subspace, net, &net->predictors[0], true, &error), error);
     const float last[] = {0.2f, 0.3f, -0.4f}, now[] = {0.25f, 0.2f, -0.5f}, launch[SUBSPACE_LAUNCH] = {1.5f, 2, 50, 50};

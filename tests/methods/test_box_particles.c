@@ -2,7 +2,7 @@
 /* Nine particles of a box, and the box that fits them best. */
 #include "testing.h"
 
-#include "methods/steppers.h"
+#include "methods/gns_graph.h"
 
 TEST(angles_are_those_of_the_maths_library) {
     for (int i = -1000; i <= 1000; i++) {

@@ -3,7 +3,7 @@
 #include "particle_heap.h"
 #include "owned.h"
 
-#include "methods/steppers.h"
+#include "methods/gns_graph.h"
 
 OWNED_VALUE(GnsGraph, gns_graph_free)
 

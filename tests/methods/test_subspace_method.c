@@ -3,7 +3,7 @@
 #include "made.h"
 
 #include "methods/subspace_nets.h"
-#include "methods/steppers.h"
+#include "methods/subspace.h"
 
 static const float dt = 1 / 60.0f;
 

@@ -24,6 +24,24 @@
 
 enum { LIST_SIZE = 4096, STEPS_SAVED = 100 };
 
+/* Reads the scene of the command line, if there is one, and those of a list, each with an impact; *count grows with
+   them, also in a failure. */
+static bool read_scenes(const char *first, const char *more, const char *option, Scene **scenes, int most, int *count,
+                        Error *error) {
+    char list[LIST_SIZE], *rest = list;
+    if (snprintf(list, sizeof list, "%s", more != NULL ? more : "") >= (int)sizeof list)
+        return error_input(error, option, "the list has more than %d characters", LIST_SIZE - 1);
+    for (const char *path = first != NULL ? first : strtok_r(rest, ",", &rest); path != NULL;
+         path = strtok_r(rest, ",", &rest)) {
+        if (*count == most) return error_input(error, option, "more than %d scenes", most);
+        scenes[*count] = scene_read(installed_path(path), error);
+        if (scenes[*count] == NULL) return false;
+        ++*count;
+        if (!scene_check_strike(scenes[*count - 1], error)) return false;
+    }
+    return *count > 0 || error_input(error, option, "no scene is given");
+}
+
 typedef struct SainOptions {
     SainTraining training;
     const char *more;
@@ -50,51 +68,30 @@ static void sain_print_score(void *context, const SainScore *score) {
     fflush(stdout);
 }
 
-/* Reads the scene of the command line, if there is one, and those of a list, each with an impact; *count grows with
-   them, also in a failure. */
-static bool read_scenes(const char *first, const char *more, const char *option, Scene **scenes, int most, int *count,
-                        Error *error) {
-    char list[LIST_SIZE], *rest = list;
-    if (snprintf(list, sizeof list, "%s", more != NULL ? more : "") >= (int)sizeof list)
-        return error_input(error, option, "the list has more than %d characters", LIST_SIZE - 1);
-    for (const char *path = first != NULL ? first : strtok_r(rest, ",", &rest); path != NULL;
-         path = strtok_r(rest, ",", &rest)) {
-        if (*count == most) return error_input(error, option, "more than %d scenes", most);
-        scenes[*count] = scene_read(installed_path(path), error);
-        if (scenes[*count] == NULL) return false;
-        ++*count;
-        if (!scene_check_strike(scenes[*count - 1], error)) return false;
+static bool sain_run(const TrainRequest *request, Error *error) {
+    Scene *scenes[SAIN_SCENES_MAX] = {NULL};
+    SainOptions given = {.training = {.scenes = scenes,
+                                      .batch = SAIN_PARTS * BLOCK_ROWS,
+                                      .saved = STEPS_SAVED,
+                                      .command = request->command,
+                                      .state_path = request->state,
+                                      .on_score = sain_print_score}};
+    SainTraining *training = &given.training;
+    SainNetworks networks = {0};
+    bool ok = train_read(request, &given, error) &&
+              read_scenes(request->input, given.more, "--with", scenes, SAIN_SCENES_MAX, &training->scene_count, error);
+    if (ok) {
+        printf("held-out impacts, velocity error in m/s\n"
+               "engine    round  problems  unconverged   bodies     loss      sain   engine  constant\n");
+        ok = sain_training_run(training, &networks, progress_bar_begin("training"), error);
+        progress_bar_end();
+        snprintf(networks.command, sizeof networks.command, "%s", request->command);
+        ok = ok && sain_networks_write(&networks, request->output, error) && file_remove(request->state, error);
     }
-    return *count > 0 || error_input(error, option, "no scene is given");
-}
-
-static bool sain_train(const TrainRequest *request, SainTraining *training, Error *error) {
-    SainNetworks networks;
-    training->command = request->command;
-    training->state_path = request->state;
-    printf("held-out impacts, velocity error in m/s\n"
-           "engine    round  problems  unconverged   bodies     loss      sain   engine  constant\n");
-    bool ok = sain_training_run(training, &networks, progress_bar_begin("training"), error);
-    progress_bar_end();
-    snprintf(networks.command, sizeof networks.command, "%s", request->command);
-    ok = ok && sain_networks_write(&networks, request->output, error) && file_remove(request->state, error);
     if (ok)
         printf("%d networks of %d weights -> %s\n", (int)SAIN_FORMS, sain_weight_count(&networks.forms[0]),
                request->output);
     sain_networks_destroy(&networks);
-    return ok;
-}
-
-static bool sain_run(const TrainRequest *request, Error *error) {
-    SainOptions given = {
-        .training = {.batch = SAIN_PARTS * BLOCK_ROWS, .saved = STEPS_SAVED, .on_score = sain_print_score}};
-    Scene *scenes[SAIN_SCENES_MAX] = {NULL};
-    if (!train_read(request, &given, error)) return false;
-    SainTraining *training = &given.training;
-    training->scenes = scenes;
-    const bool ok =
-        read_scenes(request->input, given.more, "--with", scenes, SAIN_SCENES_MAX, &training->scene_count, error) &&
-        sain_train(request, training, error);
     for (int i = 0; i < SAIN_SCENES_MAX; i++) scene_destroy(scenes[i]);
     return ok;
 }
@@ -148,8 +145,7 @@ static void print_report(Report *report, int number, const HybridMemory *memory)
     *report = (Report){.launches = report->launches};
 }
 
-static bool add_launch(void *context, const HybridLaunch *launch, Error *error) {
-    (void)error;
+static void add_launch(void *context, const HybridLaunch *launch) {
     Report *report = context;
     HybridLaunch *sum = &report->sum;
     sum->asked += launch->asked;
@@ -162,35 +158,30 @@ static bool add_launch(void *context, const HybridLaunch *launch, Error *error) 
     const int every = (report->launches + REPORTS - 1) / REPORTS;
     if (launch->number % every == 0 || launch->number == report->launches)
         print_report(report, launch->number, launch->memory);
-    return true;
-}
-
-static bool train_systems_learn(const Scene *scene, const HybridTraining *training, const char *output, Error *error) {
-    printf("launches   asked  answered   grown   added  entries       MiB  error of answers, m/s\n");
-    HybridMemory *memory = hybrid_training_run(scene, training, progress_bar_begin("learning"), error);
-    progress_bar_end();
-    bool ok = memory != NULL && hybrid_memory_write(memory, output, error);
-    if (ok && memory->launches == training->launches) ok = file_remove(training->state_path, error);
-    if (ok)
-        printf("%s%d entries of %d sets of contacts, from %d launch%s -> %s\n",
-               interrupt_requested() ? "stopped early; " : "", memory->entry_count, memory->set_count, memory->launches,
-               plural_es(memory->launches), output);
-    hybrid_memory_destroy(memory);
-    return ok;
 }
 
 static bool hybrid_run(const TrainRequest *request, Error *error) {
     Report report = {0};
-    HybridOptions given = {.training = {.turned_from = -1,
-                                        .components = HYBRID_STANDARD_COMPONENTS,
+    HybridOptions given = {.training = {.components = HYBRID_STANDARD_COMPONENTS,
                                         .on_launch = add_launch,
                                         .context = &report,
                                         .command = request->command,
                                         .state_path = request->state}};
+    HybridTraining *training = &given.training;
     if (!train_read(request, &given, error)) return false;
-    given.training.limit = (size_t)(given.limit * MEBIBYTE);
-    report.launches = given.training.launches;
-    return train_systems_learn(request->scene, &given.training, request->output, error);
+    training->limit = (size_t)(given.limit * MEBIBYTE);
+    report.launches = training->launches;
+    printf("launches   asked  answered   grown   added  entries       MiB  error of answers, m/s\n");
+    HybridMemory *memory = hybrid_training_run(request->scene, training, progress_bar_begin("learning"), error);
+    progress_bar_end();
+    bool ok = memory != NULL && hybrid_memory_write(memory, request->output, error);
+    if (ok && memory->launches == training->launches) ok = file_remove(request->state, error);
+    if (ok)
+        printf("%s%d entries of %d sets of contacts, from %d launch%s -> %s\n",
+               interrupt_requested() ? "stopped early; " : "", memory->entry_count, memory->set_count, memory->launches,
+               plural_es(memory->launches), request->output);
+    hybrid_memory_destroy(memory);
+    return ok;
 }
 
 const TrainKind train_hybrid = {
@@ -240,51 +231,34 @@ static void gns_print_score(void *context, const GnsScore *score) {
     fflush(stdout);
 }
 
-static void print_times(const GnsTraining *training) {
-    const double paper = GNS_PAPER_STEPS * GNS_PAPER_BATCH / training->batch;
-    if (training->seconds_a_step > 0)
-        printf("%.3g ms a gradient step of %d examples; the paper's %.0f million examples would take %.3g hours\n",
-               1e3 * training->seconds_a_step, training->batch, 1e-6 * GNS_PAPER_STEPS * GNS_PAPER_BATCH,
-               paper * training->seconds_a_step / 3600);
-    printf("%.3g ms a simulation step of %d boxes\n", 1e3 * training->seconds_a_pass, training->pass_boxes);
-}
-
-static bool gns_train(const TrainRequest *request, GnsOptions *given, Error *error) {
-    GnsTraining *training = &given->training;
+static bool gns_run(const TrainRequest *request, Error *error) {
     Scene *scenes[GNS_MAX_SCENES] = {NULL};
+    GnsOptions given = {
+        .training = {
+            .scenes = scenes, .command = request->command, .state_path = request->state, .on_score = gns_print_score}};
+    GnsTraining *training = &given.training;
     GnsNet net;
-    if (!read_scenes(NULL, given->scenes, "--scenes", scenes, GNS_MAX_SCENES, &training->scene_count, error)) {
+    if (!train_read(request, &given, error)) return false;
+    if (training->width % GNS_WIDTH_STEP != 0)
+        return error_input(error, "--width", "%d is not a multiple of %d", training->width, GNS_WIDTH_STEP);
+    if (!read_scenes(NULL, given.scenes, "--scenes", scenes, GNS_MAX_SCENES, &training->scene_count, error)) {
         for (int i = 0; i < training->scene_count; i++) scene_destroy(scenes[i]);
         return false;
     }
-    training->scenes = scenes;
     printf("mean squared error of accelerations, in units of their deviation\n  steps       loss   held out\n");
     bool ok = gns_training_run(training, &net, progress_bar_begin("training"), error);
     progress_bar_end();
     snprintf(net.command, sizeof net.command, "%s", request->command);
     ok = ok && gns_net_write(&net, request->output, error) && file_remove(request->state, error);
-    if (ok) {
-        print_times(training);
-        printf("%d parameters -> %s\n", net.layout.parameters, request->output);
-    }
+    if (ok) printf("%d parameters -> %s\n", net.layout.parameters, request->output);
     gns_net_free(&net);
     return ok;
-}
-
-static bool gns_run(const TrainRequest *request, Error *error) {
-    GnsOptions given = {
-        .training = {.command = request->command, .state_path = request->state, .on_score = gns_print_score}};
-    if (!train_read(request, &given, error)) return false;
-    if (given.training.width % GNS_WIDTH_STEP != 0)
-        return error_input(error, "--width", "%d is not a multiple of %d", given.training.width, GNS_WIDTH_STEP);
-    return gns_train(request, &given, error);
 }
 
 const TrainKind train_gns = {
     .name = "gns",
     .summary = "the graph network of gns, on steps of recorded launches. Prints its error during the "
-               "training, and at the end what a step costs. An interrupted training is resumed by the same "
-               "command; its state is in NET.npz.part",
+               "training. An interrupted training is resumed by the same command; its state is in NET.npz.part",
     .file_kind = "gns",
     .options = gns_options,
     .train = gns_run,
@@ -403,7 +377,7 @@ static bool scene_net_store(SceneNet *network, const TrainRequest *request, int 
     return true;
 }
 
-static const char *train_systems_compare(double error, double rival) {
+static const char *than(double error, double rival) {
     return error < rival ? "better than" : error > rival ? "worse than" : "as good as";
 }
 
@@ -417,8 +391,7 @@ static void print_verdict(const SceneNetVerdict *verdict) {
            "sweeps %.4f\n",
            verdict->network, verdict->microseconds, verdict->sweeps, verdict->at_equal_time, verdict->at_20);
     printf("verdict: %s momentum at equal time; %s momentum with 20 sweeps\n",
-           train_systems_compare(verdict->network, verdict->at_equal_time),
-           train_systems_compare(verdict->network, verdict->at_20));
+           than(verdict->network, verdict->at_equal_time), than(verdict->network, verdict->at_20));
 }
 
 static SceneNet *scene_net_train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
@@ -451,30 +424,25 @@ static SceneNet *train_smallest(const Scene *scene, SceneTraining *training, dou
     return NULL;
 }
 
-static bool scene_net_train_and_store(const Scene *scene, const TrainRequest *request, SceneNetOptions *given,
-                                      Error *error) {
-    SceneTraining *training = &given->training;
-    SceneNetScore score;
-    SceneNet *network = given->smallest ? train_smallest(scene, training, given->within, error)
-                                        : scene_net_train(scene, training, &score, error);
-    bool ok =
-        network != NULL ? scene_net_store(network, request, training->widths.hidden, error) : error->kind == ERROR_NONE;
-    if (ok && network != NULL) print_verdict(&given->verdict);
-    scene_net_destroy(network);
-    return ok;
-}
-
 static bool scene_net_run(const TrainRequest *request, Error *error) {
     SceneNetOptions given = {
         .training = {.widths = {.state = 16, .present = 32, .warm = 16}, .on_score = scene_net_print_score},
         .within = -1};
+    SceneTraining *training = &given.training;
+    SceneNetScore score;
     if (!train_read(request, &given, error)) return false;
-    given.training.verdict = &given.verdict;
-    const int width = given.training.widths.hidden;
+    training->verdict = &given.verdict;
+    const int width = training->widths.hidden;
     if (width % ROW_LANES != 0) return error_input(error, "--width", "%d is not a multiple of %d", width, ROW_LANES);
     if (given.smallest != (given.within >= 0))
         return error_input(error, "--smallest", "goes with --within E, and that with it");
-    return scene_net_train_and_store(request->scene, request, &given, error);
+    SceneNet *network = given.smallest ? train_smallest(request->scene, training, given.within, error)
+                                       : scene_net_train(request->scene, training, &score, error);
+    if (network == NULL) return error->kind == ERROR_NONE;
+    const bool ok = scene_net_store(network, request, training->widths.hidden, error);
+    if (ok) print_verdict(&given.verdict);
+    scene_net_destroy(network);
+    return ok;
 }
 
 const TrainKind train_scene_net = {
