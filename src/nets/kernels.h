@@ -8,7 +8,7 @@
 
 /* A quantised matrix, a quarter of the size of floats: each number is a byte, times a unit per row. Rounding to 127
    steps of the row's largest number changes a network's outputs by less than 1%, and training compensates for it
-   (learning/scene_training_internal.h). */
+   (learning/scene_net_fit.h). */
 
 typedef struct PackedRows {
     int count, width;
