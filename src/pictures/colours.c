@@ -107,9 +107,10 @@ static bool is_near(uint32_t a, uint32_t b) {
 }
 
 static bool is_like_another(uint32_t fill, bool dark) {
-    for (int i = 0; i < PAINTS; i++)
-        if (is_near(fill, dark ? paint_at(i).dark.fill : paint_at(i).light.fill)) return true;
-    return false;
+    bool like = false;
+    for (int i = 0; i < PAINTS && !like; i++)
+        like = is_near(fill, dark ? paint_at(i).dark.fill : paint_at(i).light.fill);
+    return like;
 }
 
 /* Of `levels` even steps of luma, the one that is the shade-th farthest from the method's own colour; those that are
@@ -215,34 +216,30 @@ typedef struct Assignment {
     bool chosen[COLOURS_MAX];
 } Assignment;
 
-static void sort_names(Assignment *all) {
+/* The places of the runs, in the order of their names. A name without one has the spare colour that it chooses, or the
+   next that no other name of the picture has; without any, the first again. */
+static void find_places(Assignment *all, const char *const *methods) {
     for (int i = 0; i < all->count; i++) {
         int k = i;
         for (; k > 0 && strcmp(all->names[all->order[k - 1]], all->names[i]) > 0; k--)
             all->order[k] = all->order[k - 1];
         all->order[k] = i;
     }
-}
-
-/* The spare colour that a name chooses, or the next that no other name of the picture has; without any, the first
-   again. */
-static int spare_place(const Assignment *all, const char *name) {
-    const int begin = OWNED + FOR_METHODS, first = (int)(hash_fnv1a64(FNV1A64_START, name, strlen(name)) % OTHERS);
-    for (int i = 0; i < OTHERS; i++)
-        if (all->members[begin + (first + i) % OTHERS] == 0) return begin + (first + i) % OTHERS;
-    return begin + first;
-}
-
-static void find_places(Assignment *all, const char *const *methods) {
     for (int i = 0; i < all->count; i++) {
         const int run = all->order[i], before = i > 0 ? all->order[i - 1] : run;
+        const char *name = all->names[run];
         const MethodDescription *method = method_describe(methods[run]);
         /* A program is not the method whose name it gives itself. */
         int place = method != NULL && method->external ? -1 : owned(methods[run]);
-        if (place < 0)
-            place = i > 0 && all->places[before] >= OWNED && strcmp(all->names[before], all->names[run]) == 0
-                        ? all->places[before]
-                        : spare_place(all, all->names[run]);
+        if (place < 0 && i > 0 && all->places[before] >= OWNED && strcmp(all->names[before], name) == 0)
+            place = all->places[before];
+        if (place < 0) {
+            const int begin = OWNED + FOR_METHODS,
+                      first = (int)(hash_fnv1a64(FNV1A64_START, name, strlen(name)) % OTHERS);
+            int next = 0;
+            while (next < OTHERS && all->members[begin + (first + next) % OTHERS] > 0) next++;
+            place = begin + (first + next) % OTHERS;
+        }
         all->places[run] = place;
         all->members[place]++;
     }
@@ -281,20 +278,16 @@ ColourChoices colours_of_these(const ColourChoices *choices, const char *const *
     return these;
 }
 
-static bool has_name(const Assignment *all, const char *chosen) {
-    int i = 0;
-    while (i < all->count && !is_named(chosen, all->names[i])) i++;
-    return i < all->count;
-}
-
 static bool check_names(const Assignment *all, const ColourChoices *choices, Error *error) {
     NameList known = {0};
     char name[METHOD_TEXT_SIZE];
     uint32_t colour;
     for (int i = 0; i < all->count; i++) name_list_add(&known, all->names[i]);
-    for (int i = 0; i < choices->count; i++)
-        if (read_choice(choices->texts[i], name, &colour, error) && !has_name(all, name))
-            return error_unknown(error, "--colour", name, "a run of this picture", &known);
+    for (int i = 0; i < choices->count; i++) {
+        bool found = !read_choice(choices->texts[i], name, &colour, error);
+        for (int k = 0; k < all->count && !found; k++) found = is_named(name, all->names[k]);
+        if (!found) return error_unknown(error, "--colour", name, "a run of this picture", &known);
+    }
     return true;
 }
 
@@ -318,7 +311,6 @@ bool colours_assign(const char *const *methods, int count, const ColourChoices *
     bool taken[PAINTS][COLOURS_MAX + 1] = {{false}};
     assert(count <= COLOURS_MAX);
     for (int i = 0; i < count; i++) method_name(all.names[i], METHOD_TEXT_SIZE, methods[i]);
-    sort_names(&all);
     find_places(&all, methods);
     for (int i = 0; i < count; i++) {
         const int run = all.order[i], place = all.places[run];

@@ -37,7 +37,7 @@ bool bytes_deflate(Bytes *bytes, const void *data, size_t size, Error *error) {
 
 enum { COMPONENTS = 6, POSES = 3 }; /* velocities first, then poses */
 
-static float player_pack_component(const Trajectory *run, size_t i, int which) {
+static float component(const Trajectory *run, size_t i, int which) {
     switch (which) {
     case 0: return run->velocity[i].x;
     case 1: return run->velocity[i].y;
@@ -54,39 +54,28 @@ static uint32_t bits_of(float value) {
     return bits;
 }
 
-/* A NaN has no bits that all machines agree on: then the value before is the prediction. */
-static uint32_t predict_pose(float before, float velocity, float dt) {
-    const float after = before + dt * velocity;
-    return bits_of(isnan(after) ? before : after);
-}
-
-static void put_component(uint8_t *planes, const Trajectory *run, const PlayerFrames *frames, int begin, int end,
-                          int which) {
-    const size_t bodies = (size_t)run->bodies, length = (size_t)(end - begin), count = bodies * length;
-    const float dt = player_dt(frames, run);
-    for (size_t body = 0; body < bodies; body++)
-        for (size_t k = 0; k < length; k++) {
-            const size_t at = (size_t)player_frame(frames, begin + (int)k) * bodies + body;
-            const size_t before = at - (size_t)frames->every * bodies;
-            uint32_t predicted = 0;
-            if (k > 0 && which < POSES) predicted = bits_of(player_pack_component(run, before, which));
-            if (k > 0 && which >= POSES)
-                predicted = predict_pose(player_pack_component(run, before, which),
-                                         player_pack_component(run, at, which - POSES), dt);
-            bytes_put(planes, count, body * length + k,
-                      bytes_zigzag(bits_of(player_pack_component(run, at, which)) - predicted));
-        }
-}
-
 /* Stored frames [begin, end) of a run. */
 static bool state_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrames *frames, int begin, int end,
                         Error *error) {
-    const size_t size = (size_t)run->bodies * (size_t)(end - begin) * sizeof(float);
-    uint8_t *planes = malloc(COMPONENTS * size + 1);
+    const size_t bodies = (size_t)run->bodies, length = (size_t)(end - begin), count = bodies * length;
+    const float dt = player_dt(frames, run);
+    uint8_t *planes = malloc(COMPONENTS * count * sizeof(float) + 1);
     if (planes == NULL) return error_memory(error, "page");
     for (int which = 0; which < COMPONENTS; which++)
-        put_component(planes + (size_t)which * size, run, frames, begin, end, which);
-    const bool ok = bytes_deflate(chunk, planes, COMPONENTS * size, error);
+        for (size_t body = 0; body < bodies; body++)
+            for (size_t k = 0; k < length; k++) {
+                const size_t at = (size_t)player_frame(frames, begin + (int)k) * bodies + body;
+                float predicted = 0;
+                if (k > 0) {
+                    const float before = component(run, at - (size_t)frames->every * bodies, which);
+                    predicted = which < POSES ? before : before + dt * component(run, at, which - POSES);
+                    /* A NaN has no bits that all machines agree on: then the value before is the prediction. */
+                    if (which >= POSES && isnan(predicted)) predicted = before;
+                }
+                bytes_put(planes + (size_t)which * count * sizeof(float), count, body * length + k,
+                          bytes_zigzag(bits_of(component(run, at, which)) - bits_of(predicted)));
+            }
+    const bool ok = bytes_deflate(chunk, planes, COMPONENTS * count * sizeof(float), error);
     free(planes);
     return ok;
 }
@@ -137,7 +126,7 @@ static Rounded round_contact(const TrajectoryContact *contact, Vec2 center, cons
 }
 
 /* The contact with these keys from `from` on; NULL: not among the next ones. */
-static const Rounded *player_pack_find(const Rounded *before, size_t count, size_t *from, const uint32_t keys[KEYS]) {
+static const Rounded *find_same(const Rounded *before, size_t count, size_t *from, const uint32_t keys[KEYS]) {
     for (size_t i = *from; i < count && i < *from + SEARCH; i++)
         if (memcmp(before[i].keys, keys, sizeof before[i].keys) == 0) {
             *from = i + 1;
@@ -152,24 +141,11 @@ static int step_of(const Trajectory *run, const PlayerFrames *frames, int stored
     return frame + 1 < run->frames ? frame + 1 : frame;
 }
 
-/* Rounds the contacts of a stored frame. Returns their number. */
-static size_t round_frame(Rounded *rounded, const Trajectory *run, const PlayerFrames *frames, int stored,
-                          const ContactUnits *units) {
-    const int step = step_of(run, frames, stored);
-    const size_t first = (size_t)run->contact_start[step], count = (size_t)run->contact_start[step + 1] - first;
-    const Vec2 *centers = run->position + (size_t)player_frame(frames, stored) * (size_t)run->bodies;
-    for (size_t i = 0; i < count; i++) {
-        const TrajectoryContact *contact = &run->contacts[first + i];
-        rounded[i] = round_contact(contact, centers[contact->b], units);
-    }
-    return count;
-}
-
 /* Puts a frame's contacts as numbers `at` and following of `total` into the columns. */
 static void put_frame(uint8_t *columns, size_t total, size_t at, const Rounded *now, size_t count,
                       const Rounded *before, size_t before_count) {
     for (size_t i = 0, from = 0; i < count; i++) {
-        const Rounded *same = player_pack_find(before, before_count, &from, now[i].keys);
+        const Rounded *same = find_same(before, before_count, &from, now[i].keys);
         for (size_t key = 0; key < KEYS; key++) bytes_put(columns + key * 4 * total, total, at + i, now[i].keys[key]);
         for (size_t value = 0; value < VALUES; value++) {
             const uint32_t old = same != NULL ? (uint32_t)same->values[value] : 0;
@@ -179,28 +155,29 @@ static void put_frame(uint8_t *columns, size_t total, size_t at, const Rounded *
     }
 }
 
-static size_t count_contacts(const Trajectory *run, const PlayerFrames *frames, int begin, int end, size_t *most) {
-    size_t total = 0;
-    *most = 0;
+/* Stored frames [begin, end) of a run. */
+static bool contact_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrames *frames, int begin, int end,
+                          const ContactUnits *units, Error *error) {
+    const size_t length = (size_t)(end - begin);
+    size_t most = 0, total = 0, before_count = 0;
     for (int stored = begin; stored < end; stored++) {
         const int step = step_of(run, frames, stored);
         const size_t count = (size_t)(run->contact_start[step + 1] - run->contact_start[step]);
         total += count;
-        if (count > *most) *most = count;
+        if (count > most) most = count;
     }
-    return total;
-}
-
-/* Stored frames [begin, end) of a run. */
-static bool contact_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrames *frames, int begin, int end,
-                          const ContactUnits *units, Error *error) {
-    size_t most, length = (size_t)(end - begin), before_count = 0;
-    const size_t total = count_contacts(run, frames, begin, end, &most), size = 4 * (length + (KEYS + VALUES) * total);
+    const size_t size = 4 * (length + (KEYS + VALUES) * total);
     uint8_t *planes = malloc(size + 1);
-    Rounded *rows = malloc(2 * (most + 1) * sizeof *rows), *now = rows, *before = rows + most + 1;
+    Rounded *rows = malloc(2 * (most + 1) * sizeof *rows), *now = rows, *before = rows != NULL ? rows + most + 1 : NULL;
     bool ok = planes != NULL && rows != NULL;
     for (size_t k = 0, at = 0; ok && k < length; k++) {
-        const size_t count = round_frame(now, run, frames, begin + (int)k, units);
+        const int stored = begin + (int)k, step = step_of(run, frames, stored);
+        const size_t first = (size_t)run->contact_start[step], count = (size_t)run->contact_start[step + 1] - first;
+        const Vec2 *centers = run->position + (size_t)player_frame(frames, stored) * (size_t)run->bodies;
+        for (size_t i = 0; i < count; i++) {
+            const TrajectoryContact *contact = &run->contacts[first + i];
+            now[i] = round_contact(contact, centers[contact->b], units);
+        }
         bytes_put(planes, length, k, (uint32_t)count);
         put_frame(planes + 4 * length, total, at, now, count, before, before_count);
         Rounded *swapped = now;
@@ -229,18 +206,13 @@ static double fixed_size(const Player *player) {
     return size;
 }
 
-/* If no state could be packed. */
-static double unpacked_size(const Player *player) {
-    double size = fixed_size(player);
-    for (int i = 0; i < player->picture.count; i++)
-        size += base64_size(6.0 * sizeof(float)) * player->runs[i].frames * player->picture.runs[i]->bodies;
-    return size;
-}
-
 /* `done` of all chunks take `size` bytes. If frames are left out, the prediction of poses is worse: they take up to
-   twice the room. */
-static bool player_pack_refuse(const Player *player, double size, int done, int chunks, Error *error) {
-    const double all = size * chunks / done, worst = fmin(2 * all, unpacked_size(player));
+   twice the room, but no more than if no state could be packed. */
+static bool refuse(const Player *player, double size, int done, int chunks, Error *error) {
+    double unpacked = fixed_size(player);
+    for (int i = 0; i < player->picture.count; i++)
+        unpacked += base64_size(6.0 * sizeof(float)) * player->runs[i].frames * player->picture.runs[i]->bodies;
+    const double all = size * chunks / done, worst = fmin(2 * all, unpacked);
     const int every = player->frames.every * ((int)(worst / player->most_bytes) + 1);
     return error_input(
         error, "page",
@@ -266,7 +238,7 @@ static bool pack_states(Player *player, double *size, Error *error) {
                              chunk_end(run, k), error))
                 return false;
             *size += base64_size((double)run->states[k].size);
-            if (*size > player->most_bytes) return player_pack_refuse(player, *size, done + 1, chunks, error);
+            if (*size > player->most_bytes) return refuse(player, *size, done + 1, chunks, error);
             done++;
         }
     }
@@ -294,7 +266,7 @@ static bool pack_contacts_of(Player *player, int index, double *size, Error *err
 
 bool player_pack(Player *player, Error *error) {
     double size = fixed_size(player);
-    if (size > player->most_bytes) return player_pack_refuse(player, size, 1, 1, error);
+    if (size > player->most_bytes) return refuse(player, size, 1, 1, error);
     if (!pack_states(player, &size, error)) return false;
     for (int i = 0; i < player->picture.count; i++)
         if (!player_run_is_live(player, i) && !player->picture.runs[i]->no_contacts &&
