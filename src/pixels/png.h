@@ -112,7 +112,7 @@ uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows
 /* Encodes pictures of one size, one after another, to PNG files in memory: 8-bit RGB, alpha is dropped. */
 
 typedef enum PngEffort {
-    PNG_FAST, /* for frames: png_idat.c */
+    PNG_FAST, /* for frames: png_write.c */
     PNG_SMALL /* libpng, all filters, highest level: about 50 times slower */
 } PngEffort;
 
