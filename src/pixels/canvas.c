@@ -29,27 +29,22 @@ static GLuint compile(const GlFunctions *gl, GLenum type, const char *name, cons
     return 0;
 }
 
-static bool link_program(const GlFunctions *gl, GLuint program, const char *name, Error *error) {
-    GLint ok = 0;
-    gl->LinkProgram(program);
-    gl->GetProgramiv(program, GL_LINK_STATUS, &ok);
-    if (ok) return true;
-    char log[LOG_SIZE] = "";
-    gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
-    return error_system(error, name, "the shaders do not link: %s", log);
-}
-
 /* Returns a linked program, or 0 with ERROR_SYSTEM and the compiler's log. `name` is used in the message. */
 static GLuint program_create(const GlFunctions *gl, const char *name, const char *vertex, const char *fragment,
                              Error *error) {
-    GLuint shaders[2] = {compile(gl, GL_VERTEX_SHADER, name, vertex, error), 0};
+    GLuint shaders[2] = {compile(gl, GL_VERTEX_SHADER, name, vertex, error), 0}, program = 0;
     if (shaders[0] != 0) shaders[1] = compile(gl, GL_FRAGMENT_SHADER, name, fragment, error);
-    GLuint program = 0;
     if (shaders[1] != 0) {
+        GLint ok = 0;
         program = gl->CreateProgram();
         gl->AttachShader(program, shaders[0]);
         gl->AttachShader(program, shaders[1]);
-        if (!link_program(gl, program, name, error)) {
+        gl->LinkProgram(program);
+        gl->GetProgramiv(program, GL_LINK_STATUS, &ok);
+        if (!ok) {
+            char log[LOG_SIZE] = "";
+            gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
+            error_system(error, name, "the shaders do not link: %s", log);
             gl->DeleteProgram(program);
             program = 0;
         }
@@ -59,64 +54,35 @@ static GLuint program_create(const GlFunctions *gl, const char *name, const char
     return program;
 }
 
+static void mark(bool *changed, int height, int top, int bottom) {
+    for (int y = top < 0 ? 0 : top; y < bottom && y < height; y++) changed[y] = true;
+}
+
 /* The n-th shape of one drawing is compared with the n-th of the other, and glyphs likewise. This respects the order
    of painting: a row that no differing instance touches is painted by the same instances in the same order. */
-
-typedef struct Rows {
-    bool *changed;
-    int height;
-} Rows;
-
-/* The static layers, and the bitmaps to which glyphs refer. */
-static bool bases_equal(const Drawing *a, const Drawing *b) {
-    return a->rect_count == b->rect_count && a->static_shapes == b->static_shapes &&
-           (a->rect_count == 0 || memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) == 0) &&
-           a->bitmap_size == b->bitmap_size &&
-           (a->bitmap_size == 0 || memcmp(a->bitmaps, b->bitmaps, a->bitmap_size) == 0) &&
-           (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
-}
-
-static void canvas_mark(const Rows *rows, int top, int bottom) {
-    for (int y = top < 0 ? 0 : top; y < bottom && y < rows->height; y++) rows->changed[y] = true;
-}
-
-static void mark_shape(const Rows *rows, const Drawing *drawing, size_t i) {
-    if (i < drawing->shape_count) canvas_mark(rows, drawing->shapes[i].bounds[1], drawing->shapes[i].bounds[3]);
-}
-
-static void mark_glyph(const Rows *rows, const Drawing *drawing, size_t i) {
-    if (i >= drawing->glyph_count) return;
-    const int32_t *box = drawing->glyphs[i].box;
-    canvas_mark(rows, box[1], box[1] + box[3]);
-}
-
-static void mark_shapes(const Rows *rows, const Drawing *before, const Drawing *after) {
-    for (size_t i = after->static_shapes; i < size_max(before->shape_count, after->shape_count); i++) {
-        if (i < before->shape_count && i < after->shape_count &&
-            memcmp(&before->shapes[i], &after->shapes[i], sizeof *after->shapes) == 0)
-            continue;
-        mark_shape(rows, before, i);
-        mark_shape(rows, after, i);
-    }
-}
-
-static void mark_glyphs(const Rows *rows, const Drawing *before, const Drawing *after) {
-    for (size_t i = 0; i < size_max(before->glyph_count, after->glyph_count); i++) {
-        if (i < before->glyph_count && i < after->glyph_count &&
-            memcmp(&before->glyphs[i], &after->glyphs[i], sizeof *after->glyphs) == 0)
-            continue;
-        mark_glyph(rows, before, i);
-        mark_glyph(rows, after, i);
-    }
-}
-
-bool damage_find(const Drawing *before, const Drawing *after, int height, bool *changed) {
-    const Rows rows = {changed, height};
-    bool equal = bases_equal(before, after);
+bool damage_find(const Drawing *a, const Drawing *b, int height, bool *changed) {
+    /* The static layers, and the bitmaps to which glyphs refer. */
+    const bool equal =
+        a->rect_count == b->rect_count && a->static_shapes == b->static_shapes && a->bitmap_size == b->bitmap_size &&
+        (a->rect_count == 0 || memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) == 0) &&
+        (a->bitmap_size == 0 || memcmp(a->bitmaps, b->bitmaps, a->bitmap_size) == 0) &&
+        (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
     memset(changed, !equal, (size_t)height);
     if (!equal) return false;
-    mark_shapes(&rows, before, after);
-    mark_glyphs(&rows, before, after);
+    for (size_t i = a->static_shapes; i < size_max(a->shape_count, b->shape_count); i++) {
+        const ShapeInstance *from = i < a->shape_count ? &a->shapes[i] : NULL,
+                            *to = i < b->shape_count ? &b->shapes[i] : NULL;
+        if (from != NULL && to != NULL && memcmp(from, to, sizeof *from) == 0) continue;
+        if (from != NULL) mark(changed, height, from->bounds[1], from->bounds[3]);
+        if (to != NULL) mark(changed, height, to->bounds[1], to->bounds[3]);
+    }
+    for (size_t i = 0; i < size_max(a->glyph_count, b->glyph_count); i++) {
+        const GlyphInstance *from = i < a->glyph_count ? &a->glyphs[i] : NULL,
+                            *to = i < b->glyph_count ? &b->glyphs[i] : NULL;
+        if (from != NULL && to != NULL && memcmp(from, to, sizeof *from) == 0) continue;
+        if (from != NULL) mark(changed, height, from->box[1], from->box[1] + from->box[3]);
+        if (to != NULL) mark(changed, height, to->box[1], to->box[1] + to->box[3]);
+    }
     return true;
 }
 
@@ -163,16 +129,6 @@ static bool create_target(Canvas *canvas, Target *target, Error *error) {
                         canvas->height, memory_limit().text);
 }
 
-static void create_font(Canvas *canvas) {
-    const GlFunctions *gl = canvas->gl;
-    gl->GenBuffers(1, &canvas->font_buffer);
-    gl->BindBuffer(GL_TEXTURE_BUFFER, canvas->font_buffer);
-    gl->BufferData(GL_TEXTURE_BUFFER, font_bitmaps_size, font_bitmaps, GL_STATIC_DRAW);
-    gl->GenTextures(1, &canvas->font_texture);
-    gl->BindTexture(GL_TEXTURE_BUFFER, canvas->font_texture);
-    gl->TexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, canvas->font_buffer);
-}
-
 /* Attribute i of an instance has components[i] integers; a 0 ends the list. */
 static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const char *vertex, const char *fragment,
                          const int *components, GLsizei stride, Error *error) {
@@ -205,7 +161,12 @@ static bool setup_gl(Canvas *canvas, Error *error) {
         !create_batch(canvas, &canvas->glyphs, "shaders/text", shader_text_vert, shader_text_frag, glyph,
                       sizeof(GlyphInstance), error))
         return false;
-    create_font(canvas);
+    gl->GenBuffers(1, &canvas->font_buffer);
+    gl->BindBuffer(GL_TEXTURE_BUFFER, canvas->font_buffer);
+    gl->BufferData(GL_TEXTURE_BUFFER, font_bitmaps_size, font_bitmaps, GL_STATIC_DRAW);
+    gl->GenTextures(1, &canvas->font_texture);
+    gl->BindTexture(GL_TEXTURE_BUFFER, canvas->font_texture);
+    gl->TexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, canvas->font_buffer);
     gl->Viewport(0, 0, canvas->width, canvas->height);
     gl->Disable(GL_DITHER);
     gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE); /* alpha stays 1 */
@@ -224,32 +185,27 @@ Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error
     return NULL;
 }
 
-static void destroy_batch(const GlFunctions *gl, Batch *batch) {
-    gl->DeleteProgram(batch->program);
-    gl->DeleteVertexArrays(1, &batch->vertices);
-    gl->DeleteBuffers(1, &batch->buffer);
-}
-
-static void destroy_target(const GlFunctions *gl, Target *target) {
-    gl->DeleteFramebuffers(1, &target->framebuffer);
-    gl->DeleteRenderbuffers(1, &target->color);
-}
-
 void canvas_destroy(Canvas *canvas) {
     if (canvas == NULL) return;
     const GlFunctions *gl = canvas->gl;
-    destroy_batch(gl, &canvas->rects);
-    destroy_batch(gl, &canvas->shapes);
-    destroy_batch(gl, &canvas->glyphs);
+    const Batch *batches[] = {&canvas->rects, &canvas->shapes, &canvas->glyphs};
+    const Target *targets[] = {&canvas->static_layer, &canvas->picture};
+    for (int i = 0; i < 3; i++) {
+        gl->DeleteProgram(batches[i]->program);
+        gl->DeleteVertexArrays(1, &batches[i]->vertices);
+        gl->DeleteBuffers(1, &batches[i]->buffer);
+    }
     gl->DeleteTextures(1, &canvas->font_texture);
     gl->DeleteBuffers(1, &canvas->font_buffer);
-    destroy_target(gl, &canvas->static_layer);
-    destroy_target(gl, &canvas->picture);
+    for (int i = 0; i < 2; i++) {
+        gl->DeleteFramebuffers(1, &targets[i]->framebuffer);
+        gl->DeleteRenderbuffers(1, &targets[i]->color);
+    }
     drawing_free(&canvas->moving);
     free(canvas);
 }
 
-static void canvas_draw(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count, size_t size) {
+static void draw_batch(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count, size_t size) {
     if (count == 0) return;
     gl->UseProgram(batch->program);
     gl->BindVertexArray(batch->vertices);
@@ -273,18 +229,6 @@ static void load_bitmaps(Canvas *canvas, const Drawing *drawing) {
     gl->BufferSubData(GL_TEXTURE_BUFFER, font_bitmaps_size, (GLsizeiptr)drawing->bitmap_size, drawing->bitmaps);
 }
 
-static void paint_static(const Canvas *canvas, const Drawing *drawing, uint32_t background) {
-    const GlFunctions *gl = canvas->gl;
-    gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->static_layer.framebuffer);
-    gl->ClearColor((float)(background >> 16 & 255) / 255, (float)(background >> 8 & 255) / 255,
-                   (float)(background & 255) / 255, 1);
-    gl->Clear(GL_COLOR_BUFFER_BIT);
-    gl->Disable(GL_BLEND);
-    canvas_draw(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
-    gl->Enable(GL_BLEND);
-    canvas_draw(gl, &canvas->shapes, drawing->shapes, drawing->static_shapes, sizeof *drawing->shapes);
-}
-
 /* Consecutive rows to paint. */
 typedef struct Band {
     int top, bottom;
@@ -299,37 +243,39 @@ static Band next_band(const Canvas *canvas, const bool *changed, int y) {
     return band;
 }
 
-/* One blit per band, but one draw call per batch for all bands: calls cost more than instances. */
-static void paint_changed_rows(Canvas *canvas, const Drawing *drawing, const bool *changed) {
+bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
+                  Error *error) {
     const GlFunctions *gl = canvas->gl;
+    const int width = canvas->width;
+    if (drawing->failed) return error_memory(error, "render");
+    load_bitmaps(canvas, drawing);
+    if (changed == NULL) {
+        gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->static_layer.framebuffer);
+        gl->ClearColor((float)(background >> 16 & 255) / 255, (float)(background >> 8 & 255) / 255,
+                       (float)(background & 255) / 255, 1);
+        gl->Clear(GL_COLOR_BUFFER_BIT);
+        gl->Disable(GL_BLEND);
+        draw_batch(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
+        gl->Enable(GL_BLEND);
+        draw_batch(gl, &canvas->shapes, drawing->shapes, drawing->static_shapes, sizeof *drawing->shapes);
+    }
+
+    /* One blit per band, but one draw call per batch for all bands: calls cost more than instances. */
     Drawing *moving = &canvas->moving;
     drawing_clear(moving);
     gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->static_layer.framebuffer);
     gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->picture.framebuffer);
     for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom)) {
-        gl->BlitFramebuffer(0, b.top, canvas->width, b.bottom, 0, b.top, canvas->width, b.bottom, GL_COLOR_BUFFER_BIT,
-                            GL_NEAREST);
+        gl->BlitFramebuffer(0, b.top, width, b.bottom, 0, b.top, width, b.bottom, GL_COLOR_BUFFER_BIT, GL_NEAREST);
         drawing_add_rows(moving, drawing, b.top, b.bottom);
     }
-    canvas_draw(gl, &canvas->shapes, moving->shapes, moving->shape_count, sizeof *moving->shapes);
-    canvas_draw(gl, &canvas->glyphs, moving->glyphs, moving->glyph_count, sizeof *moving->glyphs);
-}
+    draw_batch(gl, &canvas->shapes, moving->shapes, moving->shape_count, sizeof *moving->shapes);
+    draw_batch(gl, &canvas->glyphs, moving->glyphs, moving->glyph_count, sizeof *moving->glyphs);
+    if (moving->failed) return error_memory(error, "render");
 
-static void read_back(const Canvas *canvas, const bool *changed, Image *image) {
-    const GlFunctions *gl = canvas->gl;
     gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->picture.framebuffer);
     for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom))
-        gl->ReadPixels(0, b.top, canvas->width, b.bottom - b.top, GL_RGBA, GL_UNSIGNED_BYTE,
-                       image->pixels + (size_t)b.top * (size_t)canvas->width * 4);
-}
-
-bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
-                  Error *error) {
-    if (drawing->failed) return error_memory(error, "render");
-    load_bitmaps(canvas, drawing);
-    if (changed == NULL) paint_static(canvas, drawing, background);
-    paint_changed_rows(canvas, drawing, changed);
-    if (canvas->moving.failed) return error_memory(error, "render");
-    read_back(canvas, changed, image);
-    return check_gl(canvas->gl, "in a frame", error);
+        gl->ReadPixels(0, b.top, width, b.bottom - b.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                       image->pixels + (size_t)b.top * (size_t)width * 4);
+    return check_gl(gl, "in a frame", error);
 }

@@ -2,6 +2,7 @@
 /* Converts shapes to the integers of the shader. Everything that could be rounded in more than one way is rounded
    here, in double, to a grid far coarser than double's own error. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"
 #include "pixels/strokes.h"
@@ -61,28 +62,8 @@ static bool is_drawable(const Shape *shape) {
            isfinite(shape->cosine) && isfinite(shape->sine);
 }
 
-/* A hollow shape has one colour throughout, or its inner edge would blend with another colour. */
-static void set_paint(ShapeInstance *instance, const Shape *shape) {
-    bool hollow = shape->hollow;
-    instance->paint[0] = hollow ? shape->line | SHAPE_HOLLOW : shape->fill;
-    instance->paint[1] = hollow || shape->outline > 0 ? shape->line : shape->fill;
-    instance->paint[2] = hollow ? shape->line : shape->band > 0 ? shape->band_color : shape->fill;
-    instance->paint[3] = (uint32_t)fixed(shape->band);
-}
-
-/* The whole pixels inside `clip` that the snapped shape can touch. Returns false if there are none. */
-static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4]) {
-    double reach_x = fabs(shape->cosine) * shape->half_width + fabs(shape->sine) * shape->half_height + 1;
-    double reach_y = fabs(shape->sine) * shape->half_width + fabs(shape->cosine) * shape->half_height + 1;
-    bounds[0] = (int32_t)fmax(floor(shape->x - reach_x), clip->left);
-    bounds[1] = (int32_t)fmax(floor(shape->y - reach_y), clip->top);
-    bounds[2] = (int32_t)fmin(ceil(shape->x + reach_x), clip->right);
-    bounds[3] = (int32_t)fmin(ceil(shape->y + reach_y), clip->bottom);
-    return bounds[0] < bounds[2] && bounds[1] < bounds[3];
-}
-
 /* Room for `wanted` items. */
-static bool drawing_reserve(Drawing *drawing, void **items, size_t *capacity, size_t wanted, size_t size) {
+static bool reserve(Drawing *drawing, void **items, size_t *capacity, size_t wanted, size_t size) {
     const bool done = array_reserve(items, capacity, wanted, size);
     drawing->failed = drawing->failed || !done;
     return done;
@@ -90,7 +71,7 @@ static bool drawing_reserve(Drawing *drawing, void **items, size_t *capacity, si
 
 static ShapeInstance *next_shape(Drawing *drawing) {
     const size_t i = drawing->shape_count;
-    return drawing_reserve(drawing, (void **)&drawing->shapes, &drawing->shape_capacity, i + 1, sizeof *drawing->shapes)
+    return reserve(drawing, (void **)&drawing->shapes, &drawing->shape_capacity, i + 1, sizeof *drawing->shapes)
                ? &drawing->shapes[i]
                : NULL;
 }
@@ -102,36 +83,52 @@ void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip
     if (!is_drawable(&shape)) return;
     shape.x = snap(shape.x), shape.y = snap(shape.y);
     shape.half_width = snap(shape.half_width), shape.half_height = snap(shape.half_height);
-    ShapeInstance *instance = next_shape(drawing);
-    if (instance == NULL || !find_bounds(&shape, clip, instance->bounds)) return;
+
+    /* The whole pixels inside `clip` that the snapped shape can touch. */
+    const double reach_x = fabs(shape.cosine) * shape.half_width + fabs(shape.sine) * shape.half_height + 1;
+    const double reach_y = fabs(shape.sine) * shape.half_width + fabs(shape.cosine) * shape.half_height + 1;
+    const int32_t left = (int32_t)fmax(floor(shape.x - reach_x), clip->left),
+                  top = (int32_t)fmax(floor(shape.y - reach_y), clip->top),
+                  right = (int32_t)fmin(ceil(shape.x + reach_x), clip->right),
+                  bottom = (int32_t)fmin(ceil(shape.y + reach_y), clip->bottom);
+    ShapeInstance *instance = left < right && top < bottom ? next_shape(drawing) : NULL;
+    if (instance == NULL) return;
+
     /* The local axes are (c, -s) and (-s, -c), y pointing down. They are rounded first, so that the position below
-       agrees with the shader's steps of one pixel. */
-    int32_t c = fixed(shape.cosine), s = fixed(-shape.sine);
-    double x = instance->bounds[0] + 0.5 - shape.x, y = instance->bounds[1] + 0.5 - shape.y;
-    instance->axis[0] = c, instance->axis[1] = s;
-    instance->axis[2] = (int32_t)rint(c * x + s * y), instance->axis[3] = (int32_t)rint(s * x - c * y);
-    instance->extents[0] = fixed(shape.half_width), instance->extents[1] = fixed(shape.half_height);
-    instance->extents[2] = fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height)));
-    instance->extents[3] = fixed(fmin(shape.outline, MAX_HALF_SIZE));
-    set_paint(instance, &shape);
+       agrees with the shader's steps of one pixel. A hollow shape has one colour throughout, or its inner edge would
+       blend with another colour. */
+    const int32_t c = fixed(shape.cosine), s = fixed(-shape.sine);
+    const double x = left + 0.5 - shape.x, y = top + 0.5 - shape.y;
+    const bool hollow = shape.hollow;
+    *instance = (ShapeInstance){.bounds = {left, top, right, bottom},
+                                .axis = {c, s, (int32_t)rint(c * x + s * y), (int32_t)rint(s * x - c * y)},
+                                .extents = {fixed(shape.half_width), fixed(shape.half_height),
+                                            fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height))),
+                                            fixed(fmin(shape.outline, MAX_HALF_SIZE))},
+                                .paint = {hollow ? shape.line | SHAPE_HOLLOW : shape.fill,
+                                          hollow || shape.outline > 0 ? shape.line : shape.fill,
+                                          hollow           ? shape.line
+                                          : shape.band > 0 ? shape.band_color
+                                                           : shape.fill,
+                                          (uint32_t)fixed(shape.band)}};
     drawing->shape_count++;
 }
 
 void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color) {
     const size_t i = drawing->rect_count;
-    if (drawing_reserve(drawing, (void **)&drawing->rects, &drawing->rect_capacity, i + 1, sizeof *drawing->rects))
+    if (reserve(drawing, (void **)&drawing->rects, &drawing->rect_capacity, i + 1, sizeof *drawing->rects))
         drawing->rects[drawing->rect_count++] = (RectInstance){rect, color};
 }
 
 void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
     const size_t i = drawing->glyph_count;
-    if (drawing_reserve(drawing, (void **)&drawing->glyphs, &drawing->glyph_capacity, i + 1, sizeof *glyph))
+    if (reserve(drawing, (void **)&drawing->glyphs, &drawing->glyph_capacity, i + 1, sizeof *glyph))
         drawing->glyphs[drawing->glyph_count++] = *glyph;
 }
 
 uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap) {
     const size_t start = drawing->bitmap_size, wanted = start + size;
-    if (!drawing_reserve(drawing, (void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) return NULL;
+    if (!reserve(drawing, (void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) return NULL;
     drawing->bitmap_size = wanted;
     *bitmap = (uint32_t)(font_bitmaps_size + start);
     return memset(drawing->bitmaps + start, 0, size);
@@ -152,20 +149,18 @@ static void add_shape_rows(Drawing *drawing, const ShapeInstance *from, int top,
     drawing->shape_count++;
 }
 
-static void add_glyph_rows(Drawing *drawing, const GlyphInstance *from, int top, int bottom) {
-    GlyphInstance part = *from;
-    int skipped = top > part.box[1] ? top - part.box[1] : 0;
-    part.box[1] += skipped;
-    part.box[3] -= skipped;
-    part.bitmap += (uint32_t)(skipped * part.box[2]);
-    if (part.box[1] + part.box[3] > bottom) part.box[3] = bottom - part.box[1];
-    if (part.box[3] > 0) drawing_add_glyph(drawing, &part);
-}
-
 void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom) {
     for (size_t i = from->static_shapes; i < from->shape_count; i++)
         add_shape_rows(drawing, &from->shapes[i], top, bottom);
-    for (size_t i = 0; i < from->glyph_count; i++) add_glyph_rows(drawing, &from->glyphs[i], top, bottom);
+    for (size_t i = 0; i < from->glyph_count; i++) {
+        GlyphInstance part = from->glyphs[i];
+        const int skipped = top > part.box[1] ? top - part.box[1] : 0;
+        part.box[1] += skipped;
+        part.box[3] -= skipped;
+        part.bitmap += (uint32_t)(skipped * part.box[2]);
+        if (part.box[1] + part.box[3] > bottom) part.box[3] = bottom - part.box[1];
+        if (part.box[3] > 0) drawing_add_glyph(drawing, &part);
+    }
 }
 
 static const double TILE = 16;        /* pixels, side of a tile of a slanted line */
@@ -173,30 +168,24 @@ static const double MAX_TILED = 8000; /* pixels; longer shapes are reduced per t
                                              match */
 static const int MAX_DASHES = 10000;  /* of one segment; a line of 8,192 pixels has fewer */
 
-/* The whole pixels that the line can touch between these columns (flat) or rows. */
-static Rect tile_of(Point from, Point to, double thickness, bool flat, double first, double last) {
-    double start = flat ? from.x : from.y, length = flat ? to.x - from.x : to.y - from.y;
-    double a = fmin(fmax((first - start) / length, 0), 1), b = fmin(fmax((last - start) / length, 0), 1);
-    double other = flat ? from.y : from.x, rise = flat ? to.y - from.y : to.x - from.x;
-    double low = fmin(other + a * rise, other + b * rise), high = fmax(other + a * rise, other + b * rise);
-    int before = (int)floor(low - 0.75 * thickness - 1), behind = (int)ceil(high + 0.75 * thickness + 1);
-    return flat ? (Rect){(int)first, before, (int)last, behind} : (Rect){before, (int)first, behind, (int)last};
-}
-
-static Rect intersection(Rect a, const Rect *b) {
-    return (Rect){a.left > b->left ? a.left : b->left, a.top > b->top ? a.top : b->top,
-                  a.right < b->right ? a.right : b->right, a.bottom < b->bottom ? a.bottom : b->bottom};
-}
-
-/* A long slanted line touches few pixels of its bounding box, so it is drawn in disjoint tiles. */
+/* A long slanted line touches few pixels of its bounding box, so it is drawn in disjoint tiles: the whole pixels that it
+   can touch between some columns (flat) or rows. */
 static void add_in_tiles(Drawing *drawing, const Shape *line, Point from, Point to, double thickness,
                          const Rect *clip) {
-    bool flat = fabs(to.x - from.x) > fabs(to.y - from.y);
-    double low = flat ? fmin(from.x, to.x) : fmin(from.y, to.y), high = flat ? fmax(from.x, to.x) : fmax(from.y, to.y);
-    double first = fmax(floor(low - thickness - 2), flat ? clip->left : clip->top);
-    double last = fmin(ceil(high + thickness + 2), flat ? clip->right : clip->bottom);
+    const bool flat = fabs(to.x - from.x) > fabs(to.y - from.y);
+    const double start = flat ? from.x : from.y, length = flat ? to.x - from.x : to.y - from.y;
+    const double other = flat ? from.y : from.x, rise = flat ? to.y - from.y : to.x - from.x;
+    const double low = fmin(start, flat ? to.x : to.y), high = fmax(start, flat ? to.x : to.y);
+    const double first = fmax(floor(low - thickness - 2), flat ? clip->left : clip->top);
+    const double last = fmin(ceil(high + thickness + 2), flat ? clip->right : clip->bottom);
     for (double at = first; at < last; at += TILE) {
-        Rect part = intersection(tile_of(from, to, thickness, flat, at, fmin(at + TILE, last)), clip);
+        const double end = fmin(at + TILE, last);
+        const double a = fmin(fmax((at - start) / length, 0), 1), b = fmin(fmax((end - start) / length, 0), 1);
+        const double least = fmin(other + a * rise, other + b * rise), most = fmax(other + a * rise, other + b * rise);
+        const int before = (int)floor(least - 0.75 * thickness - 1), behind = (int)ceil(most + 0.75 * thickness + 1);
+        Rect part = flat ? (Rect){(int)at, before, (int)end, behind} : (Rect){before, (int)at, behind, (int)end};
+        part = (Rect){int_max(part.left, clip->left), int_max(part.top, clip->top), int_min(part.right, clip->right),
+                      int_min(part.bottom, clip->bottom)};
         if (part.left < part.right && part.top < part.bottom) drawing_add_shape(drawing, line, &part);
     }
 }
@@ -231,13 +220,6 @@ void stroke_dot(Drawing *drawing, Point center, double radius, uint32_t fill, ui
     drawing_add_shape(drawing, &dot, clip);
 }
 
-/* One side of the head at `tip`. (c, s) is the arrow's direction; `turn` is 1 or -1. */
-static void draw_side(Drawing *drawing, Point tip, double c, double s, double turn, double size, double thickness,
-                      uint32_t color, const Rect *clip) {
-    double x = -c * HEAD_COSINE - turn * s * HEAD_SINE, y = -s * HEAD_COSINE + turn * c * HEAD_SINE;
-    stroke_line(drawing, tip, (Point){tip.x + size * x, tip.y + size * y}, thickness, color, clip);
-}
-
 static void draw_arrow(Drawing *drawing, Point from, Point to, double head, bool truncated, double thickness,
                        uint32_t color, const Rect *clip) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
@@ -245,20 +227,19 @@ static void draw_arrow(Drawing *drawing, Point from, Point to, double head, bool
     stroke_line(drawing, from, to, thickness, color, clip);
     for (int i = 0; i < (truncated ? 2 : 1); i++) {
         Point tip = {to.x - i * HEAD_SPACING * head * c, to.y - i * HEAD_SPACING * head * s};
-        draw_side(drawing, tip, c, s, 1, head, thickness, color, clip);
-        draw_side(drawing, tip, c, s, -1, head, thickness, color, clip);
+        for (int turn = 1; turn >= -1; turn -= 2) { /* the sides of the head */
+            const double x = -c * HEAD_COSINE - turn * s * HEAD_SINE, y = -s * HEAD_COSINE + turn * c * HEAD_SINE;
+            stroke_line(drawing, tip, (Point){tip.x + head * x, tip.y + head * y}, thickness, color, clip);
+        }
     }
-}
-
-static double halo_width(double thickness) {
-    return fmax(fmin(HALO, HALO_RISE * (thickness - NO_HALO)), thickness > 3 * HALO ? thickness / 3 : 0);
 }
 
 void stroke_arrow(Drawing *drawing, Point from, Point to, bool truncated, const ArrowStyle *style, const Rect *clip) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), t = style->thickness;
     if (!(length >= MIN_LENGTH * t) || !isfinite(length)) return; /* nothing but head */
     double head = fmin(HEAD * t, fmax(MIN_HEAD * t, HEAD_SHARE * length));
-    if (halo_width(t) > 0) draw_arrow(drawing, from, to, head, truncated, t + 2 * halo_width(t), style->halo, clip);
+    const double halo = fmax(fmin(HALO, HALO_RISE * (t - NO_HALO)), t > 3 * HALO ? t / 3 : 0);
+    if (halo > 0) draw_arrow(drawing, from, to, head, truncated, t + 2 * halo, style->halo, clip);
     draw_arrow(drawing, from, to, head, truncated, t, style->color, clip);
 }
 
