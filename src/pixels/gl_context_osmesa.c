@@ -25,20 +25,20 @@ static const ContextFunction functions[] = {
     {"OSMesaDestroyContext", offsetof(Osmesa, destroy)},
 };
 
-static void osmesa_destroy(void *state) {
+static void destroy(void *state) {
     Osmesa *osmesa = state;
     if (osmesa->context != NULL) osmesa->destroy(osmesa->context);
     free(osmesa);
 }
 
-static bool osmesa_make_current(void *state) {
+static bool bind_context(void *state) {
     Osmesa *osmesa = state;
     return osmesa->make_current(osmesa->context, osmesa->surface, GL_UNSIGNED_BYTE, SURFACE_SIDE, SURFACE_SIDE);
 }
 
-static GlFunction osmesa_find(void *state, const char *name) { return ((Osmesa *)state)->get_proc_address(name); }
+static GlFunction find(void *state, const char *name) { return ((Osmesa *)state)->get_proc_address(name); }
 
-static bool open_context(Osmesa *osmesa, Error *error) {
+static void *create(Error *error) {
     static const int attributes[] = {OSMESA_FORMAT,
                                      OSMESA_RGBA,
                                      OSMESA_PROFILE,
@@ -48,20 +48,16 @@ static bool open_context(Osmesa *osmesa, Error *error) {
                                      OSMESA_CONTEXT_MINOR_VERSION,
                                      3,
                                      0};
-    const int count = sizeof functions / sizeof functions[0];
-    if (!context_load("libOSMesa.so.8", "libosmesa6", functions, count, osmesa, error)) return false;
-    osmesa->context = osmesa->create(attributes, NULL);
-    if (osmesa->context != NULL && osmesa_make_current(osmesa)) return true;
-    return error_system(error, "render", "OSMesa cannot create an OpenGL 3.3 context%s", memory_limit().text);
-}
-
-static void *osmesa_create(Error *error) {
     Osmesa *osmesa = calloc(1, sizeof *osmesa);
-    if (osmesa == NULL) error_memory(error, "render");
-    if (osmesa == NULL || open_context(osmesa, error)) return osmesa;
-    osmesa_destroy(osmesa);
+    if (osmesa == NULL) return error_memory(error, "render"), NULL;
+    if (context_load("libOSMesa.so.8", "libosmesa6", functions, sizeof functions / sizeof functions[0], osmesa,
+                     error)) {
+        osmesa->context = osmesa->create(attributes, NULL);
+        if (osmesa->context != NULL && bind_context(osmesa)) return osmesa;
+        error_system(error, "render", "OSMesa cannot create an OpenGL 3.3 context%s", memory_limit().text);
+    }
+    destroy(osmesa);
     return NULL;
 }
 
-const ContextKind context_osmesa = {CONTEXT_OSMESA,      "osmesa",    osmesa_create,
-                                    osmesa_make_current, osmesa_find, osmesa_destroy};
+const ContextKind context_osmesa = {CONTEXT_OSMESA, "osmesa", create, bind_context, find, destroy};

@@ -58,26 +58,21 @@ static uint64_t add_number(uint64_t hash, uint64_t value, int count) {
     return hash_fnv1a64(hash, bytes, (size_t)count);
 }
 
-static uint64_t hash_shape(const Image *image) {
-    return add_number(add_number(FNV1A64_START, (uint64_t)image->width, 4), (uint64_t)image->height, 4);
-}
-
-static uint64_t hash_row(const Image *image, int y) {
-    size_t size = (size_t)image->width * 4;
-    return hash_xxh3(image->pixels + (size_t)y * size, size);
-}
-
-uint64_t image_hash(const Image *image) {
-    uint64_t hash = hash_shape(image);
-    for (int y = 0; y < image->height; y++) hash = add_number(hash, hash_row(image, y), 8);
-    return hash;
-}
-
-uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows) {
-    uint64_t hash = hash_shape(image);
+/* rows NULL: the hashes of the rows are not kept. */
+static uint64_t hash_rows(const Image *image, const bool *changed, uint64_t *rows) {
+    const size_t size = (size_t)image->width * 4;
+    uint64_t hash = add_number(add_number(FNV1A64_START, (uint64_t)image->width, 4), (uint64_t)image->height, 4);
     for (int y = 0; y < image->height; y++) {
-        if (changed == NULL || changed[y]) rows[y] = hash_row(image, y);
-        hash = add_number(hash, rows[y], 8);
+        const bool kept = changed != NULL && !changed[y];
+        const uint64_t row = kept ? rows[y] : hash_xxh3(image->pixels + (size_t)y * size, size);
+        if (rows != NULL) rows[y] = row;
+        hash = add_number(hash, row, 8);
     }
     return hash;
+}
+
+uint64_t image_hash(const Image *image) { return hash_rows(image, NULL, NULL); }
+
+uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows) {
+    return hash_rows(image, changed, rows);
 }

@@ -25,23 +25,20 @@ typedef struct Header {
     int depth, color, interlace;
 } Header;
 
-/* Table 11.1 of the specification. */
-static bool depth_fits(int color, int depth) {
+static bool read_header(const PngChunk *chunk, Header *header) {
+    /* Table 11.1 of the specification. */
     static const int depths[] = {[PNG_GREY] = 1 | 2 | 4 | 8 | 16,
                                  [PNG_RGB] = 8 | 16,
                                  [PNG_PALETTE] = 1 | 2 | 4 | 8,
                                  [PNG_GREY_ALPHA] = 8 | 16,
                                  [PNG_RGB_ALPHA] = 8 | 16};
-    bool power = depth > 0 && (depth & (depth - 1)) == 0;
-    return color <= PNG_RGB_ALPHA && power && (depths[color] & depth) != 0;
-}
-
-static bool read_header(const PngChunk *chunk, Header *header) {
     const uint8_t *data = chunk->data;
     if (!png_chunk_is(chunk, "IHDR") || chunk->length != 13) return false;
     *header = (Header){png_number(data), png_number(data + 4), data[8], data[9], data[12]};
+    const int depth = header->depth;
     return header->width > 0 && header->width <= INT_MAX && header->height > 0 && header->height <= INT_MAX &&
-           depth_fits(header->color, header->depth) && data[10] == 0 && data[11] == 0 && header->interlace <= 1;
+           header->color <= PNG_RGB_ALPHA && depth > 0 && (depth & (depth - 1)) == 0 &&
+           (depths[header->color] & depth) != 0 && data[10] == 0 && data[11] == 0 && header->interlace <= 1;
 }
 
 bool png_size(const uint8_t *data, size_t size, int *width, int *height) {
@@ -60,97 +57,71 @@ bool png_check_pixels(int width, int height, int64_t max_pixels, const char *pat
                        (long long)max_pixels);
 }
 
-/* Bytes of the filtered rows of one pass with every dx-th pixel from x on, and every dy-th row from y on. */
-static double pass_size(const Header *header, int x, int y, int dx, int dy) {
-    uint64_t width = ((uint64_t)header->width + (uint64_t)(dx - 1 - x)) / (uint64_t)dx;
-    uint64_t height = ((uint64_t)header->height + (uint64_t)(dy - 1 - y)) / (uint64_t)dy;
-    uint64_t row = (width * (uint64_t)(png_channels[header->color] * header->depth) + 7) / 8;
-    return width == 0 ? 0 : (double)height * (double)(row + 1);
-}
-
+/* Bytes of all filtered rows. */
 static double filtered_size(const Header *header) {
-    static const int passes[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
-                                     {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}}; /* Adam7: section 8.2 */
-    if (header->interlace == 0) return pass_size(header, 0, 0, 1, 1);
+    /* Every dx-th pixel from x on, and every dy-th row from y on: Adam7, section 8.2; and one pass of all. */
+    static const int passes[8][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
+                                     {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}, {0, 0, 1, 1}};
     double size = 0;
-    for (int i = 0; i < 7; i++) size += pass_size(header, passes[i][0], passes[i][1], passes[i][2], passes[i][3]);
+    for (int i = header->interlace == 0 ? 7 : 0; i < (header->interlace == 0 ? 8 : 7); i++) {
+        const uint64_t x = (uint64_t)passes[i][0], y = (uint64_t)passes[i][1], dx = (uint64_t)passes[i][2],
+                       dy = (uint64_t)passes[i][3];
+        const uint64_t width = (header->width + dx - 1 - x) / dx, height = (header->height + dy - 1 - y) / dy;
+        const uint64_t row = (width * (uint64_t)(png_channels[header->color] * header->depth) + 7) / 8;
+        if (width > 0) size += (double)height * (double)(row + 1);
+    }
     return size;
 }
 
-/* What has been seen of a file. */
-typedef struct State {
-    const char *path;
-    Header header;
-    bool palette, pixels, pixels_ended, ended;
-    uint8_t zlib[2]; /* first bytes of the compressed pixels */
-    uint64_t compressed;
-    Error *error;
-} State;
-
-static bool png_read_refuse(const State *state, const char *what) {
-    return error_input(state->error, state->path, "not a PNG file, or damaged: %s", what);
-}
-
-static bool check_pixels(State *state, const PngChunk *chunk) {
-    if (state->pixels_ended) return png_read_refuse(state, "the IDAT chunks are not consecutive");
-    if (state->header.color == PNG_PALETTE && !state->palette) return png_read_refuse(state, "the palette is missing");
-    for (size_t i = 0; i < chunk->length && state->compressed + i < 2; i++)
-        state->zlib[state->compressed + i] = chunk->data[i];
-    state->compressed += chunk->length;
-    state->pixels = true;
-    return true;
-}
-
-static bool check_chunk(State *state, const PngChunk *chunk, size_t at) {
-    bool critical = (chunk->type[0] & 0x20) == 0;
-    if (state->pixels && !png_chunk_is(chunk, "IDAT")) state->pixels_ended = true;
-    if (png_chunk_is(chunk, "IDAT")) return check_pixels(state, chunk);
-    if (png_chunk_is(chunk, "acTL") && !state->pixels)
-        return error_input(state->error, state->path,
-                           "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
-    if (png_chunk_is(chunk, "PLTE")) {
-        state->palette = chunk->length > 0 && chunk->length <= 768 && chunk->length % 3 == 0;
-        return state->palette || png_read_refuse(state, "the palette is invalid");
-    }
-    state->ended = png_chunk_is(chunk, "IEND");
-    return state->ended || !critical || png_read_refuse(state, "an unknown critical chunk");
-}
-
-static bool check_checksum(const State *state, const PngChunk *chunk, size_t at) {
-    if (!png_chunk_has_name(chunk))
-        return error_input(state->error, state->path, "not a PNG file, or damaged: no valid chunk at byte %zu", at);
-    return png_chunk_is_sound(chunk) ||
-           error_input(state->error, state->path,
-                       "not a PNG file, or damaged: wrong checksum of the chunk %.4s at byte %zu",
-                       (const char *)chunk->type, at);
-}
-
-/* RFC 1950. */
-static bool check_compressed(const State *state) {
-    const uint8_t *zlib = state->zlib;
-    if (!state->pixels) return png_read_refuse(state, "it has no pixels (chunk IDAT)");
-    if (state->compressed < 2 || (zlib[0] & 0x0F) != 8 || zlib[0] >> 4 > 7 || (zlib[0] << 8 | zlib[1]) % 31 != 0 ||
-        (zlib[1] & 0x20) != 0)
-        return png_read_refuse(state, "the pixels are not a zlib stream");
-    return png_can_hold(state->compressed, filtered_size(&state->header)) ||
-           png_read_refuse(state, "too few bytes for its pixels");
+static bool refuse(Error *error, const char *path, const char *what) {
+    return error_input(error, path, "not a PNG file, or damaged: %s", what);
 }
 
 bool png_check(const uint8_t *data, size_t size, const char *path, int *width, int *height, Error *error) {
-    State state = {.path = path, .error = error};
+    Header header = {0};
     PngChunk chunk;
+    bool palette = false, pixels = false, pixels_ended = false, ended = false;
+    uint8_t zlib[2] = {0}; /* the first bytes of the compressed pixels */
+    uint64_t compressed = 0;
     if (!png_check_start(data, size, path, error)) return false;
-    size_t at = PNG_SIGNATURE, first = at, next = at;
-    while (!state.ended && png_chunk_next(data, size, &next, &chunk)) {
-        if (!check_checksum(&state, &chunk, at)) return false;
-        bool ok = at > first ? check_chunk(&state, &chunk, at)
-                             : read_header(&chunk, &state.header) || png_read_refuse(&state, "the header is invalid");
-        if (!ok) return false;
-        at = next;
+    for (size_t at = PNG_SIGNATURE, next = at; !ended && png_chunk_next(data, size, &next, &chunk); at = next) {
+        if (!png_chunk_has_name(&chunk))
+            return error_input(error, path, "not a PNG file, or damaged: no valid chunk at byte %zu", at);
+        if (!png_chunk_is_sound(&chunk))
+            return error_input(error, path, "not a PNG file, or damaged: wrong checksum of the chunk %.4s at byte %zu",
+                               (const char *)chunk.type, at);
+        if (at == PNG_SIGNATURE) {
+            if (!read_header(&chunk, &header)) return refuse(error, path, "the header is invalid");
+            continue;
+        }
+        if (png_chunk_is(&chunk, "IDAT")) {
+            if (pixels_ended) return refuse(error, path, "the IDAT chunks are not consecutive");
+            if (header.color == PNG_PALETTE && !palette) return refuse(error, path, "the palette is missing");
+            for (size_t i = 0; i < chunk.length && compressed + i < 2; i++) zlib[compressed + i] = chunk.data[i];
+            compressed += chunk.length;
+            pixels = true;
+            continue;
+        }
+        pixels_ended = pixels;
+        ended = png_chunk_is(&chunk, "IEND");
+        if (png_chunk_is(&chunk, "acTL") && !pixels)
+            return error_input(error, path,
+                               "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
+        if (png_chunk_is(&chunk, "PLTE")) {
+            palette = chunk.length > 0 && chunk.length <= 768 && chunk.length % 3 == 0;
+            if (!palette) return refuse(error, path, "the palette is invalid");
+        } else if (!ended && (chunk.type[0] & 0x20) == 0)
+            return refuse(error, path, "an unknown critical chunk");
     }
-    *width = (int)state.header.width;
-    *height = (int)state.header.height;
-    return (state.ended || png_read_refuse(&state, "unexpected end of file")) && check_compressed(&state);
+    *width = (int)header.width;
+    *height = (int)header.height;
+    if (!ended) return refuse(error, path, "unexpected end of file");
+    if (!pixels) return refuse(error, path, "it has no pixels (chunk IDAT)");
+    /* RFC 1950. */
+    if (compressed < 2 || (zlib[0] & 0x0F) != 8 || zlib[0] >> 4 > 7 || (zlib[0] << 8 | zlib[1]) % 31 != 0 ||
+        (zlib[1] & 0x20) != 0)
+        return refuse(error, path, "the pixels are not a zlib stream");
+    return png_can_hold(compressed, filtered_size(&header)) || refuse(error, path, "too few bytes for its pixels");
 }
 
 /* Reading by libpng. */
@@ -229,55 +200,29 @@ static void set_strict_limits(Decoder *decoder) {
     png_set_user_limits(decoder->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
 }
 
-static void check_size(Decoder *decoder) {
+/* What libpng does not check of the header and the chunks before the pixels. */
+static void check_start(Decoder *decoder) {
     const int width = (int)png_get_image_width(decoder->png, decoder->info),
               height = (int)png_get_image_height(decoder->png, decoder->info);
     if (!png_check_pixels(width, height, decoder->max_pixels, decoder->path, decoder->error))
         png_longjmp(decoder->png, 1);
-}
-
-/* Before memory is allocated for pixels that the file cannot hold: deflate shrinks to no less than 1 / 1032. */
-static void check_amount(Decoder *decoder) {
-    const double rows = (double)png_get_rowbytes(decoder->png, decoder->info) *
-                        (double)png_get_image_height(decoder->png, decoder->info);
-    if (rows > 1032.0 * (double)decoder->size) png_error(decoder->png, "too few bytes for its pixels");
-}
-
-/* libpng would read only the first picture of an animation and miss differences in the others. Chunk lengths are
-   valid here, as libpng has checked everything up to the pixels. */
-static void refuse_animation(Decoder *decoder) {
-    for (size_t at = 8; at + 12 <= decoder->position;) {
-        const uint8_t *chunk = decoder->data + at;
-        size_t length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 | chunk[3];
-        if (memcmp(chunk + 4, "acTL", 4) == 0) {
+    /* libpng would read only the first picture of an animation and miss differences in the others. Chunk lengths are
+       valid here, as libpng has checked everything up to the pixels. */
+    PngChunk chunk;
+    for (size_t at = PNG_SIGNATURE, next = at; png_chunk_next(decoder->data, decoder->position, &next, &chunk);
+         at = next)
+        if (png_chunk_is(&chunk, "acTL")) {
             error_input(decoder->error, decoder->path,
                         "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
             png_longjmp(decoder->png, 1);
         }
-        at += length + 12;
-    }
+    /* Before memory is allocated for pixels that the file cannot hold: deflate shrinks to no less than 1 / 1032. */
+    if ((double)png_get_rowbytes(decoder->png, decoder->info) * height > 1032.0 * (double)decoder->size)
+        png_error(decoder->png, "too few bytes for its pixels");
 }
 
 static bool is_palette(const Decoder *decoder) {
     return png_get_color_type(decoder->png, decoder->info) == PNG_COLOR_TYPE_PALETTE;
-}
-
-/* Of a palette, libpng gives indices, as it would take one beyond the palette for black. */
-static void request_rgba(Decoder *decoder) {
-    if (is_palette(decoder)) {
-        png_set_packing(decoder->png);
-        return;
-    }
-    png_set_expand(decoder->png);
-    png_set_gray_to_rgb(decoder->png);
-    png_set_add_alpha(decoder->png, 0xffff, PNG_FILLER_AFTER);
-}
-
-static bool allocate_pixels16(Decoder *decoder) {
-    size_t width = (size_t)decoder->image->width;
-    decoder->image->pixels16 = calloc(width * (size_t)decoder->image->height * 4, sizeof(uint16_t));
-    decoder->row = malloc(width * 8);
-    return (decoder->image->pixels16 != NULL && decoder->row != NULL) || error_memory(decoder->error, decoder->path);
 }
 
 /* A pass of an interlaced file sets only some pixels; libpng needs the others from earlier passes. */
@@ -294,31 +239,12 @@ static void read_row16(Decoder *decoder, size_t first) {
     }
 }
 
-static void read_rows(Decoder *decoder) {
-    const Image *image = decoder->image;
-    size_t samples = (size_t)image->width * 4;
-    for (int y = 0; y < image->height; y++) {
-        size_t first = (size_t)y * samples;
-        if (image->pixels16 != NULL)
-            read_row16(decoder, first);
-        else
-            png_read_row(decoder->png, image->pixels + first, NULL);
-    }
-}
-
 static void check_palette(const Decoder *decoder, const uint8_t *row) {
     png_colorp palette = NULL;
     int colors = 0;
     png_get_PLTE(decoder->png, decoder->info, &palette, &colors);
     for (png_uint_32 x = 0; x < png_get_image_width(decoder->png, decoder->info); x++)
         if (row[x] >= colors) png_error(decoder->png, "a colour that is not in the palette");
-}
-
-static void check_rows(Decoder *decoder) {
-    for (png_uint_32 y = 0; y < png_get_image_height(decoder->png, decoder->info); y++) {
-        png_read_row(decoder->png, decoder->row, NULL);
-        if (is_palette(decoder)) check_palette(decoder, decoder->row);
-    }
 }
 
 /* In place, from the last pixel of a row: indices are where its first pixels will be. */
@@ -340,51 +266,42 @@ static void expand_palette(Decoder *decoder) {
     }
 }
 
-/* The bytes that the next chunk of pixels gives. False with error set unless they go on, or end, one sound zlib
-   stream. */
-static bool inflate_chunk(const Decoder *decoder, z_stream *z, double most, bool *ended) {
-    uint8_t scratch[1 << 14];
-    while (!*ended && z->avail_in > 0) {
-        z->next_out = scratch, z->avail_out = sizeof scratch;
-        const int status = inflate(z, Z_NO_FLUSH);
-        *ended = status == Z_STREAM_END;
-        if (status == Z_MEM_ERROR) return error_memory(decoder->error, decoder->path);
-        if ((!*ended && status != Z_OK && status != Z_BUF_ERROR) || (double)z->total_out > most)
-            return error_input(decoder->error, decoder->path, "not a PNG file, or damaged: IDAT: %s",
-                               z->msg != NULL ? z->msg : "more pixels than the header states");
-    }
-    return true;
-}
-
-/* The compressed pixels again, as libpng does not look at a checksum that is split over two chunks. What follows them
-   is padding. */
+/* The compressed pixels again, as libpng does not look at a checksum that is split over two chunks: one sound zlib
+   stream. What follows it is padding. */
 static bool check_stream(const Decoder *decoder) {
+    uint8_t scratch[1 << 14];
     z_stream z = {0};
     Header header;
     PngChunk chunk;
     size_t at = PNG_SIGNATURE;
-    bool ended = false, ok = png_chunk_next(decoder->data, decoder->size, &at, &chunk) && read_header(&chunk, &header);
-    const double size = ok ? filtered_size(&header) : 0;
-    if (!ok || inflateInit(&z) != Z_OK) return error_memory(decoder->error, decoder->path);
-    while (ok && !ended && png_chunk_next(decoder->data, decoder->size, &at, &chunk)) {
+    if (!png_chunk_next(decoder->data, decoder->size, &at, &chunk) || !read_header(&chunk, &header) ||
+        inflateInit(&z) != Z_OK)
+        return error_memory(decoder->error, decoder->path);
+    const double size = filtered_size(&header);
+    int status = Z_OK;
+    bool ok = true;
+    while (ok && status != Z_STREAM_END && png_chunk_next(decoder->data, decoder->size, &at, &chunk)) {
         if (!png_chunk_is(&chunk, "IDAT")) continue;
         z.next_in = (uint8_t *)chunk.data; /* not changed */
         z.avail_in = (uInt)chunk.length;
-        ok = inflate_chunk(decoder, &z, size, &ended);
+        while (ok && status != Z_STREAM_END && z.avail_in > 0) {
+            z.next_out = scratch, z.avail_out = sizeof scratch;
+            status = inflate(&z, Z_NO_FLUSH);
+            if (status == Z_MEM_ERROR)
+                ok = error_memory(decoder->error, decoder->path);
+            else if ((status != Z_STREAM_END && status != Z_OK && status != Z_BUF_ERROR) || (double)z.total_out > size)
+                ok = error_input(decoder->error, decoder->path, "not a PNG file, or damaged: IDAT: %s",
+                                 z.msg != NULL ? z.msg : "more pixels than the header states");
+        }
     }
-    if (ok && (!ended || (double)z.total_out != size))
+    if (ok && (status != Z_STREAM_END || (double)z.total_out != size))
         ok = error_input(decoder->error, decoder->path,
                          "not a PNG file, or damaged: IDAT: the compressed pixels do not end");
     inflateEnd(&z);
     return ok;
 }
 
-static void end_pixels(const Decoder *decoder) {
-    png_set_benign_errors(decoder->png, 0);
-    png_read_end(decoder->png, NULL);
-}
-
-static bool png_read_decode(Decoder *decoder) {
+static bool decode_all(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     png_structp png = decoder->png;
     set_strict_limits(decoder);
@@ -392,54 +309,65 @@ static bool png_read_decode(Decoder *decoder) {
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_set_chunk_malloc_max(png, 0);
     png_read_info(png, decoder->info);
-    check_size(decoder);
-    refuse_animation(decoder);
-    check_amount(decoder);
-    request_rgba(decoder);
-    int passes = png_set_interlace_handling(png);
+    check_start(decoder);
+    if (is_palette(decoder)) /* libpng gives indices, as it would take one beyond the palette for black */
+        png_set_packing(png);
+    else {
+        png_set_expand(png);
+        png_set_gray_to_rgb(png);
+        png_set_add_alpha(png, 0xffff, PNG_FILLER_AFTER);
+    }
+    const int passes = png_set_interlace_handling(png);
     png_read_update_info(png, decoder->info);
     png_set_benign_errors(png, 1); /* padding behind the pixels; check_stream() sees the others */
-    if (decoder->checked) {
-        decoder->row = calloc(png_get_image_width(png, decoder->info), 8);
-        if (decoder->row == NULL) return error_memory(decoder->error, decoder->path);
-        for (int pass = 0; pass < passes; pass++) check_rows(decoder);
-        end_pixels(decoder);
-        return check_stream(decoder);
-    }
-    decoder->image = image_create((int)png_get_image_width(png, decoder->info),
-                                  (int)png_get_image_height(png, decoder->info), decoder->error);
-    if (decoder->image == NULL) return false;
-    if (png_get_bit_depth(png, decoder->info) == 16 && !allocate_pixels16(decoder)) return false;
-    for (int pass = 0; pass < passes; pass++) read_rows(decoder);
-    end_pixels(decoder);
-    if (is_palette(decoder)) expand_palette(decoder);
+    const int width = (int)png_get_image_width(png, decoder->info),
+              height = (int)png_get_image_height(png, decoder->info);
+    const bool deep = png_get_bit_depth(png, decoder->info) == 16;
+    const size_t samples = (size_t)width * 4;
+    if (!decoder->checked && (decoder->image = image_create(width, height, decoder->error)) == NULL) return false;
+    if (deep && !decoder->checked) decoder->image->pixels16 = calloc(samples * (size_t)height, sizeof(uint16_t));
+    if (deep || decoder->checked) decoder->row = calloc(samples, 2);
+    if ((deep && !decoder->checked && decoder->image->pixels16 == NULL) ||
+        ((deep || decoder->checked) && decoder->row == NULL))
+        return error_memory(decoder->error, decoder->path);
+    for (int pass = 0; pass < passes; pass++)
+        for (int y = 0; y < height; y++) {
+            if (!decoder->checked && deep)
+                read_row16(decoder, (size_t)y * samples);
+            else
+                png_read_row(png, decoder->checked ? decoder->row : decoder->image->pixels + (size_t)y * samples, NULL);
+            if (decoder->checked && is_palette(decoder)) check_palette(decoder, decoder->row);
+        }
+    png_set_benign_errors(png, 0);
+    png_read_end(png, NULL);
+    if (is_palette(decoder) && !decoder->checked) expand_palette(decoder);
     return check_stream(decoder);
 }
 
-Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+/* checked: the pixels are not kept, and there is no image. */
+static bool decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, bool checked, Image **image,
+                   Error *error) {
     Decoder decoder;
     bool ok = open_decoder(&decoder, data, size, path, error);
     decoder.max_pixels = max_pixels;
-    ok = ok && png_read_decode(&decoder);
+    decoder.checked = checked;
+    ok = ok && decode_all(&decoder);
     close_decoder(&decoder);
-    if (ok) return decoder.image;
-    image_destroy(decoder.image);
-    return NULL;
+    if (!ok) image_destroy(decoder.image);
+    *image = ok ? decoder.image : NULL;
+    return ok;
 }
 
-static bool check_by_libpng(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
-    Decoder decoder;
-    bool ok = open_decoder(&decoder, data, size, path, error);
-    decoder.max_pixels = max_pixels;
-    decoder.checked = true;
-    ok = ok && png_read_decode(&decoder);
-    close_decoder(&decoder);
-    return ok;
+Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+    Image *image;
+    return decode(data, size, path, max_pixels, false, &image, error) ? image : NULL;
 }
 
 bool png_file_check(PngFile *file, Error *error) {
     if (file->rows != NULL && !file->damaged && png_fast_check_rows(file->rows)) return true;
-    return png_file_load(file, error) && check_by_libpng(file->data, file->size, file->path, file->max_pixels, error);
+    Image *none;
+    return png_file_load(file, error) &&
+           decode(file->data, file->size, file->path, file->max_pixels, true, &none, error);
 }
 
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
@@ -477,29 +405,22 @@ Image *image_read_png(const char *path, Error *error) {
     return image;
 }
 
-static bool decode_texts(Decoder *decoder) {
+static bool decode_texts(Decoder *decoder, char *value, size_t size) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     set_strict_limits(decoder);
     png_set_chunk_malloc_max(decoder->png, MAX_TEXT_SIZE);
     png_read_info(decoder->png, decoder->info);
-    return !decoder->memory_short || error_memory(decoder->error, decoder->path);
-}
-
-static void copy_text(const Decoder *decoder, char *value, size_t size) {
+    if (decoder->memory_short) return error_memory(decoder->error, decoder->path);
     png_textp texts = NULL;
     if (png_get_text(decoder->png, decoder->info, &texts, NULL) > 0 && strlen(texts[0].text) < size)
         strcpy(value, texts[0].text);
-}
-
-static bool has_key(const PngChunk *chunk, const char *key) {
-    const size_t length = strlen(key) + 1;
-    return (png_chunk_is(chunk, "tEXt") || png_chunk_is(chunk, "zTXt") || png_chunk_is(chunk, "iTXt")) &&
-           chunk->length >= length && memcmp(chunk->data, key, length) == 0;
+    return true;
 }
 
 /* A file that has only the first text with this key before the pixels, which are an empty chunk: to libpng, any chunk
    above its limit of texts is damage, and so is a damaged text with another key. NULL if out of memory. */
 static uint8_t *with_text_alone(const uint8_t *data, size_t size, const char *key, size_t *kept) {
+    const size_t length = strlen(key) + 1;
     uint8_t *copy = malloc(size + sizeof png_no_pixels);
     PngChunk chunk;
     bool found = false, ended = false;
@@ -507,7 +428,10 @@ static uint8_t *with_text_alone(const uint8_t *data, size_t size, const char *ke
     if (copy == NULL) return NULL;
     memcpy(copy, data, *kept);
     for (size_t from = at; !ended && png_chunk_next(data, size, &at, &chunk); from = at) {
-        const bool text = !found && chunk.length <= MAX_TEXT_SIZE && has_key(&chunk, key);
+        const bool text =
+            !found && chunk.length >= length && chunk.length <= MAX_TEXT_SIZE &&
+            (png_chunk_is(&chunk, "tEXt") || png_chunk_is(&chunk, "zTXt") || png_chunk_is(&chunk, "iTXt")) &&
+            memcmp(chunk.data, key, length) == 0;
         ended = png_chunk_is(&chunk, "IDAT");
         found |= text;
         if (!text && (chunk.type[0] & 0x20) != 0) continue;
@@ -524,8 +448,7 @@ bool image_find_text(const uint8_t *data, size_t size, const char *key, char *va
     uint8_t *alone = with_text_alone(data, size, key, &kept);
     value[0] = '\0';
     if (alone == NULL) return error_memory(error, "image");
-    if (open_decoder(&decoder, alone, kept, "image", &failure) && decode_texts(&decoder))
-        copy_text(&decoder, value, value_size);
+    if (open_decoder(&decoder, alone, kept, "image", &failure)) (void)decode_texts(&decoder, value, value_size);
     close_decoder(&decoder);
     free(alone);
     if (failure.kind == ERROR_SYSTEM) *error = failure;

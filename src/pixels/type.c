@@ -20,7 +20,7 @@ static const Composition compositions[] = {
 #include "pixels/compositions.inc"
 };
 
-static unsigned type_compose(unsigned letter, unsigned mark) {
+static unsigned compose(unsigned letter, unsigned mark) {
     size_t low = 0, high = sizeof compositions / sizeof compositions[0];
     while (low < high) {
         const size_t middle = (low + high) / 2;
@@ -43,25 +43,22 @@ const Glyph *type_find(const Typeface *face, unsigned code) {
     return bsearch(&code, face->glyphs, (size_t)type_glyph_count, sizeof *face->glyphs, compare_code);
 }
 
-static void trace_curve(OutlineTracer *tracer, Point a, Point b, Point c, Point d) {
-    Point from = a;
-    for (int i = 1; i <= tracer->parts; i++) {
-        const double t = (double)i / tracer->parts, s = 1 - t;
-        const Point to = {s * s * s * a.x + 3 * s * s * t * b.x + 3 * s * t * t * c.x + t * t * t * d.x,
-                          s * s * s * a.y + 3 * s * s * t * b.y + 3 * s * t * t * c.y + t * t * t * d.y};
-        tracer->line(tracer, from, to);
-        from = to;
-    }
-}
-
 void outline_trace(OutlineTracer *tracer, const Typeface *face, const Glyph *glyph) {
     const OutlineStep *first = face->steps + glyph->first, *step = first, *end = first + glyph->steps;
     Point start = {0}, at = {0};
     for (; step < end; step += step->kind == OUTLINE_CURVE ? 3 : 1) {
         const Point next = tracer->place(tracer, step->kind == OUTLINE_CURVE ? step + 2 : step);
-        if (step->kind == OUTLINE_CURVE)
-            trace_curve(tracer, at, tracer->place(tracer, step), tracer->place(tracer, step + 1), next);
-        else if (step->kind == OUTLINE_LINE)
+        if (step->kind == OUTLINE_CURVE) {
+            const Point b = tracer->place(tracer, step), c = tracer->place(tracer, step + 1);
+            Point from = at;
+            for (int i = 1; i <= tracer->parts; i++) {
+                const double t = (double)i / tracer->parts, s = 1 - t;
+                const Point to = {s * s * s * at.x + 3 * s * s * t * b.x + 3 * s * t * t * c.x + t * t * t * next.x,
+                                  s * s * s * at.y + 3 * s * s * t * b.y + 3 * s * t * t * c.y + t * t * t * next.y};
+                tracer->line(tracer, from, to);
+                from = to;
+            }
+        } else if (step->kind == OUTLINE_LINE)
             tracer->line(tracer, at, next);
         else {
             if (step > first) tracer->line(tracer, at, start);
@@ -76,7 +73,7 @@ unsigned type_next_code(const char **text) {
     unsigned code = utf8_next(text);
     for (const char *next = *text; *next != '\0'; *text = next) {
         const unsigned mark = utf8_next(&next),
-                       composed = mark >= FIRST_MARK && mark <= LAST_MARK ? type_compose(code, mark) : 0;
+                       composed = mark >= FIRST_MARK && mark <= LAST_MARK ? compose(code, mark) : 0;
         if (composed == 0) break;
         code = composed;
     }
@@ -96,24 +93,6 @@ int type_advance(const char *text) {
 
 double type_width(const char *text, double points) { return type_advance(text) * points * MM_PER_POINT / type_units; }
 
-static bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
-
-/* Marks are not shown: alone they would be drawn over the quotation mark. */
-static bool is_mark(unsigned code) { return code >= 0x300 && code <= 0x36F; }
-
-static bool type_refuse(unsigned code, const char *from, const char *end, const char *where, Error *error) {
-    if (is_control(code))
-        return error_input(error, where, "the text has the control character U+%04X, which cannot be drawn", code);
-    if (is_mark(code))
-        return error_input(error, where,
-                           "the text has the combining mark U+%04X after a letter that it does not compose with; write "
-                           "the composed character",
-                           code);
-    return error_input(error, where,
-                       "the font has no character '%.*s' (U+%04X); it has Latin, Greek, Cyrillic and common symbols",
-                       (int)(end - from), from, code);
-}
-
 bool type_check(const char *text, const char *where, Error *error) {
     if (text == NULL) return true;
     for (const char *next = text; *next != '\0';) {
@@ -123,7 +102,17 @@ bool type_check(const char *text, const char *where, Error *error) {
             return error_input(error, where, "byte %d of the text is 0x%02X, which is not UTF-8",
                                (int)(from - text) + 1, (unsigned)(unsigned char)*from);
         const unsigned code = type_next_code(&next);
-        if (type_find(&type_regular, code) == NULL) return type_refuse(code, from, next, where, error);
+        if (type_find(&type_regular, code) != NULL) continue;
+        if (code < 0x20 || (code >= 0x7F && code < 0xA0))
+            return error_input(error, where, "the text has the control character U+%04X, which cannot be drawn", code);
+        if (code >= FIRST_MARK && code <= LAST_MARK) /* alone it would be drawn over the quotation mark */
+            return error_input(error, where,
+                               "the text has the combining mark U+%04X after a letter that it does not compose with; "
+                               "write the composed character",
+                               code);
+        return error_input(
+            error, where, "the font has no character '%.*s' (U+%04X); it has Latin, Greek, Cyrillic and common symbols",
+            (int)(next - from), from, code);
     }
     return true;
 }
