@@ -336,7 +336,7 @@ bool file_draft_publish(int draft, const char *path, Error *error) {
 }
 
 bool folder_reserve(const char *folder, Error *error) {
-    enum { FOLDERS = 8 }; /* more than a command writes into */
+    enum { FOLDERS = 64 }; /* more than a command or a test writes into */
     static struct stat reserved[FOLDERS];
     static int count;
     static const double patience = 3; /* s: the drawing processes of a render that was killed end after their frame */
