@@ -34,32 +34,29 @@ typedef struct Annotated {
     ContactLook look;
 } Annotated;
 
-/* The frame before the step in which the bomb first touches a box; otherwise the frame before the largest impulse;
-   -1 without contacts. */
-static int find_moment(const Trajectory *run) {
-    int touch = trajectory_impact(run), frame = -1;
-    if (touch > 0) return touch - 1;
-    double largest = -1;
-    for (int step = 1; step < run->frames; step++)
-        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
-            double size = impulse_magnitude(&run->contacts[i]);
-            if (size > largest) largest = size, frame = step - 1;
-        }
-    return frame;
-}
-
+/* Without a requested time: the frame before the step in which the bomb first touches a box; otherwise the frame before
+   the largest impulse. */
 static bool choose_moment(Annotated *figure, Error *error) {
     const FigureSpec *spec = figure->spec;
+    const Trajectory *first = spec->runs[0];
     FigureSpec requested = *spec;
-    int count, moment = find_moment(spec->runs[0]), contacts = 0;
     if (spec->time_count > 1)
         return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
-    if (moment < 0) return error_input(error, spec->paths[0], "the run has no contacts with an impulse");
+    int moment = trajectory_impact(first) - 1;
+    if (moment < 0) {
+        double largest = -1;
+        for (int step = 1; step < first->frames; step++)
+            for (int64_t i = first->contact_start[step]; i < first->contact_start[step + 1]; i++) {
+                const double size = impulse_magnitude(&first->contacts[i]);
+                if (size > largest) largest = size, moment = step - 1;
+            }
+        if (largest < 0) return error_input(error, spec->paths[0], "the run has no contacts with an impulse");
+    }
     if (spec->time_count == 0) {
         requested.time_count = 1;
-        requested.times[0] = moment * (double)spec->runs[0]->dt;
+        requested.times[0] = moment * (double)first->dt;
     }
-    int frames[FIGURE_MOMENTS_MAX];
+    int frames[FIGURE_MOMENTS_MAX], count, contacts = 0;
     if (!run_frames(&requested, 1, 1, frames, &count, error)) return false;
     figure->frame = frames[0];
     for (int i = 0; i < spec->run_count; i++) {
@@ -72,13 +69,6 @@ static bool choose_moment(Annotated *figure, Error *error) {
     }
     return contacts > 0 || error_input(error, spec->paths[0], "has no contacts with an impulse in the step after %g s",
                                        requested.times[0]);
-}
-
-static double ring_radius(const Trajectory *run, double scale) {
-    double side = HUGE_VAL;
-    for (int i = 0; i < run->bodies; i++)
-        if (!run->fixed[i]) side = fmin(side, fmin((double)run->size[i].x, (double)run->size[i].y));
-    return fmin(fmax(ring_share * side * scale, min_ring), max_ring);
 }
 
 static WrappedText annotated_title(const Annotated *figure, int panel, double width) {
@@ -95,20 +85,6 @@ static WrappedText contacts_line(const Annotated *figure, int panel, double widt
     if (numbered < count && !unknown) text_add(part, sizeof part, ", %d labelled", numbered);
     return wrap_text(SMALL_TYPE * figure->spec->points, width, "%d %s%s", count, count == 1 ? "contact" : "contacts",
                      part);
-}
-
-/* Room above the cells for the titles, and lines below them for the contacts. */
-static void annotated_lay_out_titles(Annotated *figure, double width) {
-    const double line = line_height(figure->spec->points);
-    int below = 0;
-    figure->title_lines = 0;
-    for (int panel = 0; panel < figure->spec->run_count; panel++) {
-        const int lines = annotated_title(figure, panel, width).lines;
-        const int contacts = contacts_line(figure, panel, width, 99999, 9999).lines;
-        if (lines > figure->title_lines) figure->title_lines = lines;
-        if (contacts > below) below = contacts;
-    }
-    figure->top = (figure->title_lines + 0.2) * line + below * fmin(line, SMALL_TYPE * line + 0.5);
 }
 
 /* What explains the marks. Returns the rows; without a sketch, it only counts them. */
@@ -138,52 +114,55 @@ static int annotated_legend(const Annotated *figure, Sketch *sketch) {
 
 static bool annotated_lay_out(Annotated *figure, Error *error) {
     const FigureSpec *spec = figure->spec;
+    const Trajectory *first = spec->runs[0];
     const double line = line_height(spec->points), arrow_share = 0.22, max_arrow = 14, foot_lines = 5;
     const double width = (spec->width - 2 * PAGE_EDGE - (spec->run_count - 1) * annotated_gap) / spec->run_count;
-    annotated_lay_out_titles(figure, width);
+    /* Room above the cells for the titles, and for the lines about contacts. */
+    int below = 0;
+    for (int panel = 0; panel < spec->run_count; panel++) {
+        const int lines = annotated_title(figure, panel, width).lines;
+        const int contacts = contacts_line(figure, panel, width, 99999, 9999).lines;
+        if (lines > figure->title_lines) figure->title_lines = lines;
+        if (contacts > below) below = contacts;
+    }
+    figure->top = (figure->title_lines + 0.2) * line + below * fmin(line, SMALL_TYPE * line + 0.5);
+
     const double height = fmin(FIGURE_HEIGHT_MAX - figure->top - foot_lines * line, annotated_aspect * width);
     WorldWindow window = run_window(spec, &figure->frame, 1);
     run_window_widen(&window, width / height);
     if (!run_cells_begin(&figure->cells, &window, width, height, spec->dpi, error)) return false;
     figure->start = (spec->width - spec->run_count * figure->cells.width - (spec->run_count - 1) * annotated_gap) / 2;
+
+    double side = HUGE_VAL;
+    for (int i = 0; i < first->bodies; i++)
+        if (!first->fixed[i]) side = fmin(side, fmin((double)first->size[i].x, (double)first->size[i].y));
     figure->look.points = spec->points;
-    figure->look.ring = ring_radius(spec->runs[0], figure->cells.scale);
+    figure->look.ring = fmin(fmax(ring_share * side * figure->cells.scale, min_ring), max_ring);
     if (figure->look.largest > 0)
         figure->look.arrow_scale = fmin(arrow_share * figure->cells.width, max_arrow) / figure->look.largest;
     figure->foot = annotated_legend(figure, NULL) * line_height(SMALL_TYPE * spec->points) + 0.2 * line;
     return true;
 }
 
-static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point low, int count, int numbered) {
+static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *error) {
+    const Trajectory *run = figure->spec->runs[panel];
     const double line = line_height(figure->spec->points), width = figure->cells.width;
+    const Point low = {figure->start + panel * (width + annotated_gap), figure->foot};
+    const View view = run_cells_view(&figure->cells, low);
+    Image *image = run_cells_render(&figure->cells, run, figure->frame, &figure->colours[panel], STILL_ALL, error);
+    if (image == NULL) return false;
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        image->pixels[4 * i + 3] = (uint8_t)lrint(body_opacity * image->pixels[4 * i + 3]);
+    sketch_image(sketch, image, low, width);
+    image_destroy(image);
+    run_cells_frame(&figure->cells, sketch, low);
+    int count, numbered;
+    if (!draw_contacts(sketch, &view, &figure->look, run, figure->frame + 1, &count, &numbered, error)) return false;
     const WrappedText title = annotated_title(figure, panel, width);
     const WrappedText contacts = contacts_line(figure, panel, width, count, numbered);
     const double top = sketch->height - 0.6 * line;
     draw_wrapped(sketch, (Point){low.x, top}, INK, &title);
     draw_wrapped(sketch, (Point){low.x, top - title.lines * line}, INK_SOFT, &contacts);
-}
-
-static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
-    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, &figure->colours[panel],
-                                    STILL_ALL, error);
-    if (image == NULL) return false;
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        image->pixels[4 * i + 3] = (uint8_t)lrint(body_opacity * image->pixels[4 * i + 3]);
-    sketch_image(sketch, image, low, figure->cells.width);
-    image_destroy(image);
-    run_cells_frame(&figure->cells, sketch, low);
-    return true;
-}
-
-static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *error) {
-    const Point low = {figure->start + panel * (figure->cells.width + annotated_gap), figure->foot};
-    const View view = run_cells_view(&figure->cells, low);
-    int count, numbered;
-    if (!draw_scene(figure, sketch, panel, low, error) ||
-        !draw_contacts(sketch, &view, &figure->look, figure->spec->runs[panel], figure->frame + 1, &count, &numbered,
-                       error))
-        return false;
-    draw_title(figure, sketch, panel, low, count, numbered);
     return true;
 }
 

@@ -31,26 +31,6 @@ typedef struct Divergence {
     int shifted;                       /* number of bodies shifted for the band */
 } Divergence;
 
-static void free_all(Divergence *d) {
-    for (int i = 0; i < FIGURE_RUNS_MAX; i++) free(d->distance[i]);
-    free(d->low);
-    free(d->high);
-}
-
-static bool figure_divergence_measure(Divergence *d, Error *error) {
-    const FigureSpec *spec = d->spec;
-    const Trajectory *first = spec->runs[0];
-    d->frames = first->frames;
-    for (int i = 1; i < spec->run_count; i++) {
-        if ((d->distance[i] = malloc((size_t)d->frames * sizeof *d->distance[i])) == NULL)
-            return error_memory(error, "figure");
-        for (int frame = 0; frame < d->frames; frame++)
-            d->distance[i][frame] =
-                frame < spec->runs[i]->frames ? trajectory_distance(first, spec->runs[i], frame) : NAN;
-    }
-    return true;
-}
-
 /* The bomb, and other bodies spread evenly over the order of bodies. */
 static int choose_bodies(const Trajectory *run, int bodies[BAND_BODIES]) {
     int count = 0, others = 0, wanted = BAND_BODIES, seen = 0;
@@ -107,8 +87,7 @@ static void include(PlotRange *range, const double *values, int count) {
 }
 
 /* The points of a line up to its next gap. */
-static int figure_divergence_gather(const Divergence *d, const PlotPanel *plot, const double *values, int from,
-                                    Point *points) {
+static int gather_points(const Divergence *d, const PlotPanel *plot, const double *values, int from, Point *points) {
     int count = 0;
     for (int i = from; i < d->frames && values[i] > 0; i++)
         points[count++] = plot_place(plot, i * (double)d->spec->runs[0]->dt, values[i]);
@@ -120,40 +99,10 @@ static Pen line_pen(const Divergence *d, int run) {
     return pen_line(d->colours[run].light.fill, 2.2, plot_style(run - 1).dashes);
 }
 
-static void draw_line(const Divergence *d, Sketch *sketch, const PlotPanel *plot, int run, Point *points) {
-    const Pen pen = line_pen(d, run);
-    for (int i = 0; i < d->frames; i++) {
-        int count = figure_divergence_gather(d, plot, d->distance[run], i, points);
-        sketch_path(sketch, points, count, &pen);
-        i += count;
-    }
-}
-
-static void draw_band(const Divergence *d, Sketch *sketch, const PlotPanel *plot, Point *points) {
-    int first = 0;
-    while (first < d->frames && !(d->high[first] > 0)) first++;
-    int count = figure_divergence_gather(d, plot, d->high, first, points);
-    for (int i = count - 1; i >= 0; i--)
-        points[count + (count - 1 - i)] =
-            plot_place(plot, (first + i) * (double)d->spec->runs[0]->dt, d->low[first + i]);
-    /* the outline stays visible while the band has no height */
-    sketch_shape(sketch, points, 2 * count, &(Pen){band_colour, 1, band_colour, 2.2, NULL});
-}
-
 static bool ever_diverges(const double *distance, int frames) {
     for (int i = 0; i < frames; i++)
         if (distance[i] > 0) return true;
     return false;
-}
-
-/* The entry of a run in the legend; of the first, that of the band. */
-static WrappedText entry_of(const Divergence *d, int run, double width) {
-    const FigureSpec *spec = d->spec;
-    const RunName first = run_name(spec, spec->runs[0]), own = run_name(spec, spec->runs[run]);
-    if (run == 0)
-        return wrap_text(spec->points, width, "%s, one of %d bodies shifted by 1 \xC2\xB5m", first.text, d->shifted);
-    return wrap_text(spec->points, width, "%s vs %s%s", own.text, first.text,
-                     ever_diverges(d->distance[run], d->frames) ? "" : ": identical");
 }
 
 /* Rows above the plot, down from `top`, `width` mm wide. Returns their number; without a sketch, it only counts
@@ -165,7 +114,12 @@ static int draw_legend(const Divergence *d, Sketch *sketch, Point top, double wi
     for (int i = 1; i <= spec->run_count; i++) {
         const bool band = i == spec->run_count;
         if (band && d->low == NULL) break;
-        const WrappedText words = entry_of(d, band ? 0 : i, width - indent);
+        const RunName first = run_name(spec, spec->runs[0]);
+        const WrappedText words =
+            band ? wrap_text(spec->points, width - indent, "%s, one of %d bodies shifted by 1 \xC2\xB5m", first.text,
+                             d->shifted)
+                 : wrap_text(spec->points, width - indent, "%s vs %s%s", run_name(spec, spec->runs[i]).text, first.text,
+                             ever_diverges(d->distance[i], d->frames) ? "" : ": identical");
         const Point at = {top.x, top.y - (rows + 0.5) * line}, end = {at.x + sample, at.y};
         rows += words.lines;
         if (sketch == NULL) continue;
@@ -179,17 +133,6 @@ static int draw_legend(const Divergence *d, Sketch *sketch, Point top, double wi
         }
     }
     return rows;
-}
-
-/* The line at the bomb's touch, named above the plot, where no line can cross the name. */
-static void draw_impact(const Divergence *d, Sketch *sketch, const PlotPanel *plot, int touch) {
-    const double points = d->spec->points, half = type_width("impact", points) / 2;
-    const double x = plot_axis_place(&plot->x, touch * (double)d->spec->runs[0]->dt);
-    const double middle = fmin(fmax(x, plot->x.from + half), sketch->width - half - PAGE_EDGE);
-    const Pen pen = pen_line(INK_SOFT, 1.2, "(4,4)");
-    sketch_line(sketch, (Point){x, plot->y.from}, (Point){x, plot->y.to}, &pen);
-    sketch_text(sketch, (Point){middle, plot->y.to + 0.7 * line_height(points)},
-                &(TextStyle){points, TEXT_CENTER, INK, 0, false}, "impact");
 }
 
 static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Error *error) {
@@ -210,32 +153,66 @@ static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Erro
     sketch_begin(sketch, spec->width, bottom + height + above + rows * line + (touch >= 0 ? 0.6 : 2));
     Point *places = malloc(2 * (size_t)d->frames * sizeof *places);
     if (places == NULL) return error_memory(error, "figure");
-    if (d->low != NULL) draw_band(d, sketch, &plot, places);
+    if (d->low != NULL) {
+        int first = 0;
+        while (first < d->frames && !(d->high[first] > 0)) first++;
+        const int count = gather_points(d, &plot, d->high, first, places);
+        for (int i = count - 1; i >= 0; i--)
+            places[count + (count - 1 - i)] =
+                plot_place(&plot, (first + i) * (double)spec->runs[0]->dt, d->low[first + i]);
+        /* the outline stays visible while the band has no height */
+        sketch_shape(sketch, places, 2 * count, &(Pen){band_colour, 1, band_colour, 2.2, NULL});
+    }
     plot_panel_draw(sketch, &plot);
-    if (touch >= 0) draw_impact(d, sketch, &plot, touch);
-    for (int i = 1; i < spec->run_count; i++) draw_line(d, sketch, &plot, i, places);
+    if (touch >= 0) {
+        /* A line, named above the plot, where no line can cross the name. */
+        const double half = type_width("impact", points) / 2;
+        const double x = plot_axis_place(&plot.x, touch * (double)spec->runs[0]->dt);
+        const double middle = fmin(fmax(x, plot.x.from + half), sketch->width - half - PAGE_EDGE);
+        const Pen pen = pen_line(INK_SOFT, 1.2, "(4,4)");
+        sketch_line(sketch, (Point){x, plot.y.from}, (Point){x, plot.y.to}, &pen);
+        sketch_text(sketch, (Point){middle, plot.y.to + 0.7 * line}, &(TextStyle){points, TEXT_CENTER, INK, 0, false},
+                    "impact");
+    }
+    for (int i = 1; i < spec->run_count; i++) {
+        const Pen pen = line_pen(d, i);
+        for (int k = 0; k < d->frames; k++) {
+            const int count = gather_points(d, &plot, d->distance[i], k, places);
+            sketch_path(sketch, places, count, &pen);
+            k += count;
+        }
+    }
     draw_legend(d, sketch, (Point){left, sketch->height}, spec->width - PAGE_EDGE - left);
     free(places);
     return true;
 }
 
-static bool figure_divergence_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
-    Divergence d = {.spec = spec};
+static bool divergence_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+    Divergence d = {.spec = spec, .frames = spec->runs[0]->frames};
     PlotRange range = plot_range();
-    bool done = run_colours(spec, d.colours, error) && run_check_worlds(spec, error) &&
-                figure_divergence_measure(&d, error) && (spec->scene == NULL || make_band(&d, error));
-    for (int i = 1; done && i < spec->run_count; i++) include(&range, d.distance[i], d.frames);
+    bool done = run_colours(spec, d.colours, error) && run_check_worlds(spec, error);
+    for (int i = 1; done && i < spec->run_count; i++) {
+        d.distance[i] = malloc((size_t)d.frames * sizeof *d.distance[i]);
+        done = d.distance[i] != NULL || error_memory(error, "figure");
+        for (int frame = 0; done && frame < d.frames; frame++)
+            d.distance[i][frame] =
+                frame < spec->runs[i]->frames ? trajectory_distance(spec->runs[0], spec->runs[i], frame) : NAN;
+        if (done) include(&range, d.distance[i], d.frames);
+    }
+    done = done && (spec->scene == NULL || make_band(&d, error));
     if (done) include(&range, d.low, d.frames), include(&range, d.high, d.frames);
     if (done && range.most == 0)
         done =
             error_input(error, spec->paths[1], "never diverges from %s: there is no distance to draw", spec->paths[0]);
     done = done && draw_plot(&d, sketch, range, error);
     if (spec->facts != NULL) spec->facts->shifted = d.shifted;
-    free_all(&d);
+    for (int i = 0; i < FIGURE_RUNS_MAX; i++) free(d.distance[i]);
+    free(d.low);
+    free(d.high);
     return done;
 }
 
-static void figure_divergence_caption(FILE *out, const FigureSpec *spec) {
+static void divergence_caption(FILE *out, const FigureSpec *spec) {
     const Trajectory *first = spec->runs[0];
     fputs("Runs of the ", out);
     caption_scene(out, spec);
@@ -260,6 +237,6 @@ const FigureKind figure_divergence = {
     .min_runs = 2,
     .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,
-    .draw = figure_divergence_draw,
-    .caption = figure_divergence_caption,
+    .draw = divergence_draw,
+    .caption = divergence_caption,
 };

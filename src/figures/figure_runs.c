@@ -32,27 +32,21 @@ typedef struct Strobe {
     Point low;
 } Strobe;
 
-static double opacity_of(const Strobe *strobe, int moment) {
-    if (moment == strobe->count - 1) return 1;
-    return strobe->count > 2 ? palest + (before_last - palest) * moment / (strobe->count - 2) : palest;
-}
-
-static void blend_over(Image *image, const Image *upper, double opacity) {
-    for (size_t i = 0; i < 4 * (size_t)image->width * (size_t)image->height; i += 4) {
-        int alpha = (int)lrint(opacity * upper->pixels[i + 3]);
-        if (alpha > 0) pixel_over(image->pixels + i, upper->pixels + i, alpha);
-    }
-}
-
 static bool draw_moments(Strobe *strobe, Sketch *sketch, Error *error) {
+    const int count = strobe->count;
     Image *image =
         run_cells_render(&strobe->cells, strobe->run, strobe->frames[0], &strobe->colours, STILL_FIXED, error);
     bool done = image != NULL;
-    for (int i = 0; done && i < strobe->count; i++) {
+    for (int i = 0; done && i < count; i++) {
         Image *moment =
             run_cells_render(&strobe->cells, strobe->run, strobe->frames[i], &strobe->colours, STILL_MOVING, error);
         done = moment != NULL;
-        if (done) blend_over(image, moment, opacity_of(strobe, i));
+        double opacity = count > 2 ? palest + (before_last - palest) * i / (count - 2) : palest;
+        if (i == count - 1) opacity = 1;
+        for (size_t k = 0; done && k < 4 * (size_t)image->width * (size_t)image->height; k += 4) {
+            const int alpha = (int)lrint(opacity * moment->pixels[k + 3]);
+            if (alpha > 0) pixel_over(image->pixels + k, moment->pixels + k, alpha);
+        }
         image_destroy(moment);
     }
     if (done) sketch_image(sketch, image, strobe->low, strobe->cells.width);
@@ -68,16 +62,6 @@ static bool find_bomb(const Strobe *strobe, const View *view, int frame, Point *
     return at->x > view->low.x && at->x < view->high.x && at->y > view->low.y && at->y < view->high.y;
 }
 
-static void draw_bomb_path(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
-    const Pen pen = pen_line(BOMB.line, 1.4, NULL);
-    Point p, q;
-    for (int frame = strobe->frames[0]; frame < strobe->frames[strobe->count - 1]; frame++) {
-        if (!find_bomb(strobe, view, frame, &p) || !find_bomb(strobe, view, frame + 1, &q)) continue;
-        sketch_line(sketch, p, q, &pen);
-        label_add_segment(field, (Segment){p.x, p.y, q.x, q.y});
-    }
-}
-
 static PageBox box_on_page(const Strobe *strobe, const View *view, int frame, int body) {
     Extent box = extent_empty;
     extent_include(&box, strobe->run, frame, body);
@@ -86,7 +70,7 @@ static PageBox box_on_page(const Strobe *strobe, const View *view, int frame, in
     return (PageBox){low.x, low.y, high.x, high.y};
 }
 
-/* Times cover no body of any moment, and no edge of the ground. */
+/* What times must not cover: bodies of any moment, and edges of the ground. */
 static void add_bodies(const Strobe *strobe, const View *view, LabelField *field) {
     const Trajectory *run = strobe->run;
     for (int body = 0; body < run->bodies; body++) {
@@ -102,40 +86,40 @@ static void add_bodies(const Strobe *strobe, const View *view, LabelField *field
     field->crossable = field->box_count;
 }
 
-/* The times at the bomb's positions, where there is room. */
-static void draw_times(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
+/* The bomb's path, and the times at its positions, where there is room. */
+static bool draw_bomb(const Strobe *strobe, Sketch *sketch, Error *error) {
     const Trajectory *run = strobe->run;
+    if (run->bomb < 0) return true;
+    const View view = run_cells_view(&strobe->cells, strobe->low);
     const double points = SMALL_TYPE * strobe->spec->points, height = points * MM_PER_POINT, farthest = 12;
-    const double half = 0.5 * (double)run->size[run->bomb].x * view->scale;
-    const Pen thin = pen_line(BOMB.line, 0.8, NULL);
-    Point at;
-    add_bodies(strobe, view, field);
+    const double half = 0.5 * (double)run->size[run->bomb].x * view.scale;
+    const Pen pen = pen_line(BOMB.line, 1.4, NULL), thin = pen_line(BOMB.line, 0.8, NULL);
+    LabelField *field = calloc(1, sizeof *field);
+    if (field == NULL) return error_memory(error, "figure");
+    field->frame = (PageBox){view.low.x + 0.3, view.low.y + 0.3, view.high.x - 0.3, view.high.y - 0.3};
+    Point p, q;
+    for (int frame = strobe->frames[0]; frame < strobe->frames[strobe->count - 1]; frame++) {
+        if (!find_bomb(strobe, &view, frame, &p) || !find_bomb(strobe, &view, frame + 1, &q)) continue;
+        sketch_line(sketch, p, q, &pen);
+        label_add_segment(field, (Segment){p.x, p.y, q.x, q.y});
+    }
+    add_bodies(strobe, &view, field);
     for (int i = strobe->count - 1; i >= 0; i--) {
         char text[32];
         PageBox box;
         Segment leader;
         bool led = false;
-        if (!find_bomb(strobe, view, strobe->frames[i], &at)) continue;
+        if (!find_bomb(strobe, &view, strobe->frames[i], &p)) continue;
         snprintf(text, sizeof text, "%.2f s", strobe->frames[i] * (double)run->dt);
         const double width = type_width(text, points) + 0.5;
-        const LabelWish wish = {at.x, at.y, half, 0, half + farthest, width, height, false, true, true};
-        if (!label_place(field, at.x, at.y, 1.1 * half + 0.5, width, height, false, &box) &&
+        const LabelWish wish = {p.x, p.y, half, 0, half + farthest, width, height, false, true, true};
+        if (!label_place(field, p.x, p.y, 1.1 * half + 0.5, width, height, false, &box) &&
             !label_place_led(field, &wish, &box, &leader, &led))
             continue;
         if (led) draw_leader(sketch, &leader, &box, &thin);
         sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
                     &(TextStyle){points, TEXT_CENTER, BOMB.line, 0, true}, "%s", text);
     }
-}
-
-static bool draw_bomb(const Strobe *strobe, Sketch *sketch, Error *error) {
-    if (strobe->run->bomb < 0) return true;
-    const View view = run_cells_view(&strobe->cells, strobe->low);
-    LabelField *field = calloc(1, sizeof *field);
-    if (field == NULL) return error_memory(error, "figure");
-    field->frame = (PageBox){view.low.x + 0.3, view.low.y + 0.3, view.high.x - 0.3, view.high.y - 0.3};
-    draw_bomb_path(strobe, sketch, &view, field);
-    draw_times(strobe, sketch, &view, field);
     free(field);
     return true;
 }
@@ -153,14 +137,6 @@ static int strobe_foot(const Strobe *strobe, Sketch *sketch) {
     return flow.row + 1;
 }
 
-static WrappedText strobe_title(const Strobe *strobe, double width) {
-    const double dt = (double)strobe->run->dt, points = strobe->spec->points;
-    const double first = strobe->frames[0] * dt, last = strobe->frames[strobe->count - 1] * dt;
-    const RunName name = run_name(strobe->spec, strobe->run);
-    if (strobe->count == 1) return wrap_text(points, width, "%s, %.2f s", name.text, last);
-    return wrap_text(points, width, "%s, %d moments from %.2f to %.2f s", name.text, strobe->count, first, last);
-}
-
 static bool strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strobe strobe = {.spec = spec, .run = spec->runs[0]};
     const double max_height = 120, max_aspect = 1.2; /* mm; height / width */
@@ -173,7 +149,12 @@ static bool strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     run_window_widen(&window, width / height);
     bool done = run_cells_begin(&strobe.cells, &window, width, height, spec->dpi, error);
     if (done) {
-        strobe.title = strobe_title(&strobe, width);
+        const double dt = (double)strobe.run->dt, first = strobe.frames[0] * dt,
+                     last = strobe.frames[strobe.count - 1] * dt;
+        const RunName name = run_name(spec, strobe.run);
+        strobe.title = strobe.count == 1 ? wrap_text(spec->points, width, "%s, %.2f s", name.text, last)
+                                         : wrap_text(spec->points, width, "%s, %d moments from %.2f to %.2f s",
+                                                     name.text, strobe.count, first, last);
         strobe.low = (Point){(spec->width - strobe.cells.width) / 2, (strobe_foot(&strobe, NULL) + 0.2) * line};
         sketch_begin(sketch, spec->width, strobe.low.y + strobe.cells.height + (strobe.title.lines + 0.2) * line);
         done = draw_moments(&strobe, sketch, error) && draw_bomb(&strobe, sketch, error);
@@ -263,23 +244,19 @@ static WorldWindow window_of_bodies(const Strip *strip) {
                          all.top - all.bottom + 2 * margin};
 }
 
-/* Of the bodies in question: that others are cut off is meant. */
-static int count_outside(const Strip *strip, const Trajectory *run, int frame, const WorldWindow *window) {
-    const FigureSpec *spec = strip->spec;
-    if (spec->body_count == 0) return run_count_outside(run, frame, window);
-    int count = 0;
-    for (int i = 0; i < spec->body_count; i++)
-        count += !run->fixed[spec->bodies[i]] && run_is_outside(run, frame, spec->bodies[i], window);
-    return count;
-}
-
-/* "2 out of view", in lines as wide as a cell; empty if all are there. */
+/* "2 out of view", in lines as wide as a cell; empty if all are there. Of the bodies in question, if some are: that
+   others are cut off is meant. */
 static WrappedText note_of(const Strip *strip, int row, int column) {
+    const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
-    const int outside = count_outside(strip, strip->spec->runs[row], strip->frames[column], &cells->window);
+    const Trajectory *run = spec->runs[row];
+    const int frame = strip->frames[column];
+    int outside = spec->body_count == 0 ? run_count_outside(run, frame, &cells->window) : 0;
+    for (int i = 0; i < spec->body_count; i++)
+        outside += !run->fixed[spec->bodies[i]] && run_is_outside(run, frame, spec->bodies[i], &cells->window);
     if (outside == 0) return (WrappedText){.lines = 0};
-    return wrap_text(text_points("of view", SMALL_TYPE * strip->spec->points, cells->width), cells->width,
-                     "%d out of view", outside);
+    return wrap_text(text_points("of view", SMALL_TYPE * spec->points, cells->width), cells->width, "%d out of view",
+                     outside);
 }
 
 /* The name of a row's run: beside the row in lines as long as its cells are high, or above it. */
@@ -302,25 +279,6 @@ static bool fits_beside(const Strip *strip, int row) {
     return strip_name(strip, row).lines <= 2;
 }
 
-static const double smallest_time = 0.7; /* share of the font size */
-
-/* Of the times above the columns: smaller where these are narrow. */
-static double time_points(const Strip *strip) {
-    const double widest = type_width("0.00 s ", strip->spec->points);
-    return strip->spec->points * fmin(1, (strip->cells.width + strip_gap) / widest);
-}
-
-static bool check_cell(const Strip *strip, double width, double height, Error *error) {
-    const FigureSpec *spec = strip->spec;
-    const double least = 5, time = smallest_time * type_width("0.00 s ", spec->points) - strip_gap;
-    return (width >= fmax(least, time) && height >= least) ||
-           error_input(error, "figure",
-                       "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
-                       "%.1f x %g mm are needed at a font size of %g",
-                       strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, fmax(least, time),
-                       least, spec->points);
-}
-
 /* Cells in the room that names and notes leave. */
 static bool lay_out_cells(Strip *strip, Error *error) {
     const FigureSpec *spec = strip->spec;
@@ -333,7 +291,14 @@ static bool lay_out_cells(Strip *strip, Error *error) {
     const double height = (high - (runs - 1) * strip_gap - texts) / runs;
     WorldWindow window = run_window(spec, strip->frames, strip->count);
     if (spec->body_count > 0) window = window_of_bodies(strip);
-    if (!check_cell(strip, width, height, error)) return false;
+    const double least = 5, smallest_time = 0.7; /* mm; share of the font size */
+    const double narrowest = fmax(least, smallest_time * type_width("0.00 s ", spec->points) - strip_gap);
+    if (!(width >= narrowest && height >= least))
+        return error_input(error, "figure",
+                           "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
+                           "%.1f x %g mm are needed at a font size of %g",
+                           strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, narrowest,
+                           least, spec->points);
     if (spec->height > 0) run_window_fill(&window, width / height);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
     if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
@@ -343,7 +308,7 @@ static bool lay_out_cells(Strip *strip, Error *error) {
 }
 
 /* False if it had to. */
-static bool figure_runs_grow(int *lines, int needed) {
+static bool grow(int *lines, int needed) {
     const bool enough = needed <= *lines;
     if (!enough) *lines = needed;
     return enough;
@@ -359,21 +324,12 @@ static bool lay_out_lines(Strip *strip, Error *error) {
         for (int row = 0; row < strip->spec->run_count; row++) {
             if (!strip->above && !fits_beside(strip, row))
                 return error_input(error, "figure", "the names have no room beside the rows");
-            enough &= figure_runs_grow(&strip->name_lines, strip_name(strip, row).lines);
+            enough &= grow(&strip->name_lines, strip_name(strip, row).lines);
             for (int column = 0; column < strip->count; column++)
-                enough &= figure_runs_grow(&strip->note_lines[row], note_of(strip, row, column).lines);
+                enough &= grow(&strip->note_lines[row], note_of(strip, row, column).lines);
         }
         if (enough) return true;
     }
-}
-
-/* Names stand beside their rows if all have room there. */
-static bool strip_lay_out(Strip *strip, Error *error) {
-    if (lay_out_lines(strip, error) || error->kind != ERROR_INPUT) return error->kind == ERROR_NONE;
-    run_cells_free(&strip->cells);
-    *error = (Error){0};
-    strip->above = true;
-    return lay_out_lines(strip, error);
 }
 
 static Point cell_corner(const Strip *strip, int row, int column) {
@@ -381,18 +337,6 @@ static Point cell_corner(const Strip *strip, int row, int column) {
     const int below = strip->spec->run_count - 1 - row;
     return (Point){strip->start + column * (cells->width + strip_gap),
                    strip->foot + below * row_pitch(strip) + room_of_notes(strip, row, strip->spec->run_count)};
-}
-
-static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, Error *error) {
-    RunCells cells = strip->cells;
-    const Point low = cell_corner(strip, row, column);
-    const WrappedText note = note_of(strip, row, column);
-    if (!run_cells_draw(&cells, sketch, low, strip->spec->runs[row], strip->frames[column], &strip->colours[row],
-                        error))
-        return false;
-    run_cells_frame(&cells, sketch, low);
-    if (note.lines > 0) draw_wrapped(sketch, (Point){low.x, low.y - 0.6 * line_height(note.points)}, INK_SOFT, &note);
-    return true;
 }
 
 static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
@@ -409,10 +353,13 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
         else
             sketch_lines(sketch, first, &turned, name.text);
     }
+    /* Times above the columns, smaller where these are narrow. */
+    const double widest = type_width("0.00 s ", spec->points);
+    const double time_points = spec->points * fmin(1, (cells->width + strip_gap) / widest);
     for (int column = 0; column < strip->count; column++) {
         const Point low = cell_corner(strip, 0, column);
         sketch_text(sketch, (Point){low.x + cells->width / 2, low.y + above + strip->top / 2},
-                    &(TextStyle){time_points(strip), TEXT_CENTER, INK, 0, false}, "%.2f s",
+                    &(TextStyle){time_points, TEXT_CENTER, INK, 0, false}, "%.2f s",
                     strip->frames[column] * (double)spec->runs[0]->dt);
     }
     run_cells_draw_scale_bar(cells, sketch, (Point){strip->start, strip->foot / 2 - 0.3}, spec->points);
@@ -421,12 +368,28 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
 static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
     bool done = run_colours(spec, strip.colours, error) && run_check_worlds(spec, error) &&
-                run_check_bodies(spec, error) &&
-                run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error) && strip_lay_out(&strip, error);
+                run_check_bodies(spec, error) && run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error);
+    if (!done) return false;
+    /* Names stand beside their rows if all have room there. */
+    done = lay_out_lines(&strip, error);
+    if (!done && error->kind == ERROR_INPUT) {
+        run_cells_free(&strip.cells);
+        *error = (Error){0};
+        strip.above = true;
+        done = lay_out_lines(&strip, error);
+    }
     if (done) sketch_begin(sketch, spec->width, strip_height(&strip));
     for (int row = 0; done && row < spec->run_count; row++)
-        for (int column = 0; done && column < strip.count; column++)
-            done = draw_cell(&strip, sketch, row, column, error);
+        for (int column = 0; done && column < strip.count; column++) {
+            const Point low = cell_corner(&strip, row, column);
+            const WrappedText note = note_of(&strip, row, column);
+            done = run_cells_draw(&strip.cells, sketch, low, spec->runs[row], strip.frames[column], &strip.colours[row],
+                                  error);
+            if (!done) break;
+            run_cells_frame(&strip.cells, sketch, low);
+            if (note.lines > 0)
+                draw_wrapped(sketch, (Point){low.x, low.y - 0.6 * line_height(note.points)}, INK_SOFT, &note);
+        }
     if (done) strip_draw_texts(&strip, sketch);
     run_cells_free(&strip.cells);
     return done;

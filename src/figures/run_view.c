@@ -58,7 +58,7 @@ static int by_size(const void *a, const void *b) {
 }
 
 /* The contacts inside the cell, largest impulse first. NULL if out of memory. */
-static ShownContact *run_view_gather(const Trajectory *run, int step, const View *view, int *count) {
+static ShownContact *gather_contacts(const Trajectory *run, int step, const View *view, int *count) {
     int64_t first = run->contact_start[step], end = run->contact_start[step + 1];
     ShownContact *shown = malloc((size_t)(end - first + 1) * sizeof *shown);
     *count = 0;
@@ -100,60 +100,33 @@ void draw_contact_sample(Sketch *sketch, Point left, const ContactLook *look) {
                 &(TextStyle){SMALL_TYPE * look->points, TEXT_LEFT, INK, 0, false}, "%s", contact_words);
 }
 
-static void draw_contact(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
-    const Point at = contact->at, tip = arrow_tip(look, contact);
-    const double ring = look->ring, x = NORMAL_RINGS * ring * (double)contact->normal.x,
-                 y = NORMAL_RINGS * ring * (double)contact->normal.y;
-    draw_contact_point(sketch, at, (Point){x, y}, ring);
-    label_add_box(field, (PageBox){at.x - ring, at.y - ring, at.x + ring, at.y + ring});
-    label_add_segment(field, (Segment){at.x - x, at.y - y, at.x + x, at.y + y});
-    if (contact->size * look->arrow_scale < min_arrow) return;
-    sketch_arrow(sketch, at, tip, HEAD_AT_END, ACCENT, 2.4);
-    label_add_segment(field, (Segment){at.x, at.y, tip.x, tip.y});
-}
-
-/* Three significant digits, or "0". */
-static void format_number(char text[32], double value) {
-    if (value < 0.005) {
-        snprintf(text, 32, "0");
-        return;
-    }
-    int decimals = value >= 99.95 ? 0 : value >= 9.995 ? 1 : 2;
-    snprintf(text, 32, "%.*f", decimals, value);
-}
-
-/* Finds a place beside the arrow's tip, or beside the point, with a line to it if it is not near. */
-static bool place_number(const ContactLook *look, const ShownContact *contact, LabelField *field, LabelWish wish,
-                         PageBox *box, Segment *leader, bool *led) {
-    const Point tip = arrow_tip(look, contact);
-    const bool arrow = contact->size * look->arrow_scale >= long_arrow;
-    *led = false;
-    if (arrow && label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, false, box)) return true;
-    if (label_place_led(field, &wish, box, leader, led)) return true;
-    wish.nearest = 0;
-    return label_place_led(field, &wish, box, leader, led);
-}
-
-/* Numbers stand outside the pile of contacts, whose middle is at `middle`. */
+/* Three significant digits, or "0", outside the pile of contacts, whose middle is at `middle`: beside the arrow's tip, or
+   beside the point, with a line to it if it is not near. False if there is no room. */
 static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field,
                         double middle, bool crowded) {
-    const double points = SMALL_TYPE * look->points, em = points * MM_PER_POINT;
-    const double farthest = contact->size >= large_share * look->largest ? 30 : 12;
+    const double points = SMALL_TYPE * look->points, em = points * MM_PER_POINT, value = contact->size;
+    const double farthest = value >= large_share * look->largest ? 30 : 12;
+    const bool arrow = value * look->arrow_scale >= long_arrow;
+    const Point tip = arrow_tip(look, contact);
     char text[32];
     PageBox box;
     Segment leader;
-    bool led;
-    format_number(text, contact->size);
-    const LabelWish wish = {.x = contact->at.x,
-                            .y = contact->at.y,
-                            .clear = look->ring,
-                            .nearest = crowded ? crowd : 0,
-                            .farthest = farthest,
-                            .width = type_width(text, points) + 0.4 * em,
-                            .height = 1.15 * em,
-                            .left = contact->at.x < middle,
-                            .shelf = true};
-    if (!place_number(look, contact, field, wish, &box, &leader, &led)) return false;
+    bool led = false;
+    snprintf(text, sizeof text, "%.*f", value < 0.005 || value >= 99.95 ? 0 : value >= 9.995 ? 1 : 2, value);
+    LabelWish wish = {.x = contact->at.x,
+                      .y = contact->at.y,
+                      .clear = look->ring,
+                      .nearest = crowded ? crowd : 0,
+                      .farthest = farthest,
+                      .width = type_width(text, points) + 0.4 * em,
+                      .height = 1.15 * em,
+                      .left = contact->at.x < middle,
+                      .shelf = true};
+    if ((!arrow || !label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, false, &box)) &&
+        !label_place_led(field, &wish, &box, &leader, &led)) {
+        wish.nearest = 0;
+        if (!label_place_led(field, &wish, &box, &leader, &led)) return false;
+    }
     const Pen thin = pen_line(ACCENT, 0.8, NULL);
     if (led) draw_leader(sketch, &leader, &box, &thin);
     sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
@@ -161,33 +134,36 @@ static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownCont
     return true;
 }
 
-/* Another contact is so near that a number between them could belong to either. */
-static bool is_crowded(const ShownContact *contacts, int count, int contact) {
-    for (int i = 0; i < count; i++)
-        if (i != contact &&
-            hypot(contacts[i].at.x - contacts[contact].at.x, contacts[i].at.y - contacts[contact].at.y) < crowd)
-            return true;
-    return false;
-}
-
-static double middle_of(const ShownContact *contacts, int count) {
-    double sum = 0;
-    for (int i = 0; i < count; i++) sum += contacts[i].at.x;
-    return sum / fmax(count, 1);
-}
-
 bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
                    int *count, int *numbered, Error *error) {
-    ShownContact *contacts = run_view_gather(run, step, view, count);
+    ShownContact *contacts = gather_contacts(run, step, view, count);
     LabelField *field = calloc(1, sizeof *field);
     const bool done = (contacts != NULL && field != NULL) || error_memory(error, "figure");
+    const double ring = look->ring;
+    double middle = 0;
     *numbered = 0;
-    if (done) {
-        field->frame = (PageBox){view->low.x + 0.3, view->low.y + 0.3, view->high.x - 0.3, view->high.y - 0.3};
-        for (int i = *count - 1; i >= 0; i--) draw_contact(look, sketch, &contacts[i], field);
-        const double middle = middle_of(contacts, *count);
-        for (int i = 0; i < *count && i < MAX_NUMBERS && !run->no_impulses; i++)
-            *numbered += draw_number(look, sketch, &contacts[i], field, middle, is_crowded(contacts, *count, i));
+    if (done) field->frame = (PageBox){view->low.x + 0.3, view->low.y + 0.3, view->high.x - 0.3, view->high.y - 0.3};
+    for (int i = *count - 1; done && i >= 0; i--) {
+        const ShownContact *contact = &contacts[i];
+        const Point at = contact->at, tip = arrow_tip(look, contact);
+        const double x = NORMAL_RINGS * ring * (double)contact->normal.x,
+                     y = NORMAL_RINGS * ring * (double)contact->normal.y;
+        draw_contact_point(sketch, at, (Point){x, y}, ring);
+        label_add_box(field, (PageBox){at.x - ring, at.y - ring, at.x + ring, at.y + ring});
+        label_add_segment(field, (Segment){at.x - x, at.y - y, at.x + x, at.y + y});
+        if (contact->size * look->arrow_scale < min_arrow) continue;
+        sketch_arrow(sketch, at, tip, HEAD_AT_END, ACCENT, 2.4);
+        label_add_segment(field, (Segment){at.x, at.y, tip.x, tip.y});
+    }
+    for (int i = 0; done && i < *count; i++) middle += contacts[i].at.x;
+    middle /= fmax(*count, 1);
+    for (int i = 0; done && i < *count && i < MAX_NUMBERS && !run->no_impulses; i++) {
+        /* Another contact is so near that a number between them could belong to either. */
+        bool crowded = false;
+        for (int k = 0; k < *count; k++)
+            crowded |=
+                k != i && hypot(contacts[k].at.x - contacts[i].at.x, contacts[k].at.y - contacts[i].at.y) < crowd;
+        *numbered += draw_number(look, sketch, &contacts[i], field, middle, crowded);
     }
     free(contacts);
     free(field);
