@@ -17,15 +17,11 @@ static const FigureKind *const kinds[] = {&figure_strip, &figure_annotated, &fig
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
 
-static bool check_contacts(const FigureKind *kind, const FigureSpec *spec, Error *error) {
+bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
     for (int i = 0; kind->needs_contacts && i < spec->run_count; i++)
         if (spec->runs[i]->no_contacts)
             return error_input(error, spec->paths[i], "the run has no contacts, which the kind %s shows", kind->name);
-    return true;
-}
-
-bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
-    if (!check_contacts(kind, spec, error) || !kind->draw(sketch, spec, error)) return false;
+    if (!kind->draw(sketch, spec, error)) return false;
     snprintf(sketch->title, sizeof sketch->title, "%s of %s", kind->name, spec->runs[0]->scene);
     for (int i = 0; i < spec->run_count; i++)
         text_add(sketch->title, sizeof sketch->title, "%s%s", i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
@@ -45,34 +41,22 @@ const FigureKind *figure_kind(const char *name, Error *error) {
     return NULL;
 }
 
-/* Characters with a meaning, and those that the font encoding OT1 has only in some fonts. */
-static const char *command_for(char character) {
-    switch (character) {
-    case '\\': return "\\textbackslash{}";
-    case '~': return "\\textasciitilde{}";
-    case '^': return "\\textasciicircum{}";
-    case '<': return "\\textless{}";
-    case '>': return "\\textgreater{}";
-    case '|': return "\\textbar{}";
-    default: return NULL;
-    }
-}
-
-/* Fonts join "--", "''", "``", ",,", "?`" and "!`" to one sign. */
-static int joins(char before, char character) {
-    return (before == character && strchr("-'`,", character) != NULL) ||
-           (character == '`' && (before == '?' || before == '!'));
-}
-
+/* Characters with a meaning, and those that the font encoding OT1 has only in some fonts, are commands. */
 void latex_text(FILE *out, const char *text) {
+    static const char *const commands[] = {
+        ['\\'] = "\\textbackslash{}", ['~'] = "\\textasciitilde{}", ['^'] = "\\textasciicircum{}",
+        ['<'] = "\\textless{}",       ['>'] = "\\textgreater{}",    ['|'] = "\\textbar{}"};
     for (char before = '\0'; *text != '\0'; before = *text++) {
-        const char *command = command_for(*text);
-        if (command != NULL) {
-            fputs(command, out);
+        const size_t code = (unsigned char)*text;
+        if (code < sizeof commands / sizeof *commands && commands[code] != NULL) {
+            fputs(commands[code], out);
             continue;
         }
         if (strchr("#$%&_{}", *text) != NULL) putc('\\', out);
-        if (before != '\0' && joins(before, *text)) fputs("{}", out);
+        /* Fonts join "--", "''", "``", ",,", "?`" and "!`" to one sign. */
+        if (before != '\0' &&
+            ((before == *text && strchr("-'`,", *text) != NULL) || (*text == '`' && (before == '?' || before == '!'))))
+            fputs("{}", out);
         putc(*text, out);
     }
 }
@@ -91,14 +75,6 @@ static const char *latex_between(int index, int count) {
 
 enum { TIMES_LISTED = 8 };
 
-/* The sweeps that the method's text leaves to the scene, or NULL. */
-static const char *sweeps_of_scene(Settings *all, const Trajectory *run) {
-    Method method;
-    Error ignored = {0};
-    const bool known = method_parse(&method, run->method, &ignored) && settings_get(&method.settings, "k") == NULL;
-    return known && method_all_settings(all, run->method, run->iterations) ? settings_get(all, "k") : NULL;
-}
-
 void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
     const MethodDescription *method = method_describe(run->method);
     const RunName shown = run_name(spec, run), name = run_method_name(spec, run);
@@ -114,7 +90,11 @@ void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
         latex_text(out, method->caption);
         if (run->program[0] != '\0') fputs(": ", out);
         latex_text(out, run->program);
-        const char *sweeps = sweeps_of_scene(&all, run);
+        /* The sweeps that the method's text leaves to the scene. */
+        Method known;
+        const bool left = method_parse(&known, run->method, &(Error){0}) && settings_get(&known.settings, "k") == NULL;
+        const char *sweeps =
+            left && method_all_settings(&all, run->method, run->iterations) ? settings_get(&all, "k") : NULL;
         if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
     }
     if (own || described) fputs(")", out);

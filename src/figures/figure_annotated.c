@@ -102,7 +102,7 @@ static int annotated_legend(const Annotated *figure, Sketch *sketch) {
             wrap_text(points, width - arrow - gap, "%g N s on the body with the higher number", shown);
         at = flow_place(&flow, arrow + gap + wrapped_width(&words), words.lines);
         if (sketch == NULL) return flow.row + 1;
-        sketch_arrow(sketch, at, (Point){at.x + arrow, at.y}, HEAD_AT_END, ACCENT, 2.4);
+        sketch_arrow(sketch, at, (Point){at.x + arrow, at.y}, ACCENT, 2.4);
         draw_wrapped(sketch, (Point){at.x + arrow + gap, at.y}, INK, &words);
     } else {
         const WrappedText words =

@@ -152,7 +152,7 @@ bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, co
         label_add_box(field, (PageBox){at.x - ring, at.y - ring, at.x + ring, at.y + ring});
         label_add_segment(field, (Segment){at.x - x, at.y - y, at.x + x, at.y + y});
         if (contact->size * look->arrow_scale < min_arrow) continue;
-        sketch_arrow(sketch, at, tip, HEAD_AT_END, ACCENT, 2.4);
+        sketch_arrow(sketch, at, tip, ACCENT, 2.4);
         label_add_segment(field, (Segment){at.x, at.y, tip.x, tip.y});
     }
     for (int i = 0; done && i < *count; i++) middle += contacts[i].at.x;

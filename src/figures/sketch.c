@@ -185,30 +185,21 @@ void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen) {
     sketch_shape(sketch, points, CORNERS, pen);
 }
 
-/* A filled arrow head with its tip at `to`, `head` mm long. */
-static void add_arrow_head(Sketch *sketch, Point from, Point to, double head, uint32_t colour) {
-    const double slimness = 0.325; /* tangent of half the tip's angle, 18 degrees */
-    double length = hypot(to.x - from.x, to.y - from.y);
-    Point along = {(to.x - from.x) / length, (to.y - from.y) / length};
-    Point foot = {to.x - head * along.x, to.y - head * along.y};
-    double half = slimness * head;
+void sketch_arrow(Sketch *sketch, Point from, Point to, uint32_t colour, double width) {
+    const double longest_head = 2.2, slimness = 0.325; /* tangent of half the tip's angle, 18 degrees */
+    const double length = hypot(to.x - from.x, to.y - from.y), head = fmin(longest_head, 0.6 * length);
+    if (!(length > 0)) return;
+    const Point along = {(to.x - from.x) / length, (to.y - from.y) / length};
+    const Point foot = {to.x - head * along.x, to.y - head * along.y};
+    const double half = slimness * head;
+    /* The line ends inside the head, so that the tip stays sharp. */
+    const Point line[] = {from,
+                          {to.x - 0.7 * head * (to.x - from.x) / length, to.y - 0.7 * head * (to.y - from.y) / length}};
     const Point corners[] = {
         to, {foot.x - half * along.y, foot.y + half * along.x}, {foot.x + half * along.y, foot.y - half * along.x}};
-    add_path(sketch, LAYER_ARROWS, corners, 3, true, &(Pen){colour, 1, NO_COLOUR, 0, NULL});
-}
-
-void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width) {
-    const double longest_head = 2.2;
-    double length = hypot(to.x - from.x, to.y - from.y), head = fmin(longest_head, 0.6 * length);
-    if (!(length > 0)) return;
-    /* The line ends inside its heads, so that the tips stay sharp. */
-    double in_x = 0.7 * head * (to.x - from.x) / length, in_y = 0.7 * head * (to.y - from.y) / length;
-    bool both = heads == HEADS_AT_BOTH;
-    const Point line[] = {{from.x + (both ? in_x : 0), from.y + (both ? in_y : 0)}, {to.x - in_x, to.y - in_y}};
     const Pen pen = pen_line(colour, width, NULL);
     add_path(sketch, LAYER_ARROWS, line, 2, false, &pen);
-    add_arrow_head(sketch, from, to, head, colour);
-    if (both) add_arrow_head(sketch, to, from, head, colour);
+    add_path(sketch, LAYER_ARROWS, corners, 3, true, &(Pen){colour, 1, NO_COLOUR, 0, NULL});
 }
 
 /* Keeps the part with sign * coordinate <= limit (Sutherland and Hodgman 1974). Adds at most one corner. */
@@ -265,17 +256,6 @@ static const double exponent_size = 0.75, exponent_rise = 0.4, exponent_gap = 0.
 /* "2·10", or "10" */
 static void format_base(char text[32], int digit) { snprintf(text, 32, digit == 1 ? "10" : "%d·10", digit); }
 
-/* "2·10⁻³" */
-static void format_power(char text[64], int digit, int power) {
-    static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    char digits[16], base[32];
-    snprintf(digits, sizeof digits, "%d", abs(power));
-    format_base(base, digit);
-    int used = snprintf(text, 64, "%s%s", base, power < 0 ? "⁻" : "");
-    for (const char *c = digits; *c != '\0' && used < 60; c++)
-        used += snprintf(text + used, (size_t)(64 - used), "%s", raised[*c - '0']);
-}
-
 double sketch_power_width(double points, int digit, int power) {
     char base[32];
     format_base(base, digit);
@@ -285,15 +265,19 @@ double sketch_power_width(double points, int digit, int power) {
 
 void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int digit, int power) {
     static const double shares[] = {[TEXT_LEFT] = 1, [TEXT_CENTER] = 0.5, [TEXT_RIGHT] = 0};
+    static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     const double em = style->points * MM_PER_POINT;
     TextStyle base = *style, exponent = *style;
     const ShownDecimals shown = show_decimals(power, 0);
-    char reads[64], text[32];
+    char reads[64], text[32], digits[16];
     base.align = exponent.align = TEXT_RIGHT;
     exponent.points *= exponent_size;
     at.x += shares[style->align] * sketch_power_width(style->points, digit, power);
-    format_power(reads, digit, power);
     format_base(text, digit);
+    /* "2·10⁻³" */
+    snprintf(digits, sizeof digits, "%d", abs(power));
+    snprintf(reads, sizeof reads, "%s%s", text, power < 0 ? "⁻" : "");
+    for (const char *c = digits; *c != '\0'; c++) text_add(reads, sizeof reads, "%s", raised[*c - '0']);
     const size_t before = sketch->mark_count;
     sketch_text(sketch, (Point){at.x - type_width(shown.text, exponent.points) - exponent_gap * em, at.y}, &base, "%s",
                 text);

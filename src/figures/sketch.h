@@ -176,9 +176,8 @@ void sketch_line(Sketch *sketch, Point from, Point to, const Pen *pen);
 void sketch_rectangle(Sketch *sketch, Point low, Point high, const Pen *pen);
 void sketch_dot(Sketch *sketch, Point at, double radius, const Pen *pen);
 
-/* A line with a head at its end or at both ends. */
-typedef enum ArrowHeads { HEAD_AT_END, HEADS_AT_BOTH } ArrowHeads;
-void sketch_arrow(Sketch *sketch, Point from, Point to, ArrowHeads heads, uint32_t colour, double width);
+/* A line with a head at its end. */
+void sketch_arrow(Sketch *sketch, Point from, Point to, uint32_t colour, double width);
 
 /* A box in world coordinates, clipped to the window. */
 void sketch_box(Sketch *sketch, const View *view, const Box *box, const Pen *pen);

@@ -64,24 +64,6 @@ static unsigned read_big_endian(const unsigned char *bytes, int count) {
     return value;
 }
 
-/* The table of an OpenType file that holds the outlines; PDF embeds it alone. */
-static const unsigned char *find_outlines(const FontFile *font, size_t *size) {
-    unsigned tables = read_big_endian(font->bytes + 4, 2);
-    for (unsigned i = 0; i < tables; i++) {
-        const unsigned char *entry = font->bytes + 12 + 16 * i;
-        if (memcmp(entry, "CFF ", 4) != 0) continue;
-        *size = read_big_endian(entry + 12, 4);
-        return font->bytes + read_big_endian(entry + 8, 4);
-    }
-    return NULL;
-}
-
-static int count_glyphs(const FontFile *font) {
-    int count = 0;
-    for (int i = 0; i < type_glyph_count; i++) count += type_regular.glyphs[i].index < font->glyphs;
-    return count;
-}
-
 /* The character of each glyph, so that text can be copied. */
 static bool write_to_unicode(Pdf *pdf, const FontFile *font) {
     enum { MAX_ENTRIES = 100 }; /* the maximum length of a list */
@@ -91,7 +73,8 @@ static bool write_to_unicode(Pdf *pdf, const FontFile *font) {
     if (map == NULL) return false;
     fprintf(map, "/CIDInit /ProcSet findresource begin\n12 dict begin\nbegincmap\n/CMapName /Inter def\n"
                  "/CMapType 2 def\n1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n");
-    int left = count_glyphs(font), listed = 0;
+    int left = 0, listed = 0;
+    for (int i = 0; i < type_glyph_count; i++) left += type_regular.glyphs[i].index < font->glyphs;
     for (int i = 0; i < type_glyph_count; i++) {
         const Glyph *glyph = &type_regular.glyphs[i];
         if (glyph->index >= font->glyphs) continue;
@@ -109,9 +92,17 @@ static bool write_to_unicode(Pdf *pdf, const FontFile *font) {
 
 /* Writes the objects FONT to TO_UNICODE. False if out of memory. */
 static bool pdf_write_font(Pdf *pdf) {
-    size_t size;
+    size_t size = 0;
     const FontFile font = sketch_font(pdf->sketch);
-    const unsigned char *outlines = find_outlines(&font, &size);
+    /* The table of an OpenType file that holds the outlines; PDF embeds it alone. */
+    const unsigned char *outlines = NULL;
+    const unsigned tables = read_big_endian(font.bytes + 4, 2);
+    for (unsigned i = 0; i < tables && outlines == NULL; i++) {
+        const unsigned char *entry = font.bytes + 12 + 16 * i;
+        if (memcmp(entry, "CFF ", 4) != 0) continue;
+        size = read_big_endian(entry + 12, 4);
+        outlines = font.bytes + read_big_endian(entry + 8, 4);
+    }
     pdf_begin_object(pdf, FONT);
     fprintf(pdf->file,
             "<</Type/Font/Subtype/Type0/BaseFont/TWNBOX+Inter/Encoding/Identity-H/DescendantFonts[%d 0 R]"
@@ -217,11 +208,16 @@ static void write_text(FILE *content, const Sketch *sketch, const SketchMark *ma
     if (mark->has_reads) fprintf(content, "EMC\n");
 }
 
-static void write_marks(FILE *content, const Sketch *sketch, const SketchOutput *output, const size_t *order) {
+static bool write_content(Pdf *pdf, const SketchOutput *output, const size_t *order) {
+    const Sketch *sketch = pdf->sketch;
     const double points = 1 / MM_PER_POINT;
+    char *text = NULL;
+    size_t size = 0;
+    int image = 0;
+    FILE *content = memory_stream(&text, &size);
+    if (content == NULL) return false;
     fprintf(content, "%.6f 0 0 %.6f 0 0 cm\n", points, points);
     if (!output->transparent) fprintf(content, "1 1 1 rg 0 0 %.3f %.3f re f\n", sketch->width, sketch->height);
-    int image = 0;
     for (size_t i = 0; i < sketch->mark_count; i++) {
         const SketchMark *mark = &sketch->marks[order[i]];
         switch (mark->kind) {
@@ -233,14 +229,6 @@ static void write_marks(FILE *content, const Sketch *sketch, const SketchOutput 
         case MARK_TEXT: write_text(content, sketch, mark); break;
         }
     }
-}
-
-static bool write_content(Pdf *pdf, const SketchOutput *output, const size_t *order) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *content = memory_stream(&text, &size);
-    if (content == NULL) return false;
-    write_marks(content, pdf->sketch, output, order);
     bool whole = !ferror(content);
     whole = fclose(content) == 0 && whole && pdf_write_stream(pdf, CONTENT, "", text, size);
     free(text);
@@ -304,37 +292,32 @@ static void write_page(Pdf *pdf, int images) {
     fprintf(file, ">>>>>>\nendobj\n");
 }
 
-static void write_trailer(Pdf *pdf) {
-    size_t start = (size_t)ftell(pdf->file);
-    fprintf(pdf->file, "xref\n0 %d\n0000000000 65535 f \n", pdf->count);
-    for (int i = 1; i < pdf->count; i++) fprintf(pdf->file, "%010zu 00000 n \n", pdf->offsets[i]);
-    fprintf(pdf->file, "trailer\n<</Size %d/Root %d 0 R/Info %d 0 R>>\nstartxref\n%zu\n%%%%EOF\n", pdf->count, CATALOG,
-            INFO, start);
-}
-
-/* Its title: a date or a program's version would change the bytes. */
-static void write_info(Pdf *pdf) {
-    pdf_begin_object(pdf, INFO);
-    fprintf(pdf->file, "<<");
-    if (pdf->sketch->title[0] != '\0') {
-        fprintf(pdf->file, "/Title");
-        pdf_put_text(pdf->file, pdf->sketch->title);
-    }
-    fprintf(pdf->file, ">>\nendobj\n");
-}
-
 static bool write_document(Pdf *pdf, const SketchOutput *output, int images) {
+    FILE *file = pdf->file;
     size_t *order = sketch_order(pdf->sketch);
     bool whole = order != NULL;
-    fprintf(pdf->file, "%%PDF-1.5\n%%\xE2\xE3\xCF\xD3\n");
+    fprintf(file, "%%PDF-1.5\n%%\xE2\xE3\xCF\xD3\n");
     if (whole) {
         write_page(pdf, images);
-        write_info(pdf);
+        /* Of the document's information only the title: a date or a program's version would change the bytes. */
+        pdf_begin_object(pdf, INFO);
+        fprintf(file, "<<");
+        if (pdf->sketch->title[0] != '\0') {
+            fprintf(file, "/Title");
+            pdf_put_text(file, pdf->sketch->title);
+        }
+        fprintf(file, ">>\nendobj\n");
         whole = write_content(pdf, output, order) && pdf_write_font(pdf) && write_images(pdf, order);
     }
-    if (whole) write_trailer(pdf);
+    if (whole) {
+        const size_t start = (size_t)ftell(file);
+        fprintf(file, "xref\n0 %d\n0000000000 65535 f \n", pdf->count);
+        for (int i = 1; i < pdf->count; i++) fprintf(file, "%010zu 00000 n \n", pdf->offsets[i]);
+        fprintf(file, "trailer\n<</Size %d/Root %d 0 R/Info %d 0 R>>\nstartxref\n%zu\n%%%%EOF\n", pdf->count, CATALOG,
+                INFO, start);
+    }
     free(order);
-    return whole && !ferror(pdf->file);
+    return whole && !ferror(file);
 }
 
 char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error) {

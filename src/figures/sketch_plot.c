@@ -120,22 +120,6 @@ static void add_steps(PlotTicks *ticks, const PlotAxis *axis, double step) {
     }
 }
 
-static void choose_steps(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
-    const double most_steps = 8, length = fabs(axis->high - axis->low);
-    char text[48];
-    if (length == 0) {
-        snprintf(text, sizeof text, "%.4g", axis->low);
-        plot_tick_add(ticks, axis->low, false, text);
-        return;
-    }
-    double step = round_up(length / most_steps);
-    for (int i = 0; i < 10; i++, step = round_up(1.5 * step)) {
-        ticks->count = 0;
-        add_steps(ticks, axis, step);
-        if (!is_crowded(ticks, axis, points, across)) return;
-    }
-}
-
 /* Numbers at these digits in every `step`-th decade. */
 static void add_decades(PlotTicks *ticks, const PlotAxis *axis, const char *digits, int step) {
     const double decade_length = fabs(axis->to - axis->from) / fabs(log10(axis->high / axis->low));
@@ -155,34 +139,38 @@ static void add_decades(PlotTicks *ticks, const PlotAxis *axis, const char *digi
         }
 }
 
-static void choose_decades(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
-    const bool short_axis = log10(axis->high / axis->low) < long_axis;
-    for (int step = short_axis ? 0 : 1; step <= 12; step++) {
-        ticks->count = 0;
-        if (axis->zero > 0) plot_tick_add(ticks, axis->zero, false, "0");
-        add_decades(ticks, axis, step == 0 ? "125" : "1", step == 0 ? 1 : step);
-        if (!is_crowded(ticks, axis, points, across)) return;
+/* The densest ticks whose numbers have room. */
+void plot_ticks_choose(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
+    const double most_steps = 8, length = fabs(axis->high - axis->low);
+    const bool short_axis = axis->scale == PLOT_LOG && log10(axis->high / axis->low) < long_axis;
+    const int last = axis->scale == PLOT_LINEAR ? 10 : 12;
+    double width = round_up(length / most_steps); /* of a step of a linear axis */
+    char text[48];
+    ticks->count = 0;
+    if (axis->scale == PLOT_LINEAR && length == 0) {
+        snprintf(text, sizeof text, "%.4g", axis->low);
+        plot_tick_add(ticks, axis->low, false, text);
+        return;
     }
-}
-
-static void choose_doublings(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
-    for (int step = 1; step <= 12; step++) {
+    for (int step = short_axis ? 0 : 1; step <= last; step++) {
         ticks->count = 0;
-        for (int power = 0; power <= 30; power += step) {
-            char text[48];
-            snprintf(text, sizeof text, "%d", 1 << power);
-            if (is_on(axis, 1 << power)) plot_tick_add(ticks, 1 << power, false, text);
+        switch (axis->scale) {
+        case PLOT_LINEAR:
+            add_steps(ticks, axis, width);
+            width = round_up(1.5 * width);
+            break;
+        case PLOT_LOG:
+            if (axis->zero > 0) plot_tick_add(ticks, axis->zero, false, "0");
+            add_decades(ticks, axis, step == 0 ? "125" : "1", step == 0 ? 1 : step);
+            break;
+        case PLOT_DOUBLING:
+            for (int power = 0; power <= 30; power += step) {
+                snprintf(text, sizeof text, "%d", 1 << power);
+                if (is_on(axis, 1 << power)) plot_tick_add(ticks, 1 << power, false, text);
+            }
+            break;
         }
         if (!is_crowded(ticks, axis, points, across)) return;
-    }
-}
-
-void plot_ticks_choose(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
-    ticks->count = 0;
-    switch (axis->scale) {
-    case PLOT_LINEAR: choose_steps(ticks, axis, points, across); break;
-    case PLOT_LOG: choose_decades(ticks, axis, points, across); break;
-    case PLOT_DOUBLING: choose_doublings(ticks, axis, points, across); break;
     }
 }
 
@@ -226,33 +214,25 @@ static void draw_polygon(Sketch *sketch, Point at, int symbol, double radius, co
     sketch_shape(sketch, corners, count, pen);
 }
 
-static void draw_strokes(Sketch *sketch, Point at, const PlotStyle *style, double radius, double line) {
-    const Pen pen = pen_line(style->colour, line, NULL);
-    for (int i = 0; i < 4; i++) {
-        if ((style->symbol == PLOT_PLUS && i % 2 == 1) || (style->symbol == PLOT_CROSS && i % 2 == 0)) continue;
-        const double x = radius * cos(M_PI / 4 * i), y = radius * sin(M_PI / 4 * i);
-        sketch_line(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y}, &pen);
-    }
-}
-
-static void draw_bar(Sketch *sketch, Point at, const PlotStyle *style, double radius) {
-    const double across = 0.4 * radius; /* an upright bar is seen behind a dot */
-    const double x = style->symbol == PLOT_LEVEL ? 1.4 * radius : across;
-    const double y = style->symbol == PLOT_LEVEL ? across : 2 * radius;
-    sketch_rectangle(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y},
-                     &(Pen){style->colour, 1, NO_COLOUR, 0, NULL});
-}
-
 void plot_mark(Sketch *sketch, Point at, const PlotStyle *style, double radius, double line) {
-    if (style->symbol >= PLOT_UPRIGHT)
-        draw_bar(sketch, at, style, radius);
-    else if (style->symbol >= METHOD_SYMBOLS)
-        draw_strokes(sketch, at, style, radius, line);
-    else if (style->open) {
-        const Pen pen = {NO_COLOUR, 1, style->colour, line, NULL};
-        draw_polygon(sketch, at, style->symbol, radius - line * LINE_UNIT / 2, &pen);
-    } else
-        draw_polygon(sketch, at, style->symbol, radius, &(Pen){style->colour, 1, NO_COLOUR, 0, NULL});
+    const Pen stroke = pen_line(style->colour, line, NULL), open = {NO_COLOUR, 1, style->colour, line, NULL},
+              fill = {style->colour, 1, NO_COLOUR, 0, NULL};
+    if (style->symbol >= PLOT_UPRIGHT) {
+        const double across = 0.4 * radius; /* an upright bar is seen behind a dot */
+        const double x = style->symbol == PLOT_LEVEL ? 1.4 * radius : across;
+        const double y = style->symbol == PLOT_LEVEL ? across : 2 * radius;
+        sketch_rectangle(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y}, &fill);
+    } else if (style->symbol >= METHOD_SYMBOLS) {
+        for (int i = 0; i < 4; i++) {
+            if ((style->symbol == PLOT_PLUS && i % 2 == 1) || (style->symbol == PLOT_CROSS && i % 2 == 0)) continue;
+            const double x = radius * cos(M_PI / 4 * i), y = radius * sin(M_PI / 4 * i);
+            sketch_line(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y}, &stroke);
+        }
+    } else if (style->open) {
+        draw_polygon(sketch, at, style->symbol, radius - line * LINE_UNIT / 2, &open);
+    } else {
+        draw_polygon(sketch, at, style->symbol, radius, &fill);
+    }
 }
 
 void plot_marks(Sketch *sketch, const Point *points, int count, const PlotStyle *style) {
@@ -270,12 +250,8 @@ void label_add_segment(LabelField *field, Segment segment) {
     if (field->segment_count < LABEL_MAX_SEGMENTS) field->segments[field->segment_count++] = segment;
 }
 
-static bool boxes_touch(const PageBox *a, const PageBox *b) {
-    return a->left < b->right && b->left < a->right && a->bottom < b->top && b->bottom < a->top;
-}
-
 /* Clips [*from, *to], the range of t for which p + t d is in [low, high], along one axis. */
-static void sketch_plot_clip(double p, double d, double low, double high, double *from, double *to) {
+static void clip(double p, double d, double low, double high, double *from, double *to) {
     if (d == 0) {
         if (p < low || p > high) *to = -1;
         return;
@@ -288,8 +264,8 @@ static void sketch_plot_clip(double p, double d, double low, double high, double
 /* Liang and Barsky 1984. */
 static bool crosses(const Segment *s, const PageBox *box) {
     double from = 0, to = 1;
-    sketch_plot_clip(s->x0, s->x1 - s->x0, box->left, box->right, &from, &to);
-    sketch_plot_clip(s->y0, s->y1 - s->y0, box->bottom, box->top, &from, &to);
+    clip(s->x0, s->x1 - s->x0, box->left, box->right, &from, &to);
+    clip(s->y0, s->y1 - s->y0, box->bottom, box->top, &from, &to);
     return from < to;
 }
 
@@ -297,8 +273,12 @@ static bool is_free(const LabelField *field, const PageBox *box) {
     const PageBox *frame = &field->frame;
     if (box->left < frame->left || box->right > frame->right || box->bottom < frame->bottom || box->top > frame->top)
         return false;
-    for (int i = 0; i < field->box_count; i++)
-        if (boxes_touch(box, &field->boxes[i])) return false;
+    for (int i = 0; i < field->box_count; i++) {
+        const PageBox *other = &field->boxes[i];
+        if (box->left < other->right && other->left < box->right && box->bottom < other->top &&
+            other->bottom < box->top)
+            return false;
+    }
     return true;
 }
 
@@ -312,26 +292,22 @@ static int crossed(const LabelField *field, const PageBox *box) {
     return count;
 }
 
-/* Right, left, above, below, then the corners. -1, 0, 1: the side of the mark. */
-static const struct { int x, y; } sides[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
-
-static PageBox box_beside(double x, double y, int side, double distance, double width, double height) {
-    /* Diagonally, both offsets contribute. */
-    double reach = sides[side].x != 0 && sides[side].y != 0 ? 0.6 * distance : distance;
-    double centre_x = x + sides[side].x * (reach + width / 2), centre_y = y + sides[side].y * (reach + height / 2);
-    return (PageBox){centre_x - width / 2, centre_y - height / 2, centre_x + width / 2, centre_y + height / 2};
-}
-
 bool label_fits(const LabelField *field, const PageBox *box) { return is_free(field, box) && crossed(field, box) == 0; }
 
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
                  PageBox *place) {
+    /* Right, left, above, below, then the corners. -1, 0, 1: the side of the mark. */
+    static const struct { int x, y; } sides[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
     /* A label farther away would seem to belong to another mark. */
     double farthest = must ? 6 * distance : 1.5 * distance;
     int fewest = -1;
     for (double d = distance; d <= farthest; d += 0.25 * distance)
         for (int side = 0; side < (int)(sizeof sides / sizeof *sides); side++) {
-            PageBox box = box_beside(x, y, side, d, width, height);
+            /* Diagonally, both offsets contribute. */
+            const double reach = sides[side].x != 0 && sides[side].y != 0 ? 0.6 * d : d;
+            const double at_x = x + sides[side].x * (reach + width / 2),
+                         at_y = y + sides[side].y * (reach + height / 2);
+            const PageBox box = {at_x - width / 2, at_y - height / 2, at_x + width / 2, at_y + height / 2};
             if (!is_free(field, &box)) continue;
             int count = crossed(field, &box);
             if ((count > 0 && !must) || (fewest >= 0 && count >= fewest)) continue;
@@ -342,20 +318,8 @@ bool label_place(LabelField *field, double x, double y, double distance, double 
     return fewest >= 0;
 }
 
-/* From one side to the other around the mark: 16 directions, the sides first. */
-static double angle_of(int direction, bool left) {
-    static const int order[] = {0, 1, 15, 2, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8};
-    const double angle = order[direction] * M_PI / 8;
-    return left ? M_PI - angle : angle;
-}
-
 static double turn(double ax, double ay, double bx, double by, double cx, double cy) {
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-}
-
-static bool segments_cross(const Segment *a, const Segment *b) {
-    return turn(a->x0, a->y0, a->x1, a->y1, b->x0, b->y0) * turn(a->x0, a->y0, a->x1, a->y1, b->x1, b->y1) < 0 &&
-           turn(b->x0, b->y0, b->x1, b->y1, a->x0, a->y0) * turn(b->x0, b->y0, b->x1, b->y1, a->x1, a->y1) < 0;
 }
 
 static double distance_to(const Segment *line, double x, double y) {
@@ -364,16 +328,18 @@ static double distance_to(const Segment *line, double x, double y) {
     return hypot(x - line->x0 - share * dx, y - line->y0 - share * dy);
 }
 
-/* Crossing, or ending on it: a line along another would hide it. */
-static bool segments_meet(const Segment *a, const Segment *b) {
-    return segments_cross(a, b) || distance_to(a, b->x0, b->y0) < clearance || distance_to(a, b->x1, b->y1) < clearance;
-}
-
 /* The mark's own box contains the start of its leader. */
 static bool line_is_free(const LabelField *field, const Segment *line, const LabelWish *wish) {
     const double reach = hypot(line->x1 - wish->x, line->y1 - wish->y);
-    for (int i = 0; i < field->segment_count && !wish->across; i++)
-        if (segments_meet(line, &field->segments[i])) return false;
+    const Segment *a = line;
+    for (int i = 0; i < field->segment_count && !wish->across; i++) {
+        const Segment *b = &field->segments[i];
+        const bool cross =
+            turn(a->x0, a->y0, a->x1, a->y1, b->x0, b->y0) * turn(a->x0, a->y0, a->x1, a->y1, b->x1, b->y1) < 0 &&
+            turn(b->x0, b->y0, b->x1, b->y1, a->x0, a->y0) * turn(b->x0, b->y0, b->x1, b->y1, a->x1, a->y1) < 0;
+        /* Or ending on it: a line along another would hide it. */
+        if (cross || distance_to(a, b->x0, b->y0) < clearance || distance_to(a, b->x1, b->y1) < clearance) return false;
+    }
     for (int i = wish->across ? field->crossable : 0; i < field->box_count; i++) {
         const PageBox *box = &field->boxes[i];
         const bool own = wish->x >= box->left && wish->x <= box->right && wish->y >= box->bottom && wish->y <= box->top;
@@ -382,34 +348,29 @@ static bool line_is_free(const LabelField *field, const Segment *line, const Lab
     return true;
 }
 
-static PageBox box_towards(const LabelWish *wish, double angle, double distance) {
-    const double x = wish->x + distance * cos(angle) + wish->width / 2 * cos(angle);
-    const double y = wish->y + distance * sin(angle) + wish->height / 2 * sin(angle);
-    return (PageBox){x - wish->width / 2, y - wish->height / 2, x + wish->width / 2, y + wish->height / 2};
-}
-
 /* Beside its label, a mark leads to the lower corner and along below: a line that ended at the middle of a number would
    be read as its minus sign. */
 static bool has_shelf(double from_y, const PageBox *box) { return from_y > box->bottom && from_y < box->top; }
 
-static Segment leader_to(const LabelWish *wish, const PageBox *box) {
-    const double x = fmin(fmax(wish->x, box->left), box->right);
-    const double y = wish->shelf && has_shelf(wish->y, box) && x != wish->x
-                         ? box->bottom
-                         : fmin(fmax(wish->y, box->bottom), box->top);
-    const double length = hypot(x - wish->x, y - wish->y), share = length > 0 ? fmin(1, wish->clear / length) : 1;
-    return (Segment){wish->x + share * (x - wish->x), wish->y + share * (y - wish->y), x, y};
-}
-
 bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, Segment *leader, bool *led) {
-    const double step = 0.6, shortest = 0.9, gap = 0.4;
+    /* From one side to the other around the mark: 16 directions, the sides first. */
+    static const int order[] = {0, 1, 15, 2, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8};
+    const double step = 0.6, shortest = 0.9, gap = 0.4, width = wish->width, height = wish->height;
     for (double distance = fmax(wish->clear + gap, wish->nearest); distance <= wish->farthest; distance += step)
         for (int direction = 0; direction < 16; direction++) {
-            *place = box_towards(wish, angle_of(direction, wish->left), distance);
-            *leader = leader_to(wish, place);
-            if (!is_free(field, place) || crossed(field, place) > 0 || !line_is_free(field, leader, wish)) continue;
+            const double turned = order[direction] * M_PI / 8, angle = wish->left ? M_PI - turned : turned;
+            const double middle_x = wish->x + distance * cos(angle) + width / 2 * cos(angle);
+            const double middle_y = wish->y + distance * sin(angle) + height / 2 * sin(angle);
+            *place =
+                (PageBox){middle_x - width / 2, middle_y - height / 2, middle_x + width / 2, middle_y + height / 2};
+            /* To the nearest point of the label, or to its corner. */
             const double x = fmin(fmax(wish->x, place->left), place->right);
             const double y = fmin(fmax(wish->y, place->bottom), place->top);
+            const double end = wish->shelf && has_shelf(wish->y, place) && x != wish->x ? place->bottom : y;
+            const double length = hypot(x - wish->x, end - wish->y),
+                         share = length > 0 ? fmin(1, wish->clear / length) : 1;
+            *leader = (Segment){wish->x + share * (x - wish->x), wish->y + share * (end - wish->y), x, end};
+            if (!is_free(field, place) || crossed(field, place) > 0 || !line_is_free(field, leader, wish)) continue;
             *led = hypot(x - wish->x, y - wish->y) - wish->clear > shortest;
             label_add_box(field, *place);
             if (*led) {

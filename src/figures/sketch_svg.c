@@ -141,13 +141,6 @@ static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark
     return true;
 }
 
-/* For texts; and the font, so that browsers show the same letters on every machine. */
-static void write_font(FILE *file, FontFile font) {
-    fprintf(file, "<style>@font-face{font-family:Inter;src:url(data:font/otf;base64,");
-    base64_put(file, (const char *)font.bytes, font.size);
-    fprintf(file, ")}</style>\n");
-}
-
 static bool write_head(FILE *file, const Sketch *sketch, const SketchOutput *output) {
     fprintf(file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.1\" "
@@ -161,7 +154,11 @@ static bool write_head(FILE *file, const Sketch *sketch, const SketchOutput *out
         fprintf(file, "</title>\n");
     }
     if (output->outlines) return write_glyphs(file, sketch);
-    write_font(file, sketch_font(sketch));
+    /* For texts the font, so that browsers show the same letters on every machine. */
+    const FontFile font = sketch_font(sketch);
+    fprintf(file, "<style>@font-face{font-family:Inter;src:url(data:font/otf;base64,");
+    base64_put(file, (const char *)font.bytes, font.size);
+    fprintf(file, ")}</style>\n");
     return true;
 }
 

@@ -139,7 +139,7 @@ enum { VELOCITY_A = 2, VELOCITY_B = 4 }; /* among the inputs */
 static Point draw_vector(Sketch *sketch, Point from, const float *v, uint32_t colour) {
     const double least = 1.5; /* mm */
     const Point to = {from.x + speed_scale * (double)v[0], from.y + speed_scale * (double)v[1]};
-    if (hypot(to.x - from.x, to.y - from.y) >= least) sketch_arrow(sketch, from, to, HEAD_AT_END, colour, 2.6);
+    if (hypot(to.x - from.x, to.y - from.y) >= least) sketch_arrow(sketch, from, to, colour, 2.6);
     return to;
 }
 
@@ -169,7 +169,7 @@ static void draw_key(Sketch *sketch) {
     const TextStyle words = {7.5, TEXT_LEFT, INK, 0, false};
     Point at = {split + 61, height - 11};
     for (int i = 0; i < 2; i++, at.y -= 5) {
-        sketch_arrow(sketch, at, (Point){at.x + 10 * speed_scale, at.y}, HEAD_AT_END, colours[i], 2.6);
+        sketch_arrow(sketch, at, (Point){at.x + 10 * speed_scale, at.y}, colours[i], 2.6);
         sketch_text(sketch, (Point){at.x + 13, at.y}, &words, "%s", arrows[i]);
     }
     sketch_scale_bar(sketch, at, speed_scale, 10, "m/s", 7.5);

@@ -106,12 +106,12 @@ static void draw_arrows_and_network(Sketch *sketch, const StepCounts *counts) {
     const double left = 1 + box_width / 2, right = left + 2 * column;
     for (int i = 0; i < 2; i++) {
         const double end = corner(i, 0).x + box_width, begin = corner(i + 1, 0).x;
-        sketch_arrow(sketch, (Point){end + 0.8, high}, (Point){begin - 0.8, high}, HEAD_AT_END, INK, 2);
-        sketch_arrow(sketch, (Point){begin - 0.8, low}, (Point){end + 0.8, low}, HEAD_AT_END, INK, 2);
+        sketch_arrow(sketch, (Point){end + 0.8, high}, (Point){begin - 0.8, high}, INK, 2);
+        sketch_arrow(sketch, (Point){begin - 0.8, low}, (Point){end + 0.8, low}, INK, 2);
     }
     const double top = low_row + box_height + 0.8, bottom = high_row - 0.8;
-    sketch_arrow(sketch, (Point){right, bottom}, (Point){right, top}, HEAD_AT_END, INK, 2);
-    sketch_arrow(sketch, (Point){left, top}, (Point){left, bottom}, HEAD_AT_END, INK, 2);
+    sketch_arrow(sketch, (Point){right, bottom}, (Point){right, top}, INK, 2);
+    sketch_arrow(sketch, (Point){left, top}, (Point){left, bottom}, INK, 2);
 
     const Pen pen = {NETWORK_COLOUR, 0.12, NETWORK_INK, 1.6, "(12,6)"};
     const Point from = {corner(1, 0).x - 20, 1}, to = {from.x + box_width + 40, 15};
@@ -121,7 +121,7 @@ static void draw_arrows_and_network(Sketch *sketch, const StepCounts *counts) {
     sketch_text(sketch, (Point){middle, 11}, &heading, "Neural network, in place of the solver");
     sketch_text(sketch, (Point){middle, 5}, &words, "%d predictions, one per touching pair: %d inputs, %d outputs",
                 counts->touching, PAIR_INPUTS, PAPER_OUTPUTS);
-    sketch_arrow(sketch, (Point){middle, to.y + 0.6}, (Point){middle, low_row - 0.8}, HEAD_AT_END, NETWORK_INK, 2);
+    sketch_arrow(sketch, (Point){middle, to.y + 0.6}, (Point){middle, low_row - 0.8}, NETWORK_INK, 2);
 }
 
 static bool draw_loop(Sketch *sketch, Scene *const scenes[ILLUSTRATION_SCENES], char caption[CAPTION_SIZE],

@@ -78,8 +78,7 @@ static void draw_path(Sketch *sketch, const View *view, const Trajectory *run, i
     }
     if (speed == 0) return;
     Vec2 tail = vec2_add(to, vec2_scale(clear / speed, v));
-    sketch_arrow(sketch, view_place(view, tail), view_place(view, vec2_add(tail, vec2_scale(seconds, v))), HEAD_AT_END,
-                 ACCENT, 2);
+    sketch_arrow(sketch, view_place(view, tail), view_place(view, vec2_add(tail, vec2_scale(seconds, v))), ACCENT, 2);
 }
 
 static bool draw_scene(Sketch *sketch, int i, const Scene *scene, int *boxes, int *step, Error *error) {

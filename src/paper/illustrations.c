@@ -158,7 +158,7 @@ static void draw_boxes(Sketch *sketch, const Collision *collision) {
                     &(TextStyle){8.5, TEXT_CENTER, ink_of(collision, i), 0, false}, "%s", name_of(collision, i));
     }
     sketch_arrow(sketch, view_place(&view, middle),
-                 view_place(&view, vec2_add(middle, vec2_scale(0.3f, manifold->normal))), HEAD_AT_END, ACCENT, 2.2);
+                 view_place(&view, vec2_add(middle, vec2_scale(0.3f, manifold->normal))), ACCENT, 2.2);
     for (int i = 0; i < 2; i++) {
         const Vec2 at = manifold->points[i].position, out = vec2_sub(at, middle);
         sketch_dot(sketch, view_place(&view, at), 0.9, &dot_pen);
