@@ -263,7 +263,7 @@ def try_case(program, sources, prepared, case, options):
     bench = Bench(program, sources, prepared, case)
     faults = bench.kills(options.most or case.most) if options.kills else [
         (call, n, mode) for call in options.call or CALLS for mode in MODES.get(call, ["fail"])
-        if not options.mode or mode in options.mode for n in bench.numbers(call, mode, options)]
+        for n in bench.numbers(call, mode, options)]
     tally, lines = collections.Counter(), []
     for call, n, mode in faults:
         result, finding = (bench.kill if options.kills else bench.fault)(call, n, mode)
@@ -305,7 +305,6 @@ def main():
     parser.add_argument("program")
     parser.add_argument("sources")
     parser.add_argument("--call", action="append", choices=[*CALLS, "system"])
-    parser.add_argument("--mode", action="append")
     parser.add_argument("--every", action="store_true")
     parser.add_argument("--sample", type=int, default=1)
     parser.add_argument("--kills", action="store_true")

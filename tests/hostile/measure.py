@@ -25,10 +25,8 @@ CASES = [
     (2, "its arrays take ", ["twins.npz"], "export @ -o x.csv"),
     (2, "body 0: its size must be finite and greater than 0", ["flat.npz"], "export @ -o x.csv"),
     (2, "array 'angular_velocity' has shape (50000, 99); expected (50000, 100)", ["run.npz"], "export @ -o x.csv"),
-    (2, "array 'angular_velocity' has shape", ["run.npz"], "compare @ @"),
     (2, "array 'contact_impulse' has shape (999999, 2); expected (1000000, 2)", ["contacts.npz"], "export @ -o x.csv"),
     (2, "array 'changes' has shape", ["dataset.npz"], "train @ -o x.npz"),
-    (2, "not a trajectory but a file of kind 'dataset'", ["dataset.npz"], "export @ -o x.csv"),
     (2, "array 'contact_warm' has shape (999999, 2); expected (1000000, 2)", ["problem.npz"], "solve @ --method engine"),
     (2, "has no array 'weights_1'", ["network.npz"], f"simulate {single} -m pair-net:network=@ -o x.npz"),
     (2, "has no array 'bomb_state_rows'", ["slots.npz"], f"simulate {single} -m scene-net:network=@ -o x.npz"),
@@ -36,17 +34,13 @@ CASES = [
     (1, "", ["small.png", "deep.png"], "compare @ @ --antialias --report report"),
     (1, "", ["interlaced.png", "small.png"], "compare @ @"),
     (1, "", ["wide.png", "small.png"], "compare @ @"),
-    (1, "", ["high.png", "small.png"], "compare @ @"),
     (2, "the picture has 40000 x 40000 pixels; at most 100000000", ["pixels.png", "small.png"], "compare @ @"),
     (2, "unexpected end of file", ["cut.png", "small.png"], "compare @ @"),
     (0, "", ["texts.png", "small.png"], "compare @ @"),
     (2, "empty.png: error: not a PNG file, or damaged", ["empty.png", "small.png"], "compare @ @"),
-    (2, "pixels.png: error: the picture has 40000 x 40000 pixels", ["pixels.png", "small.png", "grey.png"],
-     "compare --mask @ @ @"),
     (2, "deep.png: error: the mask has 10000 x 10000 pixels, but small.png has 8 x 8", ["deep.png", "small.png", "grey.png"],
      "compare --mask @ @ @"),
     (2, "not a regular file", ["/dev/zero", "small.png"], "compare @ @"),
-    (2, "not a regular file", ["/dev/zero"], "export @ -o x.csv"),
     (2, "not a regular file", ["/dev/zero"], "check @"),
     (2, "results.json: error: 'a.png' is there twice", ["copies/results.json"], "approve copies"),
     (2, "maximum parsing depth reached", ["deep/results.json"], "approve deep"),
@@ -55,9 +49,7 @@ CASES = [
     (2, "'failed' must be true or false", ["members/results.json"], "approve members"),
     (1, "", ["expected/manifest.json", "actual/manifest.json"], "compare expected actual"),
     (2, "nested at most 8 deep", ["line.yaml"], "check @"),
-    (2, "nested at most 8 deep", ["nested.yaml"], "check @"),
     (2, "a mapping must have at most 64 keys", ["keys.yaml"], "check @"),
-    (2, "the file is empty", ["comments.yaml"], "check @"),
     (2, "is not a key of a scene", ["folded.yaml"], "check @"),
     (2, "bodies.yaml:20001:", ["bodies.yaml"], "check @"),
     (2, "anchors (&) are not allowed", ["aliases.yaml"], "check @"),
@@ -131,55 +123,48 @@ def slowness():
     return least / YARDSTICK_SECONDS
 
 
-def check(case, idle):
-    """What is wrong with a case; "" if nothing."""
-    status, message, files, words = case
-    names = iter(files * 2)
-    arguments = [word.replace("@", next(names)) if "@" in word else word for word in words.split()]
-    size = sum(os.stat(name).st_size for name in files)
-    memory, budget, slow = MEMORY + PER_BYTE_MEMORY * size, CPU + PER_BYTE_CPU * size, first_slowness
+def check(status, message, words, files, budget, memory, address):
+    """What is wrong with a command; "" if nothing. Without a budget its time is not limited."""
+    slow = first_slowness
     for _ in range(ATTEMPTS):  # the first may have to load the program; others may be disturbed, as the yardstick then
-        found, errors, used, resident = measure(arguments, idle[0] + memory if limited else None)
-        if used <= slow * budget:
+        found, errors, used, resident = measure(words.split(), address)
+        if budget is None or used <= slow * budget:
             break
         slow = slowness()
-    seconds = slow * budget
+    resident -= idle[1]
     if verbose:
-        print(f"{used * 1000:6.0f} ms {(resident - idle[1]) / MiB:6.1f} MiB {size:9} bytes  {words}", flush=True)
+        print(f"{used * 1000:6.0f} ms {resident / MiB:6.1f} of {memory / MiB:.1f} MiB {size_of(files):9} bytes  {words}", flush=True)
     if found != status or message not in errors:
         return f"exit status {found}, not {status}, or no '{message}' in: {errors[:300]}"
-    if limited and used > seconds:
-        return f"{used * 1000:.0f} ms of processor time, not {seconds * 1000:.0f}"
-    if limited and resident > idle[1] + memory:
-        return f"{(resident - idle[1]) / MiB:.0f} MiB, not {memory / MiB:.0f}"
-    return ""
+    if limited and budget is not None and used > slow * budget:
+        return f"{used * 1000:.0f} ms of processor time, not {slow * budget * 1000:.0f}"
+    return f"{resident / MiB:.0f} MiB, not {memory / MiB:.0f}" if limited and resident > memory else ""
 
 
-def check_accepted(case, idle):
-    wanted, words, allowed, files = case
-    most = MEMORY_BASE + allowed(sum(os.stat(name).st_size for name in files))
-    found, errors, used, resident = measure(words.split(), None)
-    if verbose:
-        print(f"{used * 1000:6.0f} ms {(resident - idle[1]) / MiB:6.1f} of {most / MiB:.1f} MiB  {words}", flush=True)
-    if found != wanted:
-        return f"exit status {found}, not {wanted}: {errors[:300]}"
-    return f"{(resident - idle[1]) / MiB:.0f} MiB, not {most / MiB:.0f}" if limited and resident > idle[1] + most else ""
+def report(words, wrong):
+    global failed
+    if wrong:
+        print(f"FAILED: twinbox {words}: {wrong}")
+        failed += 1
+
+
+def size_of(files):
+    return sum(os.stat(name).st_size for name in files)
 
 
 verbose = os.environ.get("VERBOSE") is not None
 idle = idle_memory() if limited else [0, 0]
 first_slowness = slowness()
 failed = 0
-for case in CASES:
-    wrong = check(case, idle)
-    if wrong:
-        print(f"FAILED: twinbox {case[3]} ({', '.join(case[2])}): {wrong}")
-        failed += 1
-for case in ACCEPTED:
-    wrong = check_accepted(case, idle)
-    if wrong:
-        print(f"FAILED: twinbox {case[1]}: {wrong}")
-        failed += 1
+for status, message, files, words in CASES:
+    names = iter(files * 2)
+    words = " ".join(word.replace("@", next(names)) if "@" in word else word for word in words.split())
+    memory = MEMORY + PER_BYTE_MEMORY * size_of(files)
+    wrong = check(status, message, words, files, CPU + PER_BYTE_CPU * size_of(files), memory, idle[0] + memory if limited else None)
+    report(words, wrong)
+for status, words, allowed, files in ACCEPTED:
+    wrong = check(status, "", words, files, None, MEMORY_BASE + allowed(size_of(files)), None)
+    report(words, wrong)
 # Proof that the limit holds: a picture that needs more.
 if limited and measure(["compare", "honest.png", "changed.png"], idle[0] + MEMORY)[0] != 3:
     print("FAILED: pictures of 100 MB fit into the budget of refused input")
