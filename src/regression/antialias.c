@@ -35,23 +35,32 @@ static inline Bytes load(const uint8_t *p) {
     return bytes;
 }
 
-/* Four pixels at once. */
+static inline bool any(Pixels pixels) {
+    uint64_t halves[2];
+    memcpy(halves, &pixels, sizeof halves);
+    return (halves[0] | halves[1]) != 0;
+}
+
+/* Most pixels are equal, four parts of four at once. */
 void image_levels(const uint8_t *a, const uint8_t *b, size_t count, uint8_t *levels) {
+    enum { PART = 4, PARTS = 4 };
     size_t x = 0;
-    for (; x + 4 <= count; x += 4) {
-        const Bytes difference = difference_of(load(a + 4 * x), load(b + 4 * x));
-        const Bytes half = larger_of(difference, (Bytes)((Pixels)difference >> 16));
-        const Pixels whole = (Pixels)larger_of(half, (Bytes)((Pixels)half >> 8));
-        for (size_t i = 0; i < 4; i++) levels[x + i] = (uint8_t)whole[i];
-    }
-    for (; x < count; x++) {
-        int largest = 0;
-        for (size_t i = 4 * x; i < 4 * x + 4; i++) {
-            const int difference = abs(a[i] - b[i]);
-            if (difference > largest) largest = difference;
+    memset(levels, 0, count);
+    for (; x + PART * PARTS <= count; x += PART * PARTS) {
+        const uint8_t *const p = a + CHANNELS * x, *const q = b + CHANNELS * x;
+        const Bytes some = (load(p) ^ load(q)) | (load(p + 16) ^ load(q + 16)),
+                    others = (load(p + 32) ^ load(q + 32)) | (load(p + 48) ^ load(q + 48));
+        if (!any((Pixels)(some | others))) continue;
+        for (size_t part = 0; part < PARTS; part++) {
+            const Bytes difference = difference_of(load(p + 16 * part), load(q + 16 * part));
+            const Bytes half = larger_of(difference, (Bytes)((Pixels)difference >> 16));
+            const Pixels whole = (Pixels)larger_of(half, (Bytes)((Pixels)half >> 8));
+            for (size_t i = 0; i < PART; i++) levels[x + PART * part + i] = (uint8_t)whole[i];
         }
-        levels[x] = (uint8_t)largest;
     }
+    for (; x < count; x++)
+        for (size_t i = CHANNELS * x; i < CHANNELS * (x + 1); i++)
+            levels[x] = (uint8_t)int_max(levels[x], abs(a[i] - b[i]));
 }
 
 bool edge_rows_create(EdgeRows *edges, int width, int height) {
@@ -259,12 +268,6 @@ static inline Pixels are_flat(const EdgeRows *edges, int i, size_t x, Bytes more
         for (size_t dx = 0; dx < 3; dx++)
             count -= look_equal(load(edges->rows[i + dy] + 4 * (x + dx - 1)), middle, more);
     return (Pixels)(count > 3); /* with itself */
-}
-
-static inline bool any(Pixels pixels) {
-    uint64_t halves[2];
-    memcpy(halves, &pixels, sizeof halves);
-    return (halves[0] | halves[1]) != 0;
 }
 
 /* 3. */

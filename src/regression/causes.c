@@ -38,7 +38,7 @@ static void add(Regression *regression, int frame, const char *what, double most
 }
 
 static void add_view(Regression *regression, int frame) {
-    const ShownFolder *folders[SIDES];
+    ShownFolder *folders[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         folders[side] =
             shown_find(&regression->shown, regression->frames[frame].at[side]->path, &(Error){0}); /* known by now */

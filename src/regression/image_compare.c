@@ -127,13 +127,14 @@ typedef struct Node {
 struct RegionScan {
     int width, gap;
     int node_count, capacity;
-    Node *nodes;      /* [capacity] */
-    Node *kept;       /* [capacity], scratch of compact() */
-    int *moved;       /* [capacity], scratch of compact() */
-    int *column_node; /* [width] of the last differing pixel of a column */
-    int *column_row;  /* [width] its row; far above the picture: none */
-    uint8_t *marked;  /* [width], scratch: pixels along edges */
-    int64_t left;     /* pixels that may still differ, if edges are to be looked for */
+    Node *nodes;           /* [capacity] */
+    Node *kept;            /* [capacity], scratch of compact() */
+    int *moved;            /* [capacity], scratch of compact() */
+    int *column_node;      /* [width] of the last differing pixel of a column */
+    int *column_row;       /* [width] its row; far above the picture: none */
+    uint8_t *marked;       /* [width], scratch: pixels along edges */
+    int64_t looked, edges; /* pixels of which it is known whether they are along edges, and those that are */
+    bool gives_up;         /* edges are not looked for any more */
     ImageRegions *regions;
 };
 
@@ -158,11 +159,8 @@ static RegionScan *create_scan(int width, int height, ImageRegions *regions, Err
     const size_t columns = (size_t)width, capacity = 3 * columns;
     RegionScan *scan = calloc(1, sizeof *scan);
     if (scan == NULL) return error_memory(error, "regions"), NULL;
-    *scan = (RegionScan){.width = width,
-                         .gap = image_regions_gap(width, height),
-                         .capacity = (int)capacity,
-                         .left = EDGES_MOST,
-                         .regions = regions};
+    *scan = (RegionScan){
+        .width = width, .gap = image_regions_gap(width, height), .capacity = (int)capacity, .regions = regions};
     *regions = (ImageRegions){.count = 0};
     scan->nodes = calloc(capacity, sizeof *scan->nodes);
     scan->kept = malloc(capacity * sizeof *scan->kept);
@@ -250,13 +248,14 @@ static int next_pixel(const uint8_t *levels, int x, int width) {
     return x;
 }
 
-/* Adds a row, from the top; those without a difference may be left out. edges: the rows around it; NULL: unknown. */
-static void scan_row(RegionScan *scan, int y, const uint8_t *levels, EdgeRows *const edges[2]) {
+/* Adds a row, from the top; those without a difference may be left out. edges: the rows around it, of both pictures,
+   unless the scan gives up. */
+static void scan_row(RegionScan *scan, int y, const uint8_t *levels, EdgeRows edges[2]) {
     int *const nodes = scan->column_node, *const rows = scan->column_row;
     const int reach = y - scan->gap;
     if (scan->node_count + scan->width > scan->capacity) compact(scan, y);
     memset(scan->marked, IGNORED_NOT, (size_t)scan->width);
-    if (edges != NULL) edge_rows_mark(edges[0], edges[1], y, levels, scan->marked);
+    if (!scan->gives_up) edge_rows_mark(&edges[0], &edges[1], y, levels, scan->marked);
     for (int left = next_pixel(levels, 0, scan->width); left < scan->width;) {
         /* A run of differing pixels, whose gaps are no larger than the gap, */
         int right = left, x = left;
@@ -281,15 +280,17 @@ static void scan_row(RegionScan *scan, int y, const uint8_t *levels, EdgeRows *c
             nodes[at] = levels[at] > 0 ? node : nodes[at];
             rows[at] = levels[at] > 0 ? y : rows[at];
         }
-        scan->left -= run.pixels;
+        scan->looked += run.pixels;
+        scan->edges += run.edges;
         left = next_pixel(levels, x, scan->width);
     }
+    scan->gives_up = scan->gives_up || (scan->looked >= EDGES_SAMPLE && 2 * scan->edges < scan->looked);
 }
 
 /* Beyond the reach of every row, all regions are complete. Edges of a part of the picture tell nothing. */
 static void end_scan(RegionScan *scan, int height) {
     compact(scan, height + scan->gap);
-    if (scan->left >= 0) return;
+    if (!scan->gives_up) return;
     scan->regions->edges = 0;
     for (int i = 0; i < scan->regions->kept; i++) scan->regions->list[i].edges = 0;
 }
@@ -305,13 +306,11 @@ bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, c
                       edge_rows_create(&sides[1], a->width, a->height);
     RegionScan *scan = room ? create_scan(a->width, a->height, regions, error) : NULL;
     if (!room) error_memory(error, "regions");
-    EdgeRows *const edges[] = {&sides[0], &sides[1]};
-    const bool wanted = scan != NULL && difference->pixels <= scan->left;
     for (int y = difference->top; scan != NULL && y < difference->bottom; y++) {
         if (!row_differs(a, b, y)) continue;
         (void)image_find_levels(a, b, masked, (size_t)y * width, width, levels);
-        if (wanted) edge_rows_load(&sides[0], a, y), edge_rows_load(&sides[1], b, y);
-        scan_row(scan, y, levels, wanted ? edges : NULL);
+        if (!scan->gives_up) edge_rows_load(&sides[0], a, y), edge_rows_load(&sides[1], b, y);
+        scan_row(scan, y, levels, sides);
     }
     const bool ok = scan != NULL;
     if (ok) end_scan(scan, a->height);
@@ -321,8 +320,8 @@ bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, c
     return ok;
 }
 
-bool row_compare_begin(RowCompare *compare, int width, int height, int tolerance) {
-    *compare = (RowCompare){.width = width, .height = height, .tolerance = tolerance};
+bool row_compare_begin(RowCompare *compare, int width, int height, int tolerance, uint8_t *all_levels) {
+    *compare = (RowCompare){.width = width, .height = height, .tolerance = tolerance, .all_levels = all_levels};
     compare->difference =
         (ImageDifference){.same_size = true, .counted = (int64_t)width * height, .first_x = -1, .first_y = -1};
     compare->levels = malloc(EDGE_ROWS * (size_t)width);
@@ -338,9 +337,7 @@ static void add_pending(RowCompare *compare, int end) {
     for (int y = int_max(compare->pending, end - EDGE_ROWS); y < end; y++) {
         const int slot = y % EDGE_ROWS;
         if (!compare->differs[slot] || compare->scan == NULL) continue;
-        EdgeRows *const edges[] = {&compare->sides[0], &compare->sides[1]};
-        scan_row(compare->scan, y, compare->levels + (size_t)slot * (size_t)compare->width,
-                 compare->scan->left >= 0 ? edges : NULL);
+        scan_row(compare->scan, y, compare->levels + (size_t)slot * (size_t)compare->width, compare->sides);
         compare->differs[slot] = false;
     }
     compare->pending = int_max(compare->pending, end);
@@ -355,11 +352,12 @@ void row_compare_row(RowCompare *compare, int y, bool differs) {
     if (differs) {
         image_levels(first, second, width, levels);
         count_levels(&compare->difference, 0, y, levels, compare->width, compare->tolerance);
+        if (compare->all_levels != NULL) memcpy(compare->all_levels + width * (size_t)y, levels, width);
         if (compare->scan == NULL)
             compare->scan = create_scan(compare->width, compare->height, &compare->regions, &compare->error);
     }
     compare->differs[y % EDGE_ROWS] = differs;
-    if (compare->scan == NULL || compare->scan->left >= 0) {
+    if (compare->scan == NULL || !compare->scan->gives_up) {
         if (!differs) memcpy(second, first, 4 * width);
         edge_rows_add(a, y);
         edge_rows_add(b, y);

@@ -46,8 +46,9 @@ void image_cut_to_overlap(Image *a, Image *b);
 
 enum { IMAGE_REGIONS_MAX = 16 };
 
-/* Edges are what little differs by: where more pixels differ, they are not looked for, and cost nothing. */
-enum { EDGES_MOST = 1 << 17 };
+/* Where fewer than half of the first pixels that differ do so as edges may, edges are not looked for, and cost
+   nothing. */
+enum { EDGES_SAMPLE = 1024 };
 
 typedef struct ImageRegion {
     int64_t pixels;               /* differing */
@@ -74,7 +75,7 @@ int image_regions_gap(int width, int height);
 /* The same for pictures of at most 8 bits that are read from the top. Each row that differs, and those ROWS_AROUND
    rows above and below it, must be placed and given; others may be left out:
 
-     row_compare_begin(&compare, width, height, tolerance, error);
+     row_compare_begin(&compare, width, height, tolerance, NULL);
      memcpy(row_compare_place(&compare, side, y), pixels, 4 * width);
      row_compare_row(&compare, y, differs);
      row_compare_end(&compare);                                       ... difference, regions */
@@ -87,15 +88,17 @@ typedef struct RowCompare {
     ImageRegions regions;
     int width, height, tolerance;
     EdgeRows sides[2];
-    int pending;     /* the first row that may wait for those below it */
-    uint8_t *levels; /* [EDGE_ROWS, width], by number modulo EDGE_ROWS */
+    int pending;         /* the first row that may wait for those below it */
+    uint8_t *levels;     /* [EDGE_ROWS, width], by number modulo EDGE_ROWS */
+    uint8_t *all_levels; /* [height, width], or NULL */
     bool differs[EDGE_ROWS];
     RegionScan *scan; /* from the first row that differs */
     Error error;
 } RowCompare;
 
-/* False with `error` of the comparison set if out of memory, then or later. row_compare_free() must follow. */
-bool row_compare_begin(RowCompare *compare, int width, int height, int tolerance);
+/* all_levels[height, width] of zeros gets the levels of rows that differ; NULL: they are not kept. False with `error` of
+   the comparison set if out of memory, then or later. row_compare_free() must follow. */
+bool row_compare_begin(RowCompare *compare, int width, int height, int tolerance, uint8_t *all_levels);
 uint8_t *row_compare_place(RowCompare *compare, int side, int y); /* RGBA, [4 * width] */
 void row_compare_row(RowCompare *compare, int y, bool differs);   /* where it does not, only side 0 is placed */
 bool row_compare_end(RowCompare *compare);

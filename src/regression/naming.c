@@ -5,7 +5,6 @@
 
 #include "base/base.h"
 #include "base/numbers.h"
-#include "pixels/png.h"
 #include "regression/image_compare.h"
 #include "regression/view.h"
 #include "runs/trajectory.h"
@@ -15,11 +14,10 @@
 #include <string.h>
 
 enum {
-    PIXELS_MAX = 20000000, /* larger pictures get no names */
-    PAINTED_MAX = 64,      /* times a panel, by all its bodies: more are no picture of a scene */
-    BORDER = 4,            /* pixels; a panel's frame is drawn around its rectangle */
-    SINGLE = 6,            /* bodies of a panel that get a name because they moved, */
-    CHANGED = 4            /* and because their pixels changed */
+    PAINTED_MAX = 64, /* times a panel, by all its bodies: more are no picture of a scene */
+    BORDER = 4,       /* pixels; a panel's frame is drawn around its rectangle */
+    SINGLE = 6,       /* bodies of a panel that get a name because they moved, */
+    CHANGED = 4       /* and because their pixels changed */
 };
 static const double SEEN = 0.01;  /* pixels; the states of a body that moved less explain no pixel */
 static const double AROUND = 1.5; /* pixels beyond its edge that a body may change */
@@ -30,7 +28,8 @@ enum { OWNER_NONE, OWNER_UNKNOWN, OWNER_FIRST };
 typedef struct Naming {
     const NamingScene *scene;
     size_t width;
-    uint8_t *owners; /* [height, width] */
+    ViewRect inside; /* all pixels that differ */
+    uint8_t *owners; /* [height, width], of the differing pixels */
     int32_t *tops;   /* [height, width] what is drawn on top in the expected picture: a body in the order of
                         drawing, or (their number) an outline; -1: nothing */
     FrameChanges *changes;
@@ -81,6 +80,13 @@ static ViewRect bounds(const DrawnBox *box, double margin, ViewRect rect) {
     return rect;
 }
 
+/* The part of a rectangle in which pixels differ; empty if right <= left or bottom <= top. */
+static ViewRect clip(const Naming *naming, ViewRect rect) {
+    const ViewRect *inside = &naming->inside;
+    return (ViewRect){int_max(rect.left, inside->left), int_max(rect.top, inside->top),
+                      int_min(rect.right, inside->right), int_min(rect.bottom, inside->bottom)};
+}
+
 /* Adds a change. Returns its index, or -1 if there is no room. */
 static int add_change(Naming *naming, const Change *change) {
     FrameChanges *changes = naming->changes;
@@ -93,17 +99,19 @@ static int add_change(Naming *naming, const Change *change) {
 /* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change;
    -1: to none. */
 static void take(Naming *naming, ViewRect rect, const DrawnBox *box, double margin, int change) {
-    const FrameView *view = naming->scene->view;
     int64_t taken = 0;
-    if (box != NULL) rect = bounds(box, margin + 1, rect);
-    const int right = int_min(rect.right, view->width), bottom = int_min(rect.bottom, view->height);
-    for (int y = int_max(rect.top, 0); y < bottom; y++)
-        for (int x = int_max(rect.left, 0); x < right; x++) {
-            uint8_t *owner = &naming->owners[(size_t)y * naming->width + (size_t)x];
-            if (*owner != OWNER_UNKNOWN || (box != NULL && distance(box, x + 0.5, y + 0.5) > margin)) continue;
-            *owner = change < 0 ? OWNER_NONE : (uint8_t)(OWNER_FIRST + change);
+    rect = clip(naming, box != NULL ? bounds(box, margin + 1, rect) : rect);
+    for (int y = rect.top; y < rect.bottom; y++) {
+        uint8_t *const row = naming->owners + (size_t)y * naming->width;
+        for (int x = rect.left; x < rect.right; x++) {
+            const uint8_t *next = memchr(row + x, OWNER_UNKNOWN, (size_t)(rect.right - x));
+            if (next == NULL) break;
+            x = (int)(next - row);
+            if (box != NULL && distance(box, x + 0.5, y + 0.5) > margin) continue;
+            row[x] = change < 0 ? OWNER_NONE : (uint8_t)(OWNER_FIRST + change);
             taken++;
         }
+    }
     if (change >= 0) naming->changes->list[change].pixels += taken;
 }
 
@@ -148,38 +156,34 @@ static Layer layer_of(const Trajectory *run, int body) {
     return body == run->bomb ? LAYER_BOMB : run->fixed[body] ? LAYER_STATIC : LAYER_DYNAMIC;
 }
 
-/* Paints a box into `tops`: what is between these distances from its edge. */
-static int64_t paint(const Panel *panel, const DrawnBox *box, double from, double to, int top) {
-    const ViewRect rect = bounds(box, 1, panel->view->rect);
+/* Paints a box into `tops`, where pixels differ: what is between these distances from its edge. */
+static void paint(const Panel *panel, const DrawnBox *box, double from, double to, int top) {
+    const ViewRect rect = clip(panel->naming, bounds(box, 1, panel->view->rect));
     for (int y = rect.top; y < rect.bottom; y++)
         for (int x = rect.left; x < rect.right; x++) {
             const double at = distance(box, x + 0.5, y + 0.5);
             if (at < to && at > from) panel->naming->tops[(size_t)y * panel->naming->width + (size_t)x] = top;
         }
-    return (int64_t)(rect.right - rect.left) * (rect.bottom - rect.top);
 }
 
 /* Paints the expected bodies into `tops`, half a pixel larger: with their smoothed edges. Outlines of other runs are
-   above all bodies. False if bodies so large and many are no picture of a scene. */
-static bool paint_tops(const Panel *panel) {
+   above all bodies. */
+static void paint_tops(const Panel *panel) {
     const NamingScene *scene = panel->naming->scene;
-    const ViewRect whole = panel->view->rect;
-    const int width = whole.right - whole.left, height = whole.bottom - whole.top;
-    const double outline = 3 + 0.008 * int_min(width, height); /* at most (pictures/bodies.c) */
-    int64_t painted = 0;
-    const int64_t most = PAINTED_MAX * (int64_t)width * height;
-    for (int y = whole.top; y < whole.bottom; y++)
-        for (int x = whole.left; x < whole.right; x++)
+    const ViewRect whole = panel->view->rect, rect = clip(panel->naming, whole);
+    const double outline = 3 + 0.008 * int_min(whole.right - whole.left, whole.bottom - whole.top); /* at most
+        (pictures/bodies.c) */
+    for (int y = rect.top; y < rect.bottom; y++)
+        for (int x = rect.left; x < rect.right; x++)
             panel->naming->tops[(size_t)y * panel->naming->width + (size_t)x] = -1;
-    for (int i = 0; i < panel->count && painted <= most; i++)
-        if (panel->bodies[i].exists[0]) painted += paint(panel, &panel->bodies[i].box[0], -INFINITY, 0.5, i);
-    for (int i = 0; painted <= most && i < panel->view->outline_count; i++) {
+    for (int i = 0; i < panel->count; i++)
+        if (panel->bodies[i].exists[0]) paint(panel, &panel->bodies[i].box[0], -INFINITY, 0.5, i);
+    for (int i = 0; i < panel->view->outline_count; i++) {
         const Trajectory *run = scene->outlines[panel->number][i];
         DrawnBox box;
         for (int body = 0; run != NULL && body < run->bodies; body++)
             if (!run->fixed[body] && place(panel, run, body, &box)) paint(panel, &box, -outline, 0.5, panel->count);
     }
-    return painted <= most;
 }
 
 static Change change_of(const Panel *panel, const Drawn *body, ChangeKind kind) {
@@ -232,20 +236,20 @@ static bool name_moved(Panel *panel, Error *error) {
 }
 
 static void count_unknown(Panel *panel) {
-    const ViewRect rect = panel->view->rect;
+    const ViewRect rect = clip(panel->naming, panel->view->rect);
     for (int i = 0; i < panel->count; i++) panel->bodies[i].pixels = 0;
-    for (int y = rect.top; y < rect.bottom; y++)
-        for (int x = rect.left; x < rect.right; x++) {
-            const size_t at = (size_t)y * panel->naming->width + (size_t)x;
-            const int top = panel->naming->tops[at];
-            if (panel->naming->owners[at] == OWNER_UNKNOWN && top >= 0 && top < panel->count)
-                panel->bodies[top].pixels++;
-        }
+    for (int y = rect.top; y < rect.bottom; y++) {
+        const uint8_t *const owners = panel->naming->owners + (size_t)y * panel->naming->width;
+        const int32_t *const tops = panel->naming->tops + (size_t)y * panel->naming->width;
+        for (int x = rect.left; x < rect.right; x++)
+            if (owners[x] == OWNER_UNKNOWN && tops[x] >= 0 && tops[x] < panel->count) panel->bodies[tops[x]].pixels++;
+    }
 }
 
 /* Bodies whose pixels differ although their states do not: those with the most unknown pixels one by one, as what is
    around them is their edge, also where it lies on others; then the others: their number, or the only one. */
 static void name_changed(Panel *panel) {
+    paint_tops(panel);
     for (int named = 0; named <= CHANGED; named++) {
         int most = -1, count = 0;
         count_unknown(panel);
@@ -266,12 +270,15 @@ static void name_changed(Panel *panel) {
     }
 }
 
+static double area_of(ViewRect rect) { return (double)(rect.right - rect.left) * (rect.bottom - rect.top); }
+
 /* Names the bodies of a panel: those whose states differ, then those whose pixels do. They must be known. */
 static bool name_bodies(Naming *naming, int number, Error *error) {
     const Trajectory *expected = naming->scene->runs[number][0], *actual = naming->scene->runs[number][1];
     Panel panel = {naming, number, &naming->scene->view->panels[number], .runs = {expected, actual}};
     panel.bodies = calloc((size_t)expected->bodies + 1, sizeof *panel.bodies);
     if (panel.bodies == NULL) return error_memory(error, "regions");
+    double area = 0;
     for (Layer layer = LAYER_STATIC; layer < LAYERS; layer++)
         for (int body = 0; body < expected->bodies; body++) {
             if (layer_of(expected, body) != layer) continue;
@@ -281,12 +288,11 @@ static bool name_bodies(Naming *naming, int number, Error *error) {
             if (drawn.exists[0] != drawn.exists[1]) drawn.moved = INFINITY;
             if (drawn.exists[0] && drawn.exists[1]) drawn.moved = movement(&drawn.box[0], &drawn.box[1]);
             if (drawn.exists[0] || drawn.exists[1]) panel.bodies[panel.count++] = drawn;
+            if (drawn.exists[0]) area += area_of(bounds(&drawn.box[0], 1, panel.view->rect));
         }
-    bool ok = true;
-    if (paint_tops(&panel)) {
-        ok = name_moved(&panel, error);
-        if (ok) name_changed(&panel);
-    }
+    const bool usable = area <= PAINTED_MAX * area_of(panel.view->rect);
+    const bool ok = !usable || name_moved(&panel, error);
+    if (usable && ok) name_changed(&panel);
     free(panel.bodies);
     return ok;
 }
@@ -297,11 +303,11 @@ static void name_region(Naming *naming, int region) {
     const ImageRegion *r = &changes->regions.list[region];
     int64_t pixels[CHANGES_MAX] = {0};
     int best = -1, others = -1;
-    for (int y = r->top; y < r->bottom; y++)
-        for (int x = r->left; x < r->right; x++) {
-            const uint8_t owner = naming->owners[(size_t)y * naming->width + (size_t)x];
-            if (owner >= OWNER_FIRST) pixels[owner - OWNER_FIRST]++;
-        }
+    for (int y = r->top; y < r->bottom; y++) {
+        const uint8_t *const row = naming->owners + (size_t)y * naming->width;
+        for (int x = r->left; x < r->right; x++)
+            if (row[x] >= OWNER_FIRST) pixels[row[x] - OWNER_FIRST]++;
+    }
     for (int i = 0; i < changes->count; i++) {
         if (pixels[i] == 0) continue;
         others++;
@@ -335,25 +341,21 @@ static void name_all(Naming *naming, Error *error) {
     for (int i = 0; i < naming->changes->regions.kept; i++) name_region(naming, i);
 }
 
-bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
-                 FrameChanges *changes, Error *error) {
-    const FrameView *view = scene->view;
-    const size_t width = (size_t)view->width, pixels = width * (size_t)view->height;
-    Naming naming = {.scene = scene, .width = width, .changes = changes};
+bool naming_find(const NamingScene *scene, uint8_t *levels, const ImageDifference *difference, FrameChanges *changes,
+                 Error *error) {
+    const size_t width = (size_t)scene->view->width, pixels = width * (size_t)scene->view->height;
+    const ViewRect inside = {difference->left, difference->top, difference->right, difference->bottom};
+    Naming naming = {scene, width, inside, .owners = levels, .changes = changes};
     changes->count = 0;
     memset(changes->region_change, -1, sizeof changes->region_change);
     memset(changes->region_others, 0, sizeof changes->region_others);
-    if (view->width != expected->width || view->height != expected->height || pixels > PIXELS_MAX) return true;
-    naming.owners = malloc(pixels);
     naming.tops = malloc(pixels * sizeof *naming.tops);
-    if (naming.owners == NULL || naming.tops == NULL) {
-        error_memory(error, "regions");
-    } else {
-        (void)image_find_levels(expected, actual, masked, 0, pixels, naming.owners);
-        for (size_t i = 0; i < pixels; i++) naming.owners[i] = naming.owners[i] > 0 ? OWNER_UNKNOWN : OWNER_NONE;
-        name_all(&naming, error);
+    if (naming.tops == NULL) return error_memory(error, "regions");
+    for (int y = inside.top; y < inside.bottom; y++) {
+        uint8_t *const row = levels + (size_t)y * width;
+        for (int x = inside.left; x < inside.right; x++) row[x] = row[x] > 0 ? OWNER_UNKNOWN : OWNER_NONE;
     }
-    free(naming.owners);
+    name_all(&naming, error);
     free(naming.tops);
     return error->kind == ERROR_NONE;
 }

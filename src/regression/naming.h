@@ -2,11 +2,10 @@
 /* What differs between two of twinbox's own pictures: bodies, captions, axes.
 
      NamingScene scene = {.view = &view, .runs = {{expected_run, actual_run}}, .frame = 3};
-     naming_find(&scene, expected, actual, NULL, &changes, error);
+     naming_find(&scene, levels, &difference, &changes, error);
      puts(region_words(&changes, 0).text);      ... "12 x 9 pixels at (40, 31), ...: body 7 moved 0.4 px right" */
 #pragma once
 #include "base/base.h"
-#include "pixels/png.h"
 #include "regression/image_compare.h"
 #include "regression/view.h"
 #include "runs/trajectory.h"
@@ -59,10 +58,13 @@ typedef struct NamingScene {
     int frame;                                       /* of the runs */
 } NamingScene;
 
-/* Fills the changes, and the names of the regions, which must be set. masked as in image_compare_masked(). Both
-   pictures have the view's size. False with error set if out of memory. */
-bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
-                 FrameChanges *changes, Error *error);
+enum { NAMING_PIXELS_MAX = 20000000 }; /* larger pictures get no names */
+
+/* Fills the changes, and the names of the regions, which must be set. levels[height, width], of the view's size: where
+   pixels differ, as image_find_levels() gives them; their values are lost. difference: their bounds. False with error set
+   if out of memory. */
+bool naming_find(const NamingScene *scene, uint8_t *levels, const ImageDifference *difference, FrameChanges *changes,
+                 Error *error);
 
 typedef struct ChangeText {
     char text[160];

@@ -73,31 +73,38 @@ static void decide(RegressionFrame *frame, const Tolerance *limits) {
 
 static bool begin_rows(void *context, int width, int height) {
     RowCompare *compare = context;
-    return row_compare_begin(compare, width, height, compare->tolerance);
+    return row_compare_begin(compare, width, height, compare->tolerance, compare->all_levels);
 }
 
 static uint8_t *place_row(void *context, int side, int y) { return row_compare_place(context, side, y); }
 
 static void take_row(void *context, int y, const uint8_t *a, const uint8_t *b) { row_compare_row(context, y, a != b); }
 
-static bool judge_rows(const Regression *regression, RegressionFrame *frame, PngFile files[SIDES],
-                       const Tolerance *limits, bool *done, Error *error) {
+static bool judge_rows(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], const Tolerance *limits,
+                       bool named, bool *done, Error *error) {
+    const RegressionFile *of = &frame->files[EXPECTED];
+    uint8_t *const data[SIDES] = {files[EXPECTED].data, files[ACTUAL].data};
     RowCompare compare = {.tolerance = limits->tolerance};
     const RowSink sink = {begin_rows, place_row, take_row, &compare, ROWS_AROUND};
+    uint8_t *all = named ? calloc((size_t)of->width, (size_t)of->height) : NULL;
+    if (named && all == NULL) return error_memory(error, frame_name(frame));
+    compare.all_levels = all;
     *done = png_files_scan(files, regression->count == 1, &sink);
     bool ok = compare.error.kind == ERROR_NONE;
     if (ok && *done && (ok = row_compare_end(&compare))) {
         frame->difference = compare.difference;
         decide(frame, limits);
-        ok = compare.difference.equal || regression_keep_regions(frame, &compare.regions, error);
+        ok = compare.difference.equal || (regression_keep_regions(frame, &compare.regions, error) &&
+                                          (!named || regression_name_changes(regression, frame, data, all, error)));
     }
     if (compare.error.kind != ERROR_NONE) *error = compare.error;
     row_compare_free(&compare);
+    free(all);
     return ok;
 }
 
 static bool judge_images(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Image *images[SIDES],
-                         const Tolerance *limits, Error *error) {
+                         const Tolerance *limits, bool named, Error *error) {
     Image *expected = images[EXPECTED], *actual = images[ACTUAL];
     uint8_t *const data[SIDES] = {files[EXPECTED].data, files[ACTUAL].data};
     ImageDifference *difference = &frame->difference;
@@ -113,8 +120,15 @@ static bool judge_images(Regression *regression, RegressionFrame *frame, PngFile
     if (ok) decide(frame, limits);
     if (ok && difference->pixels > 0)
         ok = image_regions_find(expected, actual, masked, difference, &regions, error) &&
-             regression_keep_regions(frame, &regions, error) &&
-             regression_name_changes(regression, frame, data, (const Image *const[]){expected, actual}, masked, error);
+             regression_keep_regions(frame, &regions, error);
+    if (ok && difference->pixels > 0 && same_size && named) {
+        const size_t pixels = (size_t)expected->width * (size_t)expected->height;
+        uint8_t *levels = malloc(pixels);
+        ok = levels != NULL || error_memory(error, frame_name(frame));
+        if (ok) (void)image_find_levels(expected, actual, masked, 0, pixels, levels);
+        ok = ok && regression_name_changes(regression, frame, data, levels, error);
+        free(levels);
+    }
     free(masked);
     return ok;
 }
@@ -166,10 +180,10 @@ static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[
                png_check_pixels(of_b->width, of_b->height, regression->options.max_pixels, b->path, error);
     }
 
-    bool named = false, done = false, rows = !has_masks(regression, frame) && !limits.antialias;
-    if (rows && !regression_may_name(regression, frame, &named, error)) return false;
-    rows = rows && !named;
-    if (rows && !judge_rows(regression, frame, files, &limits, &done, error)) return false;
+    const bool rows = !has_masks(regression, frame) && !limits.antialias;
+    bool named = false, done = false;
+    if (!regression_may_name(regression, frame, &named, error)) return false;
+    if (rows && !judge_rows(regression, frame, files, &limits, named, &done, error)) return false;
     if (done) return true;
     /* Damage is found without memory for the pixels: where a common file has it, and where the pixels are many. */
     const bool found = a->damaged || b->damaged;
@@ -186,7 +200,7 @@ static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[
     bool ok =
         image_decode_png_pair((const uint8_t *const[]){a->data, b->data}, (const size_t[]){a->size, b->size},
                               (const char *const[]){a->path, b->path}, regression->options.max_pixels, images, error);
-    ok = ok && judge_images(regression, frame, files, images, &limits, error);
+    ok = ok && judge_images(regression, frame, files, images, &limits, named, error);
     image_destroy_pair(images);
     return ok;
 }

@@ -66,19 +66,22 @@ static int64_t stored_frame(const Texts *texts) {
     return texts->part[0] == '\0' && frame[0] >= '0' && frame[0] <= '9' ? strtoll(frame, NULL, 10) : -1;
 }
 
-/* The run of this name if the picture shows it: if its state in this frame is one of those that the picture's text
+/* *run: the run of this name if the picture shows it: if its state in this frame is one of those that the picture's text
    names. An overlay has more states than panels, and a difference one more; so any of them will do. Else NULL. */
-static const Trajectory *known_run(const ShownFolder *folder, const char *name, int64_t frame, const char *states) {
-    const Trajectory *run = shown_run(folder, name);
+static bool find_shown_run(ShownFolder *folder, const char *name, int frame, const char *states, const Trajectory **run,
+                           Error *error) {
     char hash[20];
-    if (run == NULL || frame < 0 || run->frames < 1) return NULL;
-    snprintf(hash, sizeof hash, "%016" PRIx64,
-             trajectory_frame_hash(run, frame < run->frames ? (int)frame : run->frames - 1));
-    return strstr(states, hash) != NULL ? run : NULL;
+    if (!shown_run(folder, name, run, error)) return false;
+    const Trajectory *found = *run;
+    if (found != NULL && found->frames > 0)
+        snprintf(hash, sizeof hash, "%016" PRIx64,
+                 trajectory_frame_hash(found, frame < found->frames ? frame : found->frames - 1));
+    if (found == NULL || found->frames < 1 || strstr(states, hash) == NULL) *run = NULL;
+    return true;
 }
 
 /* The folders of the frame. */
-static bool find_folders(Regression *regression, const RegressionFrame *frame, const ShownFolder *folders[SIDES],
+static bool find_folders(Regression *regression, const RegressionFrame *frame, ShownFolder *folders[SIDES],
                          Error *error) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if ((folders[side] = shown_find(&regression->shown, frame->at[side]->path, error)) == NULL) return false;
@@ -86,9 +89,10 @@ static bool find_folders(Regression *regression, const RegressionFrame *frame, c
 }
 
 bool regression_may_name(Regression *regression, const RegressionFrame *frame, bool *named, Error *error) {
-    const ShownFolder *folders[SIDES];
+    ShownFolder *folders[SIDES];
+    const int64_t pixels = (int64_t)frame->files[EXPECTED].width * frame->files[EXPECTED].height;
     if (!find_folders(regression, frame, folders, error)) return false;
-    *named = folders[EXPECTED]->view.width > 0 && folders[ACTUAL]->view.width > 0;
+    *named = folders[EXPECTED]->view.width > 0 && folders[ACTUAL]->view.width > 0 && pixels <= NAMING_PIXELS_MAX;
     return true;
 }
 
@@ -100,30 +104,31 @@ bool regression_keep_regions(RegressionFrame *frame, const ImageRegions *regions
 }
 
 bool regression_name_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
-    const ShownFolder *folders[SIDES];
+                             uint8_t *levels, Error *error) {
+    ShownFolder *folders[SIDES];
+    const RegressionFile *of = &frame->files[EXPECTED];
     Texts texts[SIDES];
     if (!frame_failed(frame)) return true;
     if (!find_folders(regression, frame, folders, error)) return false;
     const FrameView *a = &folders[EXPECTED]->view, *b = &folders[ACTUAL]->view;
-    if (a->width != images[EXPECTED]->width || a->height != images[EXPECTED]->height) return true;
-    if (b->width != a->width || b->height != a->height) return true;
+    if (a->width != of->width || a->height != of->height || b->width != a->width || b->height != a->height) return true;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (!read_texts(&texts[side], data[side], frame->files[side].size, error)) return false;
     if (texts[EXPECTED].card[0] != '\0' || texts[ACTUAL].card[0] != '\0') return true; /* it has a layout of its own */
     frame->other_view = view_difference(a, b).text[0] != '\0';
     if (frame->other_view) return true;
-    NamingScene scene = {.view = a};
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        const char *states = texts[side].states;
-        const int64_t number = stored_frame(&texts[side]);
-        if (side == EXPECTED) scene.frame = (int)number;
-        for (int i = 0; number == scene.frame && i < a->panel_count; i++) {
+    NamingScene scene = {.view = a, .frame = (int)stored_frame(&texts[EXPECTED])};
+    const bool same_frame = scene.frame >= 0 && stored_frame(&texts[ACTUAL]) == scene.frame;
+    for (RegressionSide side = EXPECTED; same_frame && side < SIDES; side++)
+        for (int i = 0; i < a->panel_count; i++) {
             const ViewPanel *panel = &a->panels[i];
-            scene.runs[i][side] = known_run(folders[side], panel->run, number, states);
+            const char *states = texts[side].states;
+            if (!find_shown_run(folders[side], panel->run, scene.frame, states, &scene.runs[i][side], error))
+                return false;
             for (int k = 0; side == EXPECTED && k < panel->outline_count; k++)
-                scene.outlines[i][k] = known_run(folders[side], panel->outlines[k], number, states);
+                if (!find_shown_run(folders[side], panel->outlines[k], scene.frame, states, &scene.outlines[i][k],
+                                    error))
+                    return false;
         }
-    }
-    return naming_find(&scene, images[EXPECTED], images[ACTUAL], masked, frame->changes, error);
+    return naming_find(&scene, levels, &frame->difference, frame->changes, error);
 }

@@ -173,8 +173,6 @@ ViewText view_difference(const FrameView *expected, const FrameView *actual) {
     return words;
 }
 
-/* What the pictures of a folder show: its view, and the runs that the view names. */
-
 /* Damage is not reported: without a view or a run there are fewer names, and the comparison of runs reports a damaged
    run itself. A failing system is: names must not depend on it. */
 static bool is_harmless(const Error *failure, Error *error) {
@@ -182,35 +180,27 @@ static bool is_harmless(const Error *failure, Error *error) {
     return failure->kind != ERROR_SYSTEM;
 }
 
-static bool read_run(ShownFolder *folder, const char *name, Error *error) {
+static bool read_run(ShownFolder *folder, const char *name, const Trajectory **run, Error *error) {
     char path[PATH_MAX];
     Error failure = {0};
+    *run = NULL;
     for (int i = 0; i < folder->run_count; i++)
-        if (strcmp(folder->names[i], name) == 0) return true;
+        if (strcmp(folder->names[i], name) == 0) return *run = folder->runs[i], true;
     if (folder->run_count == VIEW_PANELS_MAX) return true;
     if (file_path(path, sizeof path, &failure, "%s%s", folder->path, name))
-        folder->runs[folder->run_count] = trajectory_read(path, &failure);
+        *run = folder->runs[folder->run_count] = trajectory_read(path, &failure);
     folder->names[folder->run_count++] = name;
     return is_harmless(&failure, error);
 }
 
-static bool read_runs(ShownFolder *folder, Error *error) {
-    bool ok = true;
-    for (int i = 0; ok && i < folder->view.panel_count; i++) {
-        const ViewPanel *panel = &folder->view.panels[i];
-        ok = read_run(folder, panel->run, error);
-        for (int k = 0; ok && k < panel->outline_count; k++) ok = read_run(folder, panel->outlines[k], error);
-    }
+bool shown_run(ShownFolder *folder, const char *name, const Trajectory **run, Error *error) {
+    bool ok;
+#pragma omp critical(shown_folders)
+    ok = read_run(folder, name, run, error);
     return ok;
 }
 
-const Trajectory *shown_run(const ShownFolder *folder, const char *name) {
-    for (int i = 0; i < folder->run_count; i++)
-        if (strcmp(folder->names[i], name) == 0) return folder->runs[i];
-    return NULL;
-}
-
-static void folder_free(ShownFolder *folder) {
+static void free_folder(ShownFolder *folder) {
     for (int i = 0; folder != NULL && i < folder->run_count; i++) trajectory_destroy(folder->runs[i]);
     if (folder != NULL) free(folder->path);
     free(folder);
@@ -220,16 +210,18 @@ static ShownFolder *read_folder(const char *picture, size_t length, Error *error
     ShownFolder *folder = calloc(1, sizeof *folder);
     char path[PATH_MAX];
     Error failure = {0};
-    bool ok = (folder != NULL && (folder->path = strndup(picture, length)) != NULL) || error_memory(error, picture);
-    if (ok && file_path(path, sizeof path, &failure, "%smanifest.json", folder->path) &&
-        view_read(&folder->view, path, &failure))
-        ok = read_runs(folder, error);
-    if (ok && is_harmless(&failure, error)) return folder;
-    folder_free(folder);
+    if (folder == NULL || (folder->path = strndup(picture, length)) == NULL) {
+        error_memory(error, picture);
+        return free_folder(folder), NULL;
+    }
+    if (file_path(path, sizeof path, &failure, "%smanifest.json", folder->path))
+        (void)view_read(&folder->view, path, &failure);
+    if (is_harmless(&failure, error)) return folder;
+    free_folder(folder);
     return NULL;
 }
 
-const ShownFolder *shown_find(Shown *shown, const char *picture, Error *error) {
+ShownFolder *shown_find(Shown *shown, const char *picture, Error *error) {
     size_t length = file_folder_length(picture);
     ShownFolder *found = NULL;
 #pragma omp critical(shown_folders)
@@ -249,6 +241,6 @@ void shown_free(Shown *shown) {
     while (shown->first != NULL) {
         ShownFolder *folder = shown->first;
         shown->first = folder->next;
-        folder_free(folder);
+        free_folder(folder);
     }
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What twinbox's own pictures show where: the view of manifest.json, and the runs that it names.
 
-     const ShownFolder *folder = shown_find(&shown, "out/frame_000003.png", error);
-     const Trajectory *run = shown_run(folder, folder->view.panels[0].run); */
+     ShownFolder *folder = shown_find(&shown, "out/frame_000003.png", error);
+     shown_run(folder, folder->view.panels[0].run, &run, error); */
 #pragma once
 #include "base/base.h"
 #include "runs/trajectory.h"
@@ -52,13 +52,13 @@ typedef struct ViewText {
 } ViewText;
 ViewText view_difference(const FrameView *expected, const FrameView *actual);
 
-/* What the pictures of a folder show, for the naming of differences: the view from manifest.json, and the runs that it
-   names. Read when a picture of the folder first differs, and kept. */
+/* What the pictures of a folder show: the view from manifest.json, and the runs that it names, each read when it is first
+   asked for, and kept. */
 
 typedef struct ShownFolder {
-    char *path;     /* with its slash; empty for the current folder */
-    FrameView view; /* width 0: unknown */
-    int run_count;
+    char *path;                         /* with its slash; empty for the current folder */
+    FrameView view;                     /* width 0: unknown */
+    int run_count;                      /* read, or tried */
     const char *names[VIEW_PANELS_MAX]; /* of the files of runs, in the view */
     Trajectory *runs[VIEW_PANELS_MAX];  /* NULL: cannot be read */
     struct ShownFolder *next;
@@ -69,9 +69,10 @@ typedef struct Shown {
 } Shown;
 
 /* The folder of a picture. Thread-safe. NULL with error set if the system fails; a folder that has no readable manifest
-   or run has no view or run. */
-const ShownFolder *shown_find(Shown *shown, const char *picture, Error *error);
+   has no view. */
+ShownFolder *shown_find(Shown *shown, const char *picture, Error *error);
 
-/* The run of this file name that the view names, or NULL. */
-const Trajectory *shown_run(const ShownFolder *folder, const char *name);
+/* *run: the run of this file name in the folder, a name of its view; NULL if it cannot be read. Thread-safe. False with
+   error set if the system fails. */
+bool shown_run(ShownFolder *folder, const char *name, const Trajectory **run, Error *error);
 void shown_free(Shown *shown);

@@ -287,7 +287,12 @@ static FrameChanges name_changes(Stage *stage, const Seed *seed, const ImageDiff
     if (seed->actual != NULL) scene.runs[seed->truth.panel - 1][1] = seed->actual;
     assert_ok(image_regions_find(stage->images[0], stage->images[1], NULL, difference, &changes.regions, &error),
               error);
-    assert_ok(naming_find(&scene, stage->images[0], stage->images[1], NULL, &changes, &error), error);
+    const size_t pixels = (size_t)stage->shot->width * (size_t)stage->shot->height;
+    uint8_t *levels = malloc(pixels);
+    assert_non_null(levels);
+    (void)image_find_levels(stage->images[0], stage->images[1], NULL, 0, pixels, levels);
+    assert_ok(naming_find(&scene, levels, difference, &changes, &error), error);
+    free(levels);
     return changes;
 }
 

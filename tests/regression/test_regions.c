@@ -188,7 +188,7 @@ TEST(rows_give_what_whole_pictures_give) {
         const ImageRegions whole = regions_of(&pair, NULL);
         const size_t bytes = 4 * (size_t)pair.a->width;
         image_compare_masked(pair.a, pair.b, NULL, 3, &difference);
-        assert_true(row_compare_begin(&rows, pair.a->width, pair.a->height, 3));
+        assert_true(row_compare_begin(&rows, pair.a->width, pair.a->height, 3, NULL));
         for (int y = 0; y < pair.a->height; y++) {
             bool near = false;
             for (int at = y - ROWS_AROUND; at <= y + ROWS_AROUND && !near; at++)
