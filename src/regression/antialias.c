@@ -135,9 +135,6 @@ static inline void window_of(const EdgeRows *edges, int x, Window *window) {
 /* Levels, of 255. Less is the gradient of an area: there, a change by one or two levels looks like a movement. */
 enum { LEAST_CONTRAST = 16 };
 
-/* Differences up to this look equal beside a contrast: renderers round, and areas have gradients. */
-static int slack(int contrast) { return 2 + contrast / 16; }
-
 static bool is_within(int value, const Window *window, int channel, int more) {
     return value >= window->least[channel] - more && value <= window->most[channel] + more;
 }
@@ -164,65 +161,50 @@ static void least_changes(const EdgeRows *a, const EdgeRows *b, int x, int least
     }
 }
 
-/* The colours of windows of 3 x 3 pixels. */
-typedef struct Colours {
-    int count;
-    const uint8_t *list[18];
-} Colours;
-
-static void add_colours(const EdgeRows *edges, int x, Colours *colours) {
-    for (int i = 0; i < 9; i++)
-        colours->list[colours->count++] = edges->rows[REACH - 1 + i / 3] + 4 * (x + REACH - 1 + i % 3);
-}
-
 /* Orders colours by a channel; those that are equal in it by all, so that it does not matter which picture has one. */
 static bool is_less(const uint8_t *a, const uint8_t *b, int channel) {
     return a[channel] != b[channel] ? a[channel] < b[channel] : memcmp(a, b, CHANNELS) < 0;
 }
 
-/* The channel in which colours differ most. */
-static int widest_channel(const Colours *colours) {
+/* Whether all colours are mixtures of two, as far as rounding shows. */
+static bool are_mixtures(const uint8_t *const *colours, int count) {
+    enum { ROUNDING = 2 };
     uint8_t low[CHANNELS], high[CHANNELS];
-    memcpy(low, colours->list[0], CHANNELS);
-    memcpy(high, colours->list[0], CHANNELS);
-    for (int i = 1; i < colours->count; i++)
+    memcpy(low, colours[0], CHANNELS);
+    memcpy(high, colours[0], CHANNELS);
+    for (int i = 1; i < count; i++)
         for (int c = 0; c < CHANNELS; c++) {
-            const uint8_t value = colours->list[i][c];
+            const uint8_t value = colours[i][c];
             low[c] = value < low[c] ? value : low[c];
             high[c] = value > high[c] ? value : high[c];
         }
     int widest = 0;
     for (int c = 1; c < CHANNELS; c++)
         if (high[c] - low[c] > high[widest] - low[widest]) widest = c;
-    return widest;
-}
-
-/* Whether all are mixtures of two, as far as rounding shows. */
-static bool are_mixtures(const Colours *colours) {
-    enum { ROUNDING = 2 };
-    const int channel = widest_channel(colours);
-    const uint8_t *one = colours->list[0], *other = one;
-    for (int i = 1; i < colours->count; i++) {
-        if (is_less(colours->list[i], one, channel)) one = colours->list[i];
-        if (is_less(other, colours->list[i], channel)) other = colours->list[i];
+    const uint8_t *one = colours[0], *other = one;
+    for (int i = 1; i < count; i++) {
+        if (is_less(colours[i], one, widest)) one = colours[i];
+        if (is_less(other, colours[i], widest)) other = colours[i];
     }
-    const int most = other[channel] - one[channel];
-    for (int i = 0; i < colours->count; i++) {
-        const int part = colours->list[i][channel] - one[channel];
+    const int most = other[widest] - one[widest];
+    for (int i = 0; i < count; i++) {
+        const int part = colours[i][widest] - one[widest];
         for (int c = 0; c < CHANNELS; c++)
-            if (abs((colours->list[i][c] - one[c]) * most - part * (other[c] - one[c])) > ROUNDING * most) return false;
+            if (abs((colours[i][c] - one[c]) * most - part * (other[c] - one[c])) > ROUNDING * most) return false;
     }
     return true;
 }
 
 /* 4. */
 static bool keeps_colours(const EdgeRows *a, const EdgeRows *b, int x) {
-    Colours of_a = {0}, of_b = {0}, both = {0};
-    add_colours(a, x, &of_a);
-    add_colours(b, x, &of_b);
-    add_colours(a, x, &both);
-    add_colours(b, x, &both);
-    return are_mixtures(&both) || !are_mixtures(&of_a) || !are_mixtures(&of_b);
+    enum { WINDOW = 9 };
+    const uint8_t *both[2 * WINDOW];
+    for (int i = 0; i < WINDOW; i++) {
+        const int row = REACH - 1 + i / 3, at = CHANNELS * (x + REACH - 1 + i % 3);
+        both[i] = a->rows[row] + at;
+        both[WINDOW + i] = b->rows[row] + at;
+    }
+    return are_mixtures(both, 2 * WINDOW) || !are_mixtures(both, WINDOW) || !are_mixtures(both + WINDOW, WINDOW);
 }
 
 static int contrast_of(const Window *p, const Window *q, int c) {
@@ -231,14 +213,15 @@ static int contrast_of(const Window *p, const Window *q, int c) {
     return most - least;
 }
 
-/* 1, for all channels. slacks: by channel. */
+/* 1, for all channels. slacks: by channel, the differences that look equal beside the contrast: renderers round, and
+   areas have gradients. */
 static bool is_bounded(const Window *p, const Window *q, uint8_t slacks[CHANNELS]) {
     int largest = 0;
     for (int c = 0; c < CHANNELS; c++) {
         const int contrast = contrast_of(p, q, c);
         if (10 * abs(p->middle[c] - q->middle[c]) > 6 * contrast + 10) return false;
         if (contrast > largest) largest = contrast;
-        slacks[c] = (uint8_t)slack(contrast);
+        slacks[c] = (uint8_t)(2 + contrast / 16);
     }
     return largest >= LEAST_CONTRAST;
 }

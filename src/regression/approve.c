@@ -38,25 +38,15 @@ static bool is_input(int cause) {
     return cause == ELOOP || cause == ENOTDIR || cause == EACCES || cause == ENOENT || cause == ENAMETOOLONG;
 }
 
-static bool approve_refuse(int cause, const char *path, const char *what, Error *error) {
+static bool refuse(int cause, const char *path, const char *what, Error *error) {
     return is_input(cause) ? error_input(error, path, "%s: %s", what, strerror(cause))
                            : error_system(error, path, "%s: %s", what, strerror(cause));
 }
 
-/* Steps from an open folder into one in it. Closes the first. */
-static int step_into(int folder, const char *name, bool create) {
-    int next = openat(folder, name, OPEN_FOLDER | O_NOFOLLOW);
-    if (next < 0 && errno == ENOENT && create && (mkdirat(folder, name, 0777) == 0 || errno == EEXIST))
-        next = openat(folder, name, OPEN_FOLDER | O_NOFOLLOW);
-    int cause = errno;
-    close(folder);
-    errno = cause;
-    return next;
-}
-
-/* Steps into each folder of *path that ends with a slash; *path moves behind the last. Closes the first. */
+/* Steps from an open folder into each folder of *path that ends with a slash; *path moves behind the last. Closes the
+   first. create: makes those that are missing. */
 static int walk(int folder, const char **path, bool create) {
-    for (const char *slash; folder >= 0 && (slash = strchr(*path, '/')) != NULL;) {
+    for (const char *slash; folder >= 0 && (slash = strchr(*path, '/')) != NULL; *path = slash + 1) {
         char part[NAME_MAX + 1];
         const size_t length = (size_t)(slash - *path);
         if (length >= sizeof part) {
@@ -66,17 +56,23 @@ static int walk(int folder, const char **path, bool create) {
         }
         memcpy(part, *path, length);
         part[length] = '\0';
-        if (length > 0 && strcmp(part, ".") != 0) folder = step_into(folder, part, create);
-        *path = slash + 1;
+        if (length == 0 || strcmp(part, ".") == 0) continue;
+        int next = openat(folder, part, OPEN_FOLDER | O_NOFOLLOW);
+        if (next < 0 && errno == ENOENT && create && (mkdirat(folder, part, 0777) == 0 || errno == EEXIST))
+            next = openat(folder, part, OPEN_FOLDER | O_NOFOLLOW);
+        const int cause = errno;
+        close(folder);
+        errno = cause;
+        folder = next;
     }
     return folder;
 }
 
-/* Opens a folder that the user named, or one that is only read: links in `path` are followed. Then root_close(). */
+/* Opens a folder that the user named, or one that is only read: links in `path` are followed. */
 static bool root_open(Root *root, const char *path, Error *error) {
     *root = (Root){open(path, OPEN_FOLDER), path};
     if (root->folder >= 0) return true;
-    return approve_refuse(errno, path, "the folder cannot be opened", error);
+    return refuse(errno, path, "the folder cannot be opened", error);
 }
 
 const char *path_below_current(const char *path) {
@@ -114,8 +110,6 @@ static bool root_open_below(Root *root, const char *path, const char *report, Er
                            : error_system(error, path, "the folder cannot be opened: %s", strerror(cause));
 }
 
-static void root_close(const Root *root) { close(root->folder); }
-
 /* Opens the directory of `name` in the root; `name` is relative, without "." and "..". create: makes the folders that
    are missing. ERROR_INPUT if one is a link or no folder. After success, place_close(). */
 static bool place_open(Place *place, const Root *root, const char *name, bool create, Error *error) {
@@ -123,9 +117,8 @@ static bool place_open(Place *place, const Root *root, const char *name, bool cr
     place->name = name;
     place->folder = walk(fcntl(root->folder, F_DUPFD_CLOEXEC, 0), &place->name, create);
     if (place->folder >= 0 || errno == ENOENT) return true;
-    return approve_refuse(errno, place->path,
-                          is_input(errno) ? "its folder cannot be opened, or is a link" : "its folder cannot be opened",
-                          error);
+    return refuse(errno, place->path,
+                  is_input(errno) ? "its folder cannot be opened, or is a link" : "its folder cannot be opened", error);
 }
 
 static void place_close(const Place *place) {
@@ -181,6 +174,16 @@ static bool read_file(const JsonReader *json, const json_t *item, const char *ke
     return file->name != NULL || error_memory(error, json->path);
 }
 
+static void free_names(const ApprovalItem *item) {
+    free(item->expected.name);
+    free(item->actual.name);
+}
+
+void approval_free(ApprovalList *list) {
+    for (size_t i = 0; i < list->count; i++) free_names(&list->items[i]);
+    free(list->items);
+}
+
 static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem *item, Error *error) {
     if (!json_is_object(value)) return json_read_error(json, error, "a frame or trajectory must be an object");
     if (!read_flag(json, value, "failed", &item->failed, error) ||
@@ -190,16 +193,6 @@ static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem 
         return false;
     return item->expected.name != NULL || item->actual.name != NULL ||
            json_read_error(json, error, "an expected or an actual file is required");
-}
-
-static void free_names(const ApprovalItem *item) {
-    free(item->expected.name);
-    free(item->actual.name);
-}
-
-/* The name of the expected file; if that is new, of the actual one. */
-static const char *target_of(const ApprovalItem *item) {
-    return item->expected.name != NULL ? item->expected.name : item->actual.name;
 }
 
 static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
@@ -219,63 +212,46 @@ static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Er
     return true;
 }
 
-static bool read_member(JsonReader *json, int member, ApprovalList *list, Error *error) {
-    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, error);
-    const json_t *value = json_read_value(json, error);
-    if (value == NULL || member == MEMBERS) return value != NULL;
-    const char *text = read_text(json, value, members[member], PATH_MAX - 1, error);
-    if (text == NULL) return false;
-    if (member == FORMAT)
-        return strcmp(text, "twinbox compare 1") == 0 ||
-               json_read_error(json, error, "not a report of twinbox compare");
-    strcpy(member == EXPECTED_FOLDER ? list->expected : list->actual, text);
-    return true;
-}
-
-/* The next member's key and colon. *member is MEMBERS for a key that is not in the list. */
-static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *error) {
-    const json_t *key = json_read_value(json, error);
-    if (key == NULL) return false;
-    if (!json_is_string(key)) return json_read_error(json, error, "a key must be a string");
-    *member = 0;
-    while (*member < MEMBERS && strcmp(json_string_value(key), members[*member]) != 0) ++*member;
-    if (*member < MEMBERS && seen[*member]) return json_read_error(json, error, "duplicate key");
-    if (*member < MEMBERS) seen[*member] = true;
-    return json_read_char(json, ':') || json_read_error(json, error, "':' expected");
-}
-
-static int by_target(const void *a, const void *b) {
-    const ApprovalItem *const *x = a, *const *y = b;
-    return strcmp(target_of(*x), target_of(*y));
-}
-
-/* compare names a file once; many copies of an item would write one file as many times. */
-static bool refuse_twice(const ApprovalList *list, const char *path, Error *error) {
-    const ApprovalItem **items = malloc((list->count + 1) * sizeof *items);
-    bool ok = items != NULL || error_memory(error, path);
-    for (size_t i = 0; ok && i < list->count; i++) items[i] = &list->items[i];
-    if (ok) qsort(items, list->count, sizeof *items, by_target);
-    for (size_t i = 1; ok && i < list->count; i++)
-        if (by_target(&items[i - 1], &items[i]) == 0)
-            ok = error_input(error, path, "'%s' is there twice", target_of(items[i]));
-    free(items);
-    return ok;
-}
-
 static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
     bool seen[MEMBERS] = {false};
     if (!json_read_char(json, '{')) return json_read_error(json, error, "not a report of twinbox compare");
     for (bool more = true; more;) {
-        int member = MEMBERS;
-        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, error) ||
-            !json_read_more(json, '}', &more, error))
+        const json_t *value = json_read_value(json, error); /* the key */
+        int member = 0;
+        if (value == NULL) return false;
+        if (!json_is_string(value)) return json_read_error(json, error, "a key must be a string");
+        while (member < MEMBERS && strcmp(json_string_value(value), members[member]) != 0) member++;
+        if (member < MEMBERS && seen[member]) return json_read_error(json, error, "duplicate key");
+        if (member < MEMBERS) seen[member] = true;
+        if (!json_read_char(json, ':')) return json_read_error(json, error, "':' expected");
+        if (member == FRAMES || member == TRAJECTORIES) {
+            if (!read_items(json, members[member], list, error)) return false;
+        } else if ((value = json_read_value(json, error)) == NULL) {
             return false;
+        } else if (member < MEMBERS) {
+            const char *text = read_text(json, value, members[member], PATH_MAX - 1, error);
+            if (text == NULL) return false;
+            if (member == FORMAT && strcmp(text, "twinbox compare 1") != 0)
+                return json_read_error(json, error, "not a report of twinbox compare");
+            if (member != FORMAT) strcpy(member == EXPECTED_FOLDER ? list->expected : list->actual, text);
+        }
+        if (!json_read_more(json, '}', &more, error)) return false;
     }
     if (!json_read_end(json, error)) return false;
     for (int i = 0; i < MEMBERS; i++)
         if (!seen[i])
             return error_input(error, json->path, "'%s' is missing: not a report of twinbox compare", members[i]);
-    return refuse_twice(list, json->path, error);
+    return true;
+}
+
+/* The name of the expected file; if that is new, of the actual one. */
+static const char *target_of(const ApprovalItem *item) {
+    return item->expected.name != NULL ? item->expected.name : item->actual.name;
+}
+
+static int by_target(const void *a, const void *b) {
+    const ApprovalItem *const *x = a, *const *y = b;
+    return strcmp(target_of(*x), target_of(*y));
 }
 
 bool approval_read(ApprovalList *list, const char *path, Error *error) {
@@ -284,13 +260,17 @@ bool approval_read(ApprovalList *list, const char *path, Error *error) {
     *list = (ApprovalList){.count = 0};
     bool ok = read_list(&json, list, error);
     json_read_close(&json);
+    /* compare names a file once; many copies of an item would write one file as many times. */
+    const ApprovalItem **items = malloc((list->count + 1) * sizeof *items);
+    ok = ok && (items != NULL || error_memory(error, path));
+    for (size_t i = 0; ok && i < list->count; i++) items[i] = &list->items[i];
+    if (ok) qsort(items, list->count, sizeof *items, by_target);
+    for (size_t i = 1; ok && i < list->count; i++)
+        if (by_target(&items[i - 1], &items[i]) == 0)
+            ok = error_input(error, path, "'%s' is there twice", target_of(items[i]));
+    free(items);
     if (!ok) approval_free(list);
     return ok;
-}
-
-void approval_free(ApprovalList *list) {
-    for (size_t i = 0; i < list->count; i++) free_names(&list->items[i]);
-    free(list->items);
 }
 
 /* The limit of a trajectory file. */
@@ -341,7 +321,7 @@ static bool refuse_changed(const Root *root, const char *name, Error *error) {
            error_input(error, path, "has changed since the report was written; compare again");
 }
 
-static bool approve_decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
+static bool decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
     Found expected, actual = {.there = false};
     if (!inspect(&folders->expected, target_of(item), &expected, error)) return false;
     *action = ACTION_NONE;
@@ -357,110 +337,94 @@ static bool approve_decide(const Folders *folders, const ApprovalItem *item, Act
 #define CHANGED "has changed during the approval"
 
 /* Reads the actual file again and checks the hash of exactly the bytes that are written. */
-static bool approve_copy(const Folders *folders, const ApprovalFile *actual, const Place *target, Error *error) {
-    Place source;
-    size_t size;
-    if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
-    if (source.folder < 0) return error_input(error, source.path, CHANGED);
-    char *data = file_read_at(source.folder, source.name, source.path, MAX_FILE_SIZE, &size, error);
-    bool ok = data != NULL && (hash_xxh3(data, size) == actual->hash || error_input(error, source.path, CHANGED)) &&
-              file_write_at(target->folder, target->name, target->path, data, size, error);
-    free(data);
-    place_close(&source);
-    return ok;
-}
-
-static bool approve_apply(const Folders *folders, const ApprovalItem *item, Action action,
-                          void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
+static bool apply(const Folders *folders, const ApprovalItem *item, Action action, const ApprovalRequest *request,
+                  Approval *approval, Error *error) {
     static const char *const words[] = {"", "replaced", "added", "removed"};
     int *counts[] = {&approval->already, &approval->replaced, &approval->added, &approval->removed};
-    Place target;
+    Place target, source = {.folder = -1};
     (*counts[action])++;
     if (action == ACTION_NONE) return true;
     if (!place_open(&target, &folders->expected, target_of(item), action == ACTION_ADD, error)) return false;
     bool ok = target.folder >= 0 || error_input(error, target.path, CHANGED);
-    if (ok && action == ACTION_REMOVE)
+    if (ok && action == ACTION_REMOVE) {
         ok = unlinkat(target.folder, target.name, 0) == 0 ||
              error_system(error, target.path, "cannot be removed: %s", strerror(errno));
-    else if (ok)
-        ok = approve_copy(folders, &item->actual, &target, error);
-    if (ok) on_change(words[action], target.path);
+    } else if (ok && (ok = place_open(&source, &folders->actual, item->actual.name, false, error))) {
+        size_t size;
+        char *data = source.folder < 0
+                         ? (error_input(error, source.path, CHANGED), NULL)
+                         : file_read_at(source.folder, source.name, source.path, MAX_FILE_SIZE, &size, error);
+        ok = data != NULL && (hash_xxh3(data, size) == item->actual.hash || error_input(error, source.path, CHANGED)) &&
+             file_write_at(target.folder, target.name, target.path, data, size, error);
+        free(data);
+    }
+    place_close(&source);
+    if (ok) request->on_change(words[action], target.path);
     place_close(&target);
     return ok;
 }
 
+/* Whether the request is about the item; counts why it is not. home.png also selects home.1.png, where that is
+   replaced. */
 static bool is_selected(const ApprovalItem *item, const ApprovalRequest *request, Approval *approval) {
-    const char *only = request->only;
-    bool matches = only == NULL || fnmatch(only, target_of(item), 0) == 0 ||
-                   (item->actual.name != NULL &&
-                    fnmatch(only, item->actual.name, 0) == 0); /* home.png, where home.1.png is replaced */
-    bool kept = matches && request->missing == MISSING_KEPT && item->actual.name == NULL;
+    const char *only = request->only, *actual = item->actual.name;
+    const bool matches =
+        only == NULL || fnmatch(only, target_of(item), 0) == 0 || (actual != NULL && fnmatch(only, actual, 0) == 0);
+    const bool kept = matches && request->missing == MISSING_KEPT && actual == NULL;
     approval->not_selected += !matches;
     approval->kept += kept;
     approval->not_shown += matches && !kept && !item->shown;
     return matches && !kept && item->shown;
 }
 
-/* Nobody knows here whether what is missing is gone, or was only not drawn this time. */
-static bool refuse_removal(const ApprovalList *list, const Action *actions, const char *report, Error *error) {
-    enum { NAMED = 5 };
-    char names[1024] = "";
-    int count = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        if (actions[i] != ACTION_REMOVE) continue;
-        if (count++ < NAMED) text_join(names, sizeof names, ", ", "%.100s", target_of(&list->items[i]));
-    }
-    if (count > NAMED) text_join(names, sizeof names, ", ", "and %d more", count - NAMED);
-    return count == 0 || error_input(error, report,
-                                     "%d expected file%s no actual one: %s; --partial keeps, --remove removes "
-                                     "such files",
-                                     count, count == 1 ? " has" : "s have", names);
-}
-
+/* Decides about all files before it changes the first. */
 static bool approve_list(const ApprovalList *list, const Folders *folders, const ApprovalRequest *request,
                          Approval *approval, Error *error) {
-    const char *only = request->only;
+    enum { NAMED = 5 };
+    char names[1024] = "";
+    int removed = 0;
     Action *actions = calloc(list->count + 1, sizeof *actions);
-    if (actions == NULL) return error_memory(error, "approve");
-    bool ok = true;
+    bool ok = actions != NULL || error_memory(error, "approve");
     for (size_t i = 0; ok && i < list->count; i++) {
+        const ApprovalItem *item = &list->items[i];
         actions[i] = ACTION_NOT_SELECTED;
-        if (is_selected(&list->items[i], request, approval))
-            ok = approve_decide(folders, &list->items[i], &actions[i], error);
+        if (is_selected(item, request, approval)) ok = decide(folders, item, &actions[i], error);
+        if (actions[i] == ACTION_REMOVE && removed++ < NAMED)
+            text_join(names, sizeof names, ", ", "%.100s", target_of(item));
     }
-    if (ok && only != NULL && list->count > 0 && approval->not_selected == (int)list->count)
-        ok = error_input(error, "--only", "'%s' matches none of the %zu files that failed", only, list->count);
-    if (ok && request->missing == MISSING_REFUSED) ok = refuse_removal(list, actions, request->report, error);
+    if (ok && request->only != NULL && list->count > 0 && approval->not_selected == (int)list->count)
+        ok = error_input(error, "--only", "'%s' matches none of the %zu files that failed", request->only, list->count);
+    /* Nobody knows here whether what is missing is gone, or was only not drawn this time. */
+    if (removed > NAMED) text_join(names, sizeof names, ", ", "and %d more", removed - NAMED);
+    if (ok && request->missing == MISSING_REFUSED && removed > 0)
+        ok = error_input(error, request->report,
+                         "%d expected file%s no actual one: %s; --partial keeps, --remove removes such files", removed,
+                         removed == 1 ? " has" : "s have", names);
     for (size_t i = 0; ok && i < list->count; i++)
         if (actions[i] != ACTION_NOT_SELECTED)
-            ok = approve_apply(folders, &list->items[i], actions[i], request->on_change, approval, error);
+            ok = apply(folders, &list->items[i], actions[i], request, approval, error);
     free(actions);
     return ok;
 }
 
 /* A foreign report chooses the folders: it may have any read, but only one below the current directory changed. */
-static bool approve_in_folders(const ApprovalRequest *request, const ApprovalList *list, const char *report,
-                               Approval *approval, Error *error) {
-    Folders folders;
-    if (!(request->expected != NULL ? root_open(&folders.expected, request->expected, error)
-                                    : root_open_below(&folders.expected, list->expected, report, error)))
-        return false;
-    bool ok = root_open(&folders.actual, list->actual, error);
-    if (ok) {
-        ok = approve_list(list, &folders, request, approval, error);
-        root_close(&folders.actual);
-    }
-    root_close(&folders.expected);
-    return ok;
-}
-
 bool approve(const ApprovalRequest *request, Approval *approval, Error *error) {
     char path[PATH_MAX];
     ApprovalList list;
+    Folders folders;
     *approval = (Approval){0};
     if (!file_path(path, sizeof path, error, "%s/results.json", request->report) || !approval_read(&list, path, error))
         return false;
-    bool ok = approve_in_folders(request, &list, path, approval, error);
+    bool ok = request->expected != NULL ? root_open(&folders.expected, request->expected, error)
+                                        : root_open_below(&folders.expected, list.expected, path, error);
+    if (ok) {
+        ok = root_open(&folders.actual, list.actual, error);
+        if (ok) {
+            ok = approve_list(&list, &folders, request, approval, error);
+            close(folders.actual.folder);
+        }
+        close(folders.expected.folder);
+    }
     approval_free(&list);
     return ok;
 }

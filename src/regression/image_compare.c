@@ -201,16 +201,18 @@ static int join(RegionScan *scan, int a, int b) {
     return root;
 }
 
-static bool is_before(const ImageRegion *a, const ImageRegion *b) {
-    if (a->pixels != b->pixels) return a->pixels > b->pixels;
-    return a->top != b->top ? a->top < b->top : a->left < b->left;
-}
-
+/* Of regions that are complete. */
 static void keep_largest(ImageRegions *regions, const ImageRegion *region) {
     int at = regions->kept;
     regions->count++;
     regions->edges += region->edges;
-    while (at > 0 && is_before(region, &regions->list[at - 1])) at--;
+    for (; at > 0; at--) {
+        const ImageRegion *other = &regions->list[at - 1];
+        if (region->pixels != other->pixels ? region->pixels < other->pixels
+            : region->top != other->top     ? region->top > other->top
+                                            : region->left >= other->left)
+            break;
+    }
     if (at == IMAGE_REGIONS_MAX) return;
     int last = regions->kept < IMAGE_REGIONS_MAX ? regions->kept++ : IMAGE_REGIONS_MAX - 1;
     memmove(&regions->list[at + 1], &regions->list[at], (size_t)(last - at) * sizeof *region);

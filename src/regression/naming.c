@@ -142,13 +142,6 @@ static bool place(const Panel *panel, const Trajectory *run, int body, DrawnBox 
     return true;
 }
 
-/* The largest movement of a corner. */
-static double movement(const DrawnBox *a, const DrawnBox *b) {
-    double reach = sqrt(a->half_width * a->half_width + a->half_height * a->half_height);
-    double x = b->x - a->x, y = b->y - a->y, cosine = b->cosine - a->cosine, sine = b->sine - a->sine;
-    return sqrt(x * x + y * y) + reach * sqrt(cosine * cosine + sine * sine);
-}
-
 /* The order of drawing. */
 typedef enum Layer { LAYER_STATIC, LAYER_DYNAMIC, LAYER_BOMB, LAYERS } Layer;
 
@@ -235,24 +228,21 @@ static bool name_moved(Panel *panel, Error *error) {
     return true;
 }
 
-static void count_unknown(Panel *panel) {
-    const ViewRect rect = clip(panel->naming, panel->view->rect);
-    for (int i = 0; i < panel->count; i++) panel->bodies[i].pixels = 0;
-    for (int y = rect.top; y < rect.bottom; y++) {
-        const uint8_t *const owners = panel->naming->owners + (size_t)y * panel->naming->width;
-        const int32_t *const tops = panel->naming->tops + (size_t)y * panel->naming->width;
-        for (int x = rect.left; x < rect.right; x++)
-            if (owners[x] == OWNER_UNKNOWN && tops[x] >= 0 && tops[x] < panel->count) panel->bodies[tops[x]].pixels++;
-    }
-}
-
 /* Bodies whose pixels differ although their states do not: those with the most unknown pixels one by one, as what is
    around them is their edge, also where it lies on others; then the others: their number, or the only one. */
 static void name_changed(Panel *panel) {
     paint_tops(panel);
     for (int named = 0; named <= CHANGED; named++) {
+        const ViewRect rect = clip(panel->naming, panel->view->rect);
         int most = -1, count = 0;
-        count_unknown(panel);
+        for (int i = 0; i < panel->count; i++) panel->bodies[i].pixels = 0;
+        for (int y = rect.top; y < rect.bottom; y++) {
+            const uint8_t *const owners = panel->naming->owners + (size_t)y * panel->naming->width;
+            const int32_t *const tops = panel->naming->tops + (size_t)y * panel->naming->width;
+            for (int x = rect.left; x < rect.right; x++)
+                if (owners[x] == OWNER_UNKNOWN && tops[x] >= 0 && tops[x] < panel->count)
+                    panel->bodies[tops[x]].pixels++;
+        }
         for (int i = 0; i < panel->count; i++) {
             count += panel->bodies[i].pixels > 0;
             if (panel->bodies[i].pixels > (most < 0 ? 0 : panel->bodies[most].pixels)) most = i;
@@ -286,7 +276,11 @@ static bool name_bodies(Naming *naming, int number, Error *error) {
             for (int side = 0; side < 2; side++)
                 drawn.exists[side] = place(&panel, panel.runs[side], body, &drawn.box[side]);
             if (drawn.exists[0] != drawn.exists[1]) drawn.moved = INFINITY;
-            if (drawn.exists[0] && drawn.exists[1]) drawn.moved = movement(&drawn.box[0], &drawn.box[1]);
+            if (drawn.exists[0] && drawn.exists[1]) {
+                const DrawnBox *a = &drawn.box[0], *b = &drawn.box[1];
+                drawn.moved = hypot(b->x - a->x, b->y - a->y) +
+                              hypot(a->half_width, a->half_height) * hypot(b->cosine - a->cosine, b->sine - a->sine);
+            }
             if (drawn.exists[0] || drawn.exists[1]) panel.bodies[panel.count++] = drawn;
             if (drawn.exists[0]) area += area_of(bounds(&drawn.box[0], 1, panel.view->rect));
         }

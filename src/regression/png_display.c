@@ -101,16 +101,6 @@ static Value value_of(int kind, const PngChunk *chunk) {
     return value;
 }
 
-/* Chunks without a short value: "cHRM differs". */
-static void describe(int kind, const PngChunk *a, const PngChunk *b, PngDisplay *display) {
-    const char *name = kind == EXIF ? "orientation" : types[kind];
-    Value first = value_of(kind, a), second = value_of(kind, b);
-    if (strcmp(first.text, second.text) == 0)
-        text_join(display->text, sizeof display->text, ", ", "%s differs", name);
-    else
-        text_join(display->text, sizeof display->text, ", ", "%s %s and %s", name, first.text, second.text);
-}
-
 bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size, PngDisplay *display,
                          Error *error) {
     Chunks first = find_chunks(a, a_size), second = find_chunks(b, b_size);
@@ -120,7 +110,13 @@ bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size
         const bool alike = i == ICCP   ? same_profile(x, y, error)
                            : i == EXIF ? orientation(x) == orientation(y)
                                        : same_bytes(x->data, x->length, y->data, y->length);
-        if (!alike) describe(i, x, y, display);
+        if (alike) continue;
+        const char *name = i == EXIF ? "orientation" : types[i];
+        const Value of_x = value_of(i, x), of_y = value_of(i, y);
+        if (strcmp(of_x.text, of_y.text) == 0) /* chunks without a short value */
+            text_join(display->text, sizeof display->text, ", ", "%s differs", name);
+        else
+            text_join(display->text, sizeof display->text, ", ", "%s %s and %s", name, of_x.text, of_y.text);
     }
     return error->kind == ERROR_NONE;
 }

@@ -30,13 +30,6 @@ static bool has_masks(const Regression *regression, const RegressionFrame *frame
     return (mask != NULL && mask->count > 0) || rules_have_masks(regression->rules, frame_name(frame));
 }
 
-/* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
-static bool may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height) {
-    const Mask *mask = regression->options.mask;
-    const double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
-    return hidden + rules_most_hidden(regression->rules, frame_name(frame), width, height) >= (double)width * height;
-}
-
 bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
                        uint8_t **masked, Error *error) {
     const Mask *mask = regression->options.mask;
@@ -167,7 +160,10 @@ static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[
     if (!regression_judge_states(regression, frame, (uint8_t *const[]){a->data, b->data}, error)) return false;
     frame->difference = (ImageDifference){.first_x = -1, .first_y = -1};
     const bool same = png_files_are_same(files);
-    if (same && !may_hide_all(regression, frame, of_a->width, of_a->height)) {
+    const Mask *mask = regression->options.mask;
+    const double hidden = (mask == NULL ? 0 : mask_most_hidden(mask, of_a->width, of_a->height)) +
+                          rules_most_hidden(regression->rules, frame_name(frame), of_a->width, of_a->height);
+    if (same && hidden < (double)of_a->width * of_a->height) { /* else masks may hide everything: that is told now */
         frame->difference.equal = frame->difference.same_size = true;
         return true;
     }
@@ -221,22 +217,6 @@ static bool compare_files(Regression *regression, RegressionFrame *frame, Error 
     return ok;
 }
 
-static bool check_file(const char *path, Error *error) {
-    size_t size;
-    int width, height;
-    uint8_t *data = image_load_png(path, &size, error);
-    bool ok = data != NULL && png_check(data, size, path, &width, &height, error);
-    free(data);
-    return ok;
-}
-
-static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
-    const ImageDifference *x = &a->difference, *y = &b->difference;
-    if (frame_failed(a) != frame_failed(b)) return frame_failed(b);
-    if (x->same_size != y->same_size) return x->same_size;
-    return x->pixels != y->pixels ? x->pixels < y->pixels : x->largest < y->largest;
-}
-
 /* Sets what the frame's files alone tell: pixels, states, metadata, changes. Where several pictures are accepted, the
    first that passes counts, or else the closest. Thread-safe. ERROR_INPUT if a file cannot be read. */
 static bool compare_accepted(Regression *regression, RegressionFrame *frame, Error *error) {
@@ -244,12 +224,22 @@ static bool compare_accepted(Regression *regression, RegressionFrame *frame, Err
     if (!compare_files(regression, frame, error)) return false;
     for (const SequenceFrame *other = frame->base->next; other != NULL; other = other->next) {
         if (!frame_failed(frame)) { /* it is not needed, but damage is told */
-            if (!check_file(other->path, error)) return false;
+            size_t size;
+            int width, height;
+            uint8_t *data = image_load_png(other->path, &size, error);
+            const bool sound = data != NULL && png_check(data, size, other->path, &width, &height, error);
+            free(data);
+            if (!sound) return false;
             continue;
         }
         RegressionFrame attempt = fresh;
         attempt.at[EXPECTED] = other;
-        bool ok = compare_files(regression, &attempt, error), closer = ok && is_closer(&attempt, frame);
+        const bool ok = compare_files(regression, &attempt, error);
+        const ImageDifference *now = &attempt.difference, *best = &frame->difference;
+        const bool closer = ok && (!frame_failed(&attempt)             ? true
+                                   : now->same_size != best->same_size ? now->same_size
+                                   : now->pixels != best->pixels       ? now->pixels < best->pixels
+                                                                       : now->largest < best->largest);
         free(closer ? frame->changes : attempt.changes);
         if (closer) *frame = attempt;
         if (!ok) return false;
@@ -411,39 +401,30 @@ static bool read_rules(Regression *regression, Error *error) {
 
 static bool is_any(const char *name) { return (void)name, true; }
 
-static bool is_empty(const char *folder) {
-    FolderList files;
-    Error ignored = {0};
-    if (!folder_list(&files, folder, is_any, true, &ignored)) return false;
-    const bool empty = files.count == 0;
-    folder_list_free(&files);
-    return empty;
-}
-
-/* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared. */
-static bool refuse_empty(const Regression *regression, Error *error) {
-    bool runs_alone = regression->count == 0 && regression->run_count > 0;
+/* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared. Through
+   a link or another spelling of the path, the same folder is a mistake; the same path twice is meant. */
+static bool check_inputs(const Regression *regression, const char *const paths[SIDES], Error *error) {
+    const ImageSequence *a = regression->sequences[EXPECTED], *b = regression->sequences[ACTUAL];
+    const bool runs_alone = regression->count == 0 && regression->run_count > 0;
+    if (a->device == b->device && a->inode == b->inode && strcmp(paths[EXPECTED], paths[ACTUAL]) != 0)
+        return error_input(
+            error, paths[ACTUAL],
+            "is the same %s as %s: nothing would be compared; to compare it with itself, write one path twice",
+            a->single ? "file" : "folder", paths[EXPECTED]);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
-        if (sequence->count > 0 || runs_alone) continue;
         const char *pictures = side == EXPECTED ? "expected" : "actual";
-        if (is_empty(sequence->folder))
-            return error_input(error, sequence->folder, "the folder of the %s pictures is empty", pictures);
+        FolderList files;
+        if (sequence->count > 0 || runs_alone) continue;
+        const bool listed = folder_list(&files, sequence->folder, is_any, true, &(Error){0});
+        const bool empty = listed && files.count == 0;
+        if (listed) folder_list_free(&files);
+        if (empty) return error_input(error, sequence->folder, "the folder of the %s pictures is empty", pictures);
         return error_input(error, sequence->folder,
                            "the folder of the %s pictures has no PNG files (such as frame_000000.png)%s", pictures,
                            sequence->skipped > 0 ? ", only its subfolders do" : "");
     }
     return true;
-}
-
-/* Through a link or another spelling of the path, that is a mistake; the same path twice is meant. */
-static bool refuse_same(const Regression *regression, const char *expected, const char *actual, Error *error) {
-    const ImageSequence *a = regression->sequences[EXPECTED], *b = regression->sequences[ACTUAL];
-    if (a->device != b->device || a->inode != b->inode || strcmp(expected, actual) == 0) return true;
-    return error_input(
-        error, actual,
-        "is the same %s as %s: nothing would be compared; to compare it with itself, write one path twice",
-        a->single ? "file" : "folder", expected);
 }
 
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
@@ -454,11 +435,11 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     const ParallelWork work = {compare_frame, regression};
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
-              refuse_same(regression, expected, actual, error) && pair_frames(regression, error);
+              pair_frames(regression, error);
     poses->given = poses->given && (regression->count == 0 || (options->tolerance.given & LIMIT_TOLERANCE) == 0);
-    ok = ok && regression_find_runs(regression, error) && refuse_empty(regression, error) &&
-         read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
-         judge_sequences(regression, error);
+    ok = ok && regression_find_runs(regression, error) &&
+         check_inputs(regression, (const char *const[]){expected, actual}, error) && read_rules(regression, error) &&
+         parallel_for(&work, regression->count, actual, progress, error) && judge_sequences(regression, error);
     if (ok) count(regression);
     ok = ok && regression_find_causes(regression, error);
     regression->seconds = clock_seconds() - begun;

@@ -164,39 +164,23 @@ static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     json_end(json);
 }
 
-static void write_run(JsonWriter *json, const RegressionRun *run) {
-    json_begin_object(json, NULL, JSON_ONE_LINE);
-    json_put_text(json, "name", run->name);
-    json_put_text(json, "verdict", run_verdict(run));
-    json_put_bool(json, "failed", run_failed(run));
-    json_put_bool(json, "shown", true);
-    json_put_text(json, "words", run_words(run).text);
-    write_file(json, "expected", run->alone[ACTUAL] ? NULL : run->name, &run->files[EXPECTED]);
-    write_file(json, "actual", run->alone[EXPECTED] ? NULL : run->name, &run->files[ACTUAL]);
-    json_end(json);
-}
-
-static void write_counts(JsonWriter *json, const Regression *regression) {
-    static const char *const keys[] = {
+void regression_write_json(JsonWriter *json, const Regression *regression) {
+    static const char *const counts[] = {
         [PIXELS_EQUAL] = "equal",          [PIXELS_WITHIN] = "within_tolerance", [PIXELS_DIFFER] = "different",
         [PIXELS_RESIZED] = "resized",      [PIXELS_MISSING] = "missing",         [PIXELS_EXTRA] = "extra",
         [PIXELS_UNREAD] = "not_comparable"};
-    json_begin_object(json, "counts", JSON_ONE_LINE);
-    json_put_int(json, "frames", regression->count);
-    for (int i = 0; i < PIXEL_VERDICTS; i++) json_put_int(json, keys[i], regression->by_verdict[i]);
-    json_put_int(json, "trajectories", regression->run_count);
-    json_put_int(json, "trajectories_within_tolerance", regression->run_within);
-    json_put_int(json, "trajectories_different", regression->run_failed);
-    json_end(json);
-}
-
-void regression_write_json(JsonWriter *json, const Regression *regression) {
     json_put_text(json, "expected", regression->sequences[EXPECTED]->folder);
     json_put_text(json, "actual", regression->sequences[ACTUAL]->folder);
     json_put_bool(json, "passed", regression_passed(regression));
     json_put_text(json, "verdict", regression_verdict(regression).text);
     json_put_text(json, "notes", regression_notes(regression).text);
-    write_counts(json, regression);
+    json_begin_object(json, "counts", JSON_ONE_LINE);
+    json_put_int(json, "frames", regression->count);
+    for (int i = 0; i < PIXEL_VERDICTS; i++) json_put_int(json, counts[i], regression->by_verdict[i]);
+    json_put_int(json, "trajectories", regression->run_count);
+    json_put_int(json, "trajectories_within_tolerance", regression->run_within);
+    json_put_int(json, "trajectories_different", regression->run_failed);
+    json_end(json);
     json_put_text(json, "tolerance", regression_limits(regression).text);
     json_put_text(json, "rules", regression->rules == NULL ? NULL : rules_path(regression->rules));
     json_put_int(json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
@@ -209,7 +193,18 @@ void regression_write_json(JsonWriter *json, const Regression *regression) {
     for (int i = 0; i < regression->count; i++) write_frame(json, &regression->frames[i]);
     json_end(json);
     json_begin_array(json, "trajectories", JSON_LINES);
-    for (int i = 0; i < regression->run_count; i++) write_run(json, &regression->runs[i]);
+    for (int i = 0; i < regression->run_count; i++) {
+        const RegressionRun *run = &regression->runs[i];
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        json_put_text(json, "name", run->name);
+        json_put_text(json, "verdict", run_verdict(run));
+        json_put_bool(json, "failed", run_failed(run));
+        json_put_bool(json, "shown", true);
+        json_put_text(json, "words", run_words(run).text);
+        write_file(json, "expected", run->alone[ACTUAL] ? NULL : run->name, &run->files[EXPECTED]);
+        write_file(json, "actual", run->alone[EXPECTED] ? NULL : run->name, &run->files[ACTUAL]);
+        json_end(json);
+    }
     json_end(json);
 }
 

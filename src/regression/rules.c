@@ -94,29 +94,25 @@ static bool read_files(const YamlTree *tree, int node, const Field *field, void 
                       yaml_show(tree, node).text);
 }
 
-static bool read_tolerance(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+/* tolerance, beyond, antialias */
+static bool read_limit(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
+    const char *text = text_of(tree, node), *shown = yaml_show(tree, node).text;
     int64_t value;
+    if (strcmp(field->key, "antialias") == 0) {
+        tolerance->given |= LIMIT_ANTIALIAS;
+        return field_switch(tree, node, field, &tolerance->antialias, error);
+    }
+    if (strcmp(field->key, "beyond") == 0) {
+        tolerance->given |= LIMIT_BEYOND;
+        return pixel_limit_parse(&tolerance->beyond, text) ||
+               yaml_error(tree, node, error, "%s must be " PIXEL_LIMIT_FORM " (got %s)", field->key, shown);
+    }
     tolerance->given |= LIMIT_TOLERANCE;
-    if (!parse_int(text_of(tree, node), 0, 255, &value))
-        return yaml_error(tree, node, error, "%s must be a whole number from 0 to 255 (got %s)", field->key,
-                          yaml_show(tree, node).text);
+    if (!parse_int(text, 0, 255, &value))
+        return yaml_error(tree, node, error, "%s must be a whole number from 0 to 255 (got %s)", field->key, shown);
     tolerance->tolerance = (int)value;
     return true;
-}
-
-static bool read_beyond(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    Tolerance *tolerance = member;
-    tolerance->given |= LIMIT_BEYOND;
-    return pixel_limit_parse(&tolerance->beyond, text_of(tree, node)) ||
-           yaml_error(tree, node, error, "%s must be " PIXEL_LIMIT_FORM " (got %s)", field->key,
-                      yaml_show(tree, node).text);
-}
-
-static bool read_antialias(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    Tolerance *tolerance = member;
-    tolerance->given |= LIMIT_ANTIALIAS;
-    return field_switch(tree, node, field, &tolerance->antialias, error);
 }
 
 static bool read_rectangle(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -185,9 +181,9 @@ static bool read_masks(const YamlTree *tree, int node, const Field *field, void 
 static bool read_rule(const YamlTree *tree, int node, Rule *rule, Error *error) {
     enum { TOLERANCE = offsetof(Rule, tolerance) };
     static const Field fields[] = {{"files", read_files, 0, NULL, true},
-                                   {"tolerance", read_tolerance, TOLERANCE, NULL, false},
-                                   {"beyond", read_beyond, TOLERANCE, NULL, false},
-                                   {"antialias", read_antialias, TOLERANCE, NULL, false},
+                                   {"tolerance", read_limit, TOLERANCE, NULL, false},
+                                   {"beyond", read_limit, TOLERANCE, NULL, false},
+                                   {"antialias", read_limit, TOLERANCE, NULL, false},
                                    {"masks", read_masks, offsetof(Rule, mask), NULL, false},
                                    {NULL, NULL, 0, NULL, false}};
     int nodes[FIELDS_MAX];

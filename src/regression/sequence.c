@@ -85,22 +85,6 @@ static int compare_frames(const void *x, const void *y) {
     return order != 0 ? order : strcmp(a->name, b->name);
 }
 
-static bool list_pictures(ImageSequence *sequence, bool recursive, Error *error) {
-    FolderList files;
-    size_t capacity = 0, length = strlen(sequence->folder) + 2;
-    if (!folder_list(&files, sequence->folder, is_png, recursive, error)) return false;
-    char *before = malloc(length);
-    bool ok = before != NULL || error_memory(error, sequence->folder);
-    if (ok) snprintf(before, length, "%s%s", sequence->folder, strcmp(sequence->folder, "/") == 0 ? "" : "/");
-    for (size_t i = 0; ok && i < files.count; i++) ok = add_frame(sequence, &capacity, before, files.names[i], error);
-    sequence->skipped = (int)files.skipped;
-    free(before);
-    folder_list_free(&files);
-    if (ok && sequence->count > 0)
-        qsort(sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare_frames);
-    return ok;
-}
-
 ImageSequence *image_sequence_open(const char *path, bool recursive, Error *error) {
     struct stat status;
     if (stat(path, &status) != 0) return folder_error(path, error), NULL;
@@ -114,10 +98,22 @@ ImageSequence *image_sequence_open(const char *path, bool recursive, Error *erro
     size_t length = sequence->single ? before : strlen(path), capacity = 0;
     while (length > 1 && path[length - 1] == '/') length--;
     sequence->folder = length == 0 ? strdup(".") : strndup(path, length);
-    char *start = strndup(path, before);
+    const bool root = !sequence->single && sequence->folder != NULL && strcmp(sequence->folder, "/") == 0;
+    char *start = calloc(strlen(path) + 3, 1); /* of each picture's path */
+    FolderList files = {0};
     bool ok = (sequence->folder != NULL && start != NULL) || error_memory(error, path);
-    ok = ok && (sequence->single ? add_frame(sequence, &capacity, start, path + before, error)
-                                 : list_pictures(sequence, recursive, error));
+    if (ok && sequence->single) {
+        memcpy(start, path, before);
+        ok = add_frame(sequence, &capacity, start, path + before, error);
+    } else if (ok && (ok = folder_list(&files, sequence->folder, is_png, recursive, error))) {
+        sprintf(start, "%s%s", sequence->folder, root ? "" : "/");
+        for (size_t i = 0; ok && i < files.count; i++)
+            ok = add_frame(sequence, &capacity, start, files.names[i], error);
+        sequence->skipped = (int)files.skipped;
+        folder_list_free(&files);
+        if (ok && sequence->count > 0)
+            qsort(sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare_frames);
+    }
     free(start);
     if (ok) return sequence;
     image_sequence_close(sequence);

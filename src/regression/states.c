@@ -26,13 +26,6 @@ static bool read_texts(Texts *texts, const uint8_t *data, size_t size, Error *er
            image_find_text(data, size, "State", texts->states, sizeof texts->states, error);
 }
 
-/* The first differing panel: "a1 | b2" and "a1 | c3" give 2. */
-static int first_panel(const char *a, const char *b) {
-    int panel = 1;
-    for (; *a != '\0' && *a == *b; a++, b++) panel += *a == '|';
-    return panel;
-}
-
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              Error *error) {
     Texts texts[SIDES];
@@ -43,7 +36,8 @@ bool regression_judge_states(const Regression *regression, RegressionFrame *fram
     const char *number = texts[EXPECTED].frame, *scene = texts[EXPECTED].scene;
     const int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : picture->number;
     bool known = a[0] != '\0' && b[0] != '\0', differs = known && strcmp(a, b) != 0;
-    if (differs) frame->panel = first_panel(a, b);
+    if (differs) /* the first panel: "a1 | b2" and "a1 | c3" give 2 */
+        for (frame->panel = 1; *a != '\0' && *a == *b; a++, b++) frame->panel += *a == '|';
     /* Runs of the picture's folder and scene, or of any scene if the picture names none. */
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];

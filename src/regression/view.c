@@ -93,26 +93,6 @@ static bool read_view(const JsonReader *json, const json_t *value, FrameView *vi
     return true;
 }
 
-static bool read_size(const JsonReader *json, const json_t *value, FrameView *view, Error *error) {
-    json_int_t width = json_integer_value(json_array_get(value, 0)),
-               height = json_integer_value(json_array_get(value, 1));
-    if (width < 1 || height < 1 || width > MAX_SIDE || height > MAX_SIDE) return bad(json, error, "'size' in pixels");
-    view->width = (int)width, view->height = (int)height;
-    return true;
-}
-
-static void read_look(const json_t *value, FrameView *view) {
-    const char *compare = json_string_value(json_object_get(value, "compare"));
-    const char *camera = json_string_value(json_object_get(value, "camera"));
-    const json_t *show = json_object_get(value, "show");
-    view->marks = compare != NULL && strcmp(compare, "split") != 0;
-    for (size_t i = 0; i < json_array_size(show); i++) {
-        const char *name = json_string_value(json_array_get(show, i));
-        view->marks = view->marks || (name != NULL && strcmp(name, "timeline") != 0 && strcmp(name, "distance") != 0);
-    }
-    view->follows = camera != NULL && (strcmp(camera, "bomb") == 0 || strcmp(camera, "divergence") == 0);
-}
-
 /* The members before the view, and the view. */
 static bool read_members(JsonReader *json, FrameView *view, Error *error) {
     if (!json_read_char(json, '{')) return bad(json, error, "'{'");
@@ -126,8 +106,24 @@ static bool read_members(JsonReader *json, FrameView *view, Error *error) {
         if (strcmp(key, "pictures") == 0) return bad(json, error, "'view' before 'pictures'");
         if (!json_read_char(json, ':')) return bad(json, error, "':'");
         if ((value = json_read_value(json, error)) == NULL) return false;
-        if (strcmp(key, "size") == 0 && !read_size(json, value, view, error)) return false;
-        if (strcmp(key, "look") == 0) read_look(value, view);
+        if (strcmp(key, "size") == 0) {
+            const json_int_t width = json_integer_value(json_array_get(value, 0)),
+                             height = json_integer_value(json_array_get(value, 1));
+            if (width < 1 || height < 1 || width > MAX_SIDE || height > MAX_SIDE)
+                return bad(json, error, "'size' in pixels");
+            view->width = (int)width, view->height = (int)height;
+        } else if (strcmp(key, "look") == 0) {
+            const char *compare = json_string_value(json_object_get(value, "compare"));
+            const char *camera = json_string_value(json_object_get(value, "camera"));
+            const json_t *show = json_object_get(value, "show");
+            view->marks = compare != NULL && strcmp(compare, "split") != 0;
+            for (size_t i = 0; i < json_array_size(show); i++) {
+                const char *name = json_string_value(json_array_get(show, i));
+                view->marks =
+                    view->marks || (name != NULL && strcmp(name, "timeline") != 0 && strcmp(name, "distance") != 0);
+            }
+            view->follows = camera != NULL && (strcmp(camera, "bomb") == 0 || strcmp(camera, "divergence") == 0);
+        }
         if (strcmp(key, "view") == 0) return read_view(json, value, view, error);
         if (!json_read_more(json, '}', &more, error)) return false;
     }
@@ -145,8 +141,6 @@ bool view_read(FrameView *view, const char *path, Error *error) {
     return ok;
 }
 
-static bool same_rect(const ViewRect *a, const ViewRect *b) { return memcmp(a, b, sizeof *a) == 0; }
-
 ViewText view_difference(const FrameView *expected, const FrameView *actual) {
     ViewText words = {""};
     if (expected->width != actual->width || expected->height != actual->height) return words; /* told by the pictures */
@@ -157,7 +151,7 @@ ViewText view_difference(const FrameView *expected, const FrameView *actual) {
     }
     for (int i = 0; i < expected->panel_count; i++) {
         const ViewPanel *a = &expected->panels[i], *b = &actual->panels[i];
-        if (!same_rect(&a->rect, &b->rect)) {
+        if (memcmp(&a->rect, &b->rect, sizeof a->rect) != 0) {
             snprintf(words.text, sizeof words.text,
                      "the place of panel %d differs: (%d, %d) to (%d, %d) and (%d, %d) to (%d, %d)", i + 1,
                      a->rect.left, a->rect.top, a->rect.right, a->rect.bottom, b->rect.left, b->rect.top, b->rect.right,
