@@ -58,8 +58,8 @@ set(module_sources ${module_methods}
 # Where most of the time is spent; the rest is made small.
 set(module_fast
     engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior
-    methods/interior_point methods/interior_scalar methods/islands methods/momentum methods/order methods/soft_step methods/sweeps
-    methods/sweeps_lanes methods/sweeps_scalar
+    methods/interior_point methods/interior_scalar methods/islands methods/engine methods/momentum methods/soft_step methods/sweeps
+    methods/sweeps_lanes
     nets/kernels_scalar)
 
 if(TWINBOX_LIVE)

@@ -15,12 +15,12 @@ static const SettingSpec settings[] = {
     STOPPING_SETTINGS("iterations"),
     {0}};
 
-static void *admm_create(const Settings *chosen, Error *error) {
+static void *create(const Settings *chosen, Error *error) {
     static const Admm standard = {.rule.k = 10};
     return stopping_make(chosen, settings, &standard, sizeof standard, "admm", error);
 }
 
-static void admm_destroy(void *state) {
+static void destroy(void *state) {
     Admm *admm = state;
     if (admm == NULL) return;
     sweeps_free(&admm->sweeps);
@@ -40,69 +40,43 @@ static const AdmmKernels *best_kernels(void) {
 /* Rounded to float: maths libraries differ in the last bits of a double. */
 static double rounded_power(double x, double power) { return (double)(float)pow(x, power); }
 
-/* The penalty at first, and the factor by which it changes. */
-typedef struct Spectrum {
-    double penalty, step;
-} Spectrum;
-
-static Spectrum admm_look(Admm *admm, const AdmmKernels *kernels) {
-    const double largest = kernels->largest(admm), condition = largest / admm_proximal;
-    return (Spectrum){share * sqrt(largest * admm_proximal) * rounded_power(condition, start_power),
-                      rounded_power(condition, step_power)};
-}
-
-/* The spectral rule. */
-static void adapt(Admm *admm, const AdmmKernels *kernels, double step) {
-    const bool larger = admm->primal > balance * admm->dual, smaller = admm->dual > balance * admm->primal;
-    if (!larger && !smaller) return;
-    admm->penalty = fmax(larger ? admm->penalty * step : admm->penalty / step, least_penalty);
-    kernels->factorize(admm);
-}
-
-/* The answer: y, and the velocities that it makes. Sets its residual. */
-static void take_answer(Admm *admm) {
-    for (int i = 0; i < admm->interior.group_count; i++) {
-        const AdmmGroup *g = &admm->groups[i];
-        admm->interior.groups[i].answer_normal = g->root_normal * g->y_normal;
-        admm->interior.groups[i].answer_tangent = g->root_tangent * g->y_tangent;
-    }
-    admm->interior.residual = interior_best()->answer(&admm->interior);
-}
-
-/* True after that many iterations if none follows; the answer is then taken. */
-static bool is_last(Admm *admm, int iterations) {
-    const StoppingRule *rule = &admm->rule;
-    const int done = iterations - rule->k;
-    if (done < 0 || done % STOPPING_BLOCK != 0) return false;
-    take_answer(admm);
-    return done >= rule->more || !(admm->interior.residual >= (double)rule->near);
-}
-
-static bool admm_load(Admm *admm, const ContactProblem *problem) {
-    Interior *s = &admm->interior;
-    return sweeps_begin(&admm->sweeps, sweeps_best_kernel(), problem, true) &&
-           interior_load(s, interior_best(), &admm->sweeps, problem) &&
-           ARRAY_BLOCK_RESERVE(&admm->memory, ARRAY_PART(admm->groups, s->group_count));
-}
-
-static void admm_iterate(Admm *admm) {
+static void iterate(Admm *admm) {
     const AdmmKernels *kernels = best_kernels();
+    const StoppingRule *rule = &admm->rule;
     kernels->begin(admm);
-    const Spectrum first = admm_look(admm, kernels);
-    admm->penalty = first.penalty;
+    const double largest = kernels->largest(admm), condition = largest / admm_proximal;
+    const double step = rounded_power(condition, step_power);
+    admm->penalty = share * sqrt(largest * admm_proximal) * rounded_power(condition, start_power);
     kernels->factorize(admm);
     for (int iterations = 1;; iterations++) {
+        const int done = iterations - rule->k;
         kernels->iterate(admm);
-        if (is_last(admm, iterations)) return;
-        adapt(admm, kernels, first.step);
+        if (done >= 0 && done % STOPPING_BLOCK == 0) {
+            /* The answer: y, and the velocities that it makes. */
+            for (int i = 0; i < admm->interior.group_count; i++) {
+                const AdmmGroup *g = &admm->groups[i];
+                admm->interior.groups[i].answer_normal = g->root_normal * g->y_normal;
+                admm->interior.groups[i].answer_tangent = g->root_tangent * g->y_tangent;
+            }
+            admm->interior.residual = interior_best()->answer(&admm->interior);
+            if (done >= rule->more || !(admm->interior.residual >= (double)rule->near)) return;
+        }
+        /* The spectral rule. */
+        const bool larger = admm->primal > balance * admm->dual, smaller = admm->dual > balance * admm->primal;
+        if (!larger && !smaller) continue;
+        admm->penalty = fmax(larger ? admm->penalty * step : admm->penalty / step, least_penalty);
+        kernels->factorize(admm);
     }
 }
 
-static bool admm_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     static const SequentialOptions options = {.accumulate = true, .warm = true};
     Admm *admm = state;
-    if (!admm_load(admm, problem)) return error_memory(error, "admm");
-    admm_iterate(admm);
+    if (!sweeps_begin(&admm->sweeps, sweeps_best_kernel(), problem, true) ||
+        !interior_load(&admm->interior, interior_best(), &admm->sweeps, problem) ||
+        !ARRAY_BLOCK_RESERVE(&admm->memory, ARRAY_PART(admm->groups, admm->interior.group_count)))
+        return error_memory(error, "admm");
+    iterate(admm);
     if (interior_end(&admm->interior, &admm->sweeps, problem, solution)) return true;
     sequential_impulses_solve(problem, &options, admm->rule.k, solution);
     solution->fallbacks.by_sweeps = 1;
@@ -121,6 +95,6 @@ const ContactSolverKind solver_admm = {
                                          "k=2,near=0.0002,more=10000"),
                     .chart_quick = METHOD_RUNS("k=20", "k=2,near=0.02,more=400"),
                     .stability = METHOD_RUNS("", "k=50")},
-    .create = admm_create,
-    .solve = admm_solve,
-    .destroy = admm_destroy};
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

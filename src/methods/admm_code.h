@@ -25,16 +25,6 @@ static inline void push(const AdmmGroup *g, const BlockPair pairs[BLOCK_PAIRS], 
     block_push(pairs, g->root_normal * normal, g->root_tangent * tangent, target);
 }
 
-/* J^T J of a pair's scaled rows, over D. */
-static inline void stiffness(const AdmmGroup *g, const BlockPair *pair, int slot, double over, Vec4 columns[4]) {
-    for (int c = 0; c < 4; c++) columns[c] = all4(0);
-    for (int k = 0; k < 2; k++) {
-        const double n = g->root_normal[slot + k], t = g->root_tangent[slot + k];
-        const Vec4 along = pair->normal[k] * (n * n * over), across = pair->tangent[k] * (t * t * over);
-        for (int c = 0; c < 4; c++) columns[c] += along * pair->normal[k][c] + across * pair->tangent[k][c];
-    }
-}
-
 static void factorize(Admm *admm) {
     BlockGraph *graph = &admm->interior.graph;
     const double over = 1 / (admm->penalty + admm_proximal);
@@ -42,8 +32,10 @@ static void factorize(Admm *admm) {
     for (int i = 0; i < admm->interior.group_count; i++) {
         for (int half = 0; half < BLOCK_PAIRS; half++) {
             const BlockPair *pair = &admm->interior.pairs[BLOCK_PAIRS * i + half];
-            Vec4 columns[4];
-            stiffness(&admm->groups[i], pair, 2 * half, over, columns);
+            const AdmmGroup *g = &admm->groups[i];
+            Vec4 columns[4]; /* J^T J of scaled rows, over D */
+            block_stiffness(pair, 2 * half, g->root_normal * g->root_normal * over,
+                            g->root_tangent * g->root_tangent * over, all4(0), columns);
             block_add_pair(graph->lu.blocks, pair->a, pair->b, pair->place, columns);
         }
     }

@@ -80,23 +80,6 @@ typedef struct Avbd {
 
 /* The start of a step: where bodies and contacts begin, with what forces and penalties. */
 
-static bool avbd_reserve(Avbd *avbd, const ContactProblem *problem) {
-    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    return array_reserve((void **)&avbd->before, &avbd->before_capacity, bodies, sizeof *avbd->before) &&
-           array_reserve((void **)&avbd->last, &avbd->last_capacity, contacts, sizeof *avbd->last) &&
-           ARRAY_BLOCK_RESERVE(&avbd->arrays, ARRAY_PART(avbd->bodies, bodies), ARRAY_PART(avbd->rotations, bodies),
-                               ARRAY_PART(avbd->poses, bodies), ARRAY_PART(avbd->contacts, contacts),
-                               ARRAY_PART(avbd->visits, 2 * contacts));
-}
-
-/* The share of gravity that the last step's acceleration had: 0 at rest, 1 in free fall. */
-static float falling(const Avbd *avbd, const Body *body, int i, Vec2 gravity, float dt) {
-    float square = vec2_dot(gravity, gravity);
-    if (!avbd->memory.known[i] || !(square > 0)) return 0;
-    Vec2 acceleration = vec2_scale(1.0f / dt, vec2_sub(body->velocity, avbd->before[i]));
-    return contact_clamp(vec2_dot(acceleration, gravity) / square, 0, 1);
-}
-
 /* A body begins where it would be if its contacts gave it the acceleration of the last step. */
 static void begin_body(Avbd *avbd, const Body *body, int i, Vec2 gravity, float dt) {
     avbd->poses[i] = (BodyPose){body->position, body->angle};
@@ -104,7 +87,13 @@ static void begin_body(Avbd *avbd, const Body *body, int i, Vec2 gravity, float 
     avbd->bodies[i] = (AvbdBody){0};
     if (!(body->inv_mass > 0)) return;
     const Vec2 way = vec2_scale(dt, body->velocity), fall = vec2_scale(dt * dt, gravity);
-    const Vec2 guess = vec2_add(way, vec2_scale(falling(avbd, body, i, gravity, dt), fall));
+    const float square = vec2_dot(gravity, gravity);
+    float falling = 0; /* the share of gravity that the last step's acceleration had: 0 at rest, 1 in free fall */
+    if (avbd->memory.known[i] && square > 0) {
+        const Vec2 acceleration = vec2_scale(1.0f / dt, vec2_sub(body->velocity, avbd->before[i]));
+        falling = contact_clamp(vec2_dot(acceleration, gravity) / square, 0, 1);
+    }
+    const Vec2 guess = vec2_add(way, vec2_scale(falling, fall));
     const float turn = dt * body->angular_velocity, inverse = 1.0f / (dt * dt);
     avbd->bodies[i] = (AvbdBody){.moved = {guess.x, guess.y, turn},
                                  .free = {way.x + fall.x, way.y + fall.y, turn},
@@ -127,18 +116,6 @@ static float first_penalty(const Avbd *avbd, const AvbdRow *last, bool loaded, f
     return contact_clamp(penalty, PENALTY_MIN, PENALTY_MAX);
 }
 
-/* Multipliers are the world's impulses, so that a copy of a world has them. */
-static void warm_start(const Avbd *avbd, AvbdContact *contact, const ContactPoint *point, const AvbdContact *last,
-                       float dt) {
-    const float decay = avbd->alpha < 0 ? 1.0f : avbd->alpha * avbd->gamma;
-    const bool loaded = point->warm_normal > 0;
-    AvbdRow *normal = &contact->normal, *tangent = &contact->tangent;
-    normal->force = decay * point->warm_normal / dt;
-    tangent->force = decay * point->warm_tangent / dt;
-    normal->penalty = first_penalty(avbd, last != NULL ? &last->normal : NULL, loaded, point->mass_normal, dt);
-    tangent->penalty = first_penalty(avbd, last != NULL ? &last->tangent : NULL, loaded, point->mass_tangent, dt);
-}
-
 static void begin_contact(Avbd *avbd, const ContactPoint *point, int i, float dt) {
     const int before = avbd->memory.before[i];
     const AvbdContact *last = before >= 0 ? &avbd->last[before] : NULL;
@@ -157,7 +134,14 @@ static void begin_contact(Avbd *avbd, const ContactPoint *point, int i, float dt
     Vec2 gap = vec2_add(centres, vec2_sub(arm_b, arm_a)), tangent = vec2_cross_scalar(point->normal, 1.0f);
     contact.normal = make_row(point->normal, arm_a, arm_b, vec2_dot(gap, point->normal) + COLLISION_MARGIN);
     contact.tangent = make_row(tangent, arm_a, arm_b, vec2_dot(gap, tangent));
-    warm_start(avbd, &contact, point, last, dt);
+    /* Multipliers are the world's impulses, so that a copy of a world has them. */
+    const float decay = avbd->alpha < 0 ? 1.0f : avbd->alpha * avbd->gamma;
+    const bool loaded = point->warm_normal > 0;
+    contact.normal.force = decay * point->warm_normal / dt;
+    contact.tangent.force = decay * point->warm_tangent / dt;
+    contact.normal.penalty = first_penalty(avbd, last != NULL ? &last->normal : NULL, loaded, point->mass_normal, dt);
+    contact.tangent.penalty =
+        first_penalty(avbd, last != NULL ? &last->tangent : NULL, loaded, point->mass_tangent, dt);
     avbd->contacts[i] = contact;
 }
 
@@ -180,9 +164,16 @@ static void list_visits(Avbd *avbd) {
 }
 
 /* Fills the state for a step of the world that has begun. False when memory is short. */
-static bool avbd_begin(Avbd *avbd, const BegunStep *begun) {
+static bool begin(Avbd *avbd, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
-    if (!step_memory_match(&avbd->memory, begun->world, begun->step) || !avbd_reserve(avbd, problem)) return false;
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    if (!step_memory_match(&avbd->memory, begun->world, begun->step) ||
+        !array_reserve((void **)&avbd->before, &avbd->before_capacity, bodies, sizeof *avbd->before) ||
+        !array_reserve((void **)&avbd->last, &avbd->last_capacity, contacts, sizeof *avbd->last) ||
+        !ARRAY_BLOCK_RESERVE(&avbd->arrays, ARRAY_PART(avbd->bodies, bodies), ARRAY_PART(avbd->rotations, bodies),
+                             ARRAY_PART(avbd->poses, bodies), ARRAY_PART(avbd->contacts, contacts),
+                             ARRAY_PART(avbd->visits, 2 * contacts)))
+        return false;
     avbd->body_count = problem->body_count;
     avbd->contact_count = problem->contact_count;
     for (int i = 0; i < avbd->body_count; i++)
@@ -211,13 +202,6 @@ static float tangent_force(const AvbdRow *row, float gap, float most) {
     return contact_clamp(row->force - row->penalty * gap, -most, most);
 }
 
-/* N/m: at its bound a force hardly resists more, the less the further the contact slides (its secant). The 2D program
-   has the penalty there, too: then each pass gives a box that slides only a part of its friction. */
-static float tangent_stiffness(const AvbdRow *row, float gap, float most) {
-    const float way = fabsf(gap);
-    return row->penalty * way > most ? most / way : row->penalty;
-}
-
 /* The symmetric system of a body: rows of the lower triangle and the right-hand side. */
 typedef struct System {
     float xx, yx, yy, tx, ty, tt;
@@ -237,16 +221,6 @@ static void add_row(System *system, const Vec3 *j, float penalty, float force) {
     system->right.turn += force * j->turn;
 }
 
-/* By its factors L D L^T. */
-static Vec3 solved(const System *system) {
-    const float d1 = system->xx, l21 = system->yx / d1, l31 = system->tx / d1;
-    const float d2 = system->yy - l21 * l21 * d1, l32 = (system->ty - l21 * l31 * d1) / d2;
-    const float d3 = system->tt - l31 * l31 * d1 - l32 * l32 * d2;
-    const float y1 = system->right.x, y2 = system->right.y - l21 * y1, y3 = system->right.turn - l31 * y1 - l32 * y2;
-    const float turn = y3 / d3, y = y2 / d2 - l32 * turn, x = y1 / d1 - l21 * y - l31 * turn;
-    return (Vec3){x, y, turn};
-}
-
 static void visit_body(Avbd *avbd, int i, float share) {
     AvbdBody *body = &avbd->bodies[i];
     System system = {.xx = body->mass, .yy = body->mass, .tt = body->inertia};
@@ -260,11 +234,18 @@ static void visit_body(Avbd *avbd, int i, float share) {
         add_row(&system, is_a ? &normal->of_a : &normal->of_b, normal->penalty,
                 normal_force(normal, gap(avbd, contact, normal, share)));
         const float slid = gap(avbd, contact, tangent, share);
-        add_row(&system, is_a ? &tangent->of_a : &tangent->of_b, tangent_stiffness(tangent, slid, most),
-                tangent_force(tangent, slid, most));
+        /* N/m: at its bound a force hardly resists more, the less the further the contact slides (its secant). The 2D
+           program has the penalty there, too: then each pass gives a box that slides only a part of its friction. */
+        const float way = fabsf(slid), stiffness = tangent->penalty * way > most ? most / way : tangent->penalty;
+        add_row(&system, is_a ? &tangent->of_a : &tangent->of_b, stiffness, tangent_force(tangent, slid, most));
     }
-    const Vec3 change = solved(&system);
-    body->moved = (Vec3){body->moved.x + change.x, body->moved.y + change.y, body->moved.turn + change.turn};
+    /* By its factors L D L^T. */
+    const float d1 = system.xx, l21 = system.yx / d1, l31 = system.tx / d1;
+    const float d2 = system.yy - l21 * l21 * d1, l32 = (system.ty - l21 * l31 * d1) / d2;
+    const float d3 = system.tt - l31 * l31 * d1 - l32 * l32 * d2;
+    const float y1 = system.right.x, y2 = system.right.y - l21 * y1, y3 = system.right.turn - l31 * y1 - l32 * y2;
+    const float turn = y3 / d3, y = y2 / d2 - l32 * turn, x = y1 / d1 - l21 * y - l31 * turn;
+    body->moved = (Vec3){body->moved.x + x, body->moved.y + y, body->moved.turn + turn};
 }
 
 /* From the last body to the first, as the 2D program does: gravity enters a stack at its top. */
@@ -320,7 +301,7 @@ static const SettingSpec settings[] = {
     {"gamma", "share of a penalty that the next step begins with (default: 0.99)", SETTING_FLOAT(Avbd, gamma, 0, 1)},
     {0}};
 
-static void avbd_destroy(void *state) {
+static void destroy(void *state) {
     Avbd *avbd = state;
     step_memory_free(&avbd->memory);
     free(avbd->arrays.memory);
@@ -329,14 +310,14 @@ static void avbd_destroy(void *state) {
     free(avbd);
 }
 
-static void *avbd_create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Avbd standard = {.iterations = 10, .alpha = -1, .beta = 1e5f, .gamma = 0.99f};
     (void)scene;
     return settings_make(chosen, settings, &standard, sizeof standard, "avbd", error);
 }
 
 /* The momentum that no contact force accounts for: 0 once the passes have converged. */
-static void avbd_measure(void *state, const BegunStep *begun) {
+static void measure(void *state, const BegunStep *begun) {
     const Avbd *avbd = state;
     const ContactProblem *problem = begun->problem;
     ContactSolution *solution = begun->solution;
@@ -357,33 +338,28 @@ static void avbd_measure(void *state, const BegunStep *begun) {
     solution->momentum_error = sum;
 }
 
-/* False if an impulse is NaN or infinite. */
-static bool avbd_end(Avbd *avbd, const ContactProblem *problem, ContactSolution *solution) {
-    bool finite = true;
+static bool solve(void *state, BegunStep *begun, Error *error) {
+    Avbd *avbd = state;
+    if (!begin(avbd, begun)) return error_memory(error, "avbd");
+    make_passes(avbd, begun->step, begun->problem, begun->solution);
     for (int i = 0; i < avbd->body_count; i++) {
         const Vec3 *moved = &avbd->bodies[i].moved;
         avbd->poses[i].position = vec2_add(avbd->poses[i].position, vec2(moved->x, moved->y));
         avbd->poses[i].angle += moved->turn;
     }
+    begun->poses = avbd->poses;
+    bool finite = true;
     for (int i = 0; i < avbd->contact_count; i++) {
         const AvbdContact *contact = &avbd->contacts[i];
-        solution->impulses[i] =
-            (ContactImpulse){problem->dt * contact->normal.force, problem->dt * contact->tangent.force};
-        finite &= isfinite(solution->impulses[i].normal) && isfinite(solution->impulses[i].tangent);
+        ContactImpulse *impulse = &begun->solution->impulses[i];
+        *impulse =
+            (ContactImpulse){begun->problem->dt * contact->normal.force, begun->problem->dt * contact->tangent.force};
+        finite &= isfinite(impulse->normal) && isfinite(impulse->tangent);
     }
-    return finite;
+    return finite || error_failure(error, FAILURE_NOT_FINITE, "avbd", "an impulse is NaN or infinite");
 }
 
-static bool avbd_solve(void *state, BegunStep *begun, Error *error) {
-    Avbd *avbd = state;
-    if (!avbd_begin(avbd, begun)) return error_memory(error, "avbd");
-    make_passes(avbd, begun->step, begun->problem, begun->solution);
-    begun->poses = avbd->poses;
-    return avbd_end(avbd, begun->problem, begun->solution) ||
-           error_failure(error, FAILURE_NOT_FINITE, "avbd", "an impulse is NaN or infinite");
-}
-
-static void avbd_keep(void *state, const World *world) {
+static void keep(void *state, const World *world) {
     Avbd *avbd = state;
     for (int i = 0; i < avbd->contact_count; i++) avbd->last[i] = avbd->contacts[i];
     for (int i = 0; i < avbd->body_count; i++) avbd->before[i] = avbd->bodies[i].start;
@@ -400,8 +376,8 @@ const SteppingKind stepping_avbd = {
                     .chart = METHOD_RUNS("k=2,beta=1e6", "k=2,beta=1e6,gamma=0.95", "k=10", "k=20", "k=50"),
                     .chart_quick = METHOD_RUNS("k=10"),
                     .stability = METHOD_NO_RUNS},
-    .create = avbd_create,
-    .solve = avbd_solve,
-    .measure = avbd_measure,
-    .keep = avbd_keep,
-    .destroy = avbd_destroy};
+    .create = create,
+    .solve = solve,
+    .measure = measure,
+    .keep = keep,
+    .destroy = destroy};

@@ -19,17 +19,8 @@ void block_lu_free(BlockLu *lu) {
     *lu = (BlockLu){0};
 }
 
-static bool block_lu_reserve(BlockLu *lu, int count, int edge_count) {
-    const size_t nodes = (size_t)count + 2, edges = (size_t)edge_count + 1;
-    return ARRAY_BLOCK_RESERVE(&lu->graph, ARRAY_PART(lu->column, nodes), ARRAY_PART(lu->position, nodes),
-                               ARRAY_PART(lu->order, nodes), ARRAY_PART(lu->start, nodes),
-                               ARRAY_PART(lu->parent, nodes), ARRAY_PART(lu->find, nodes), ARRAY_PART(lu->mark, nodes),
-                               ARRAY_PART(lu->row_start, nodes), ARRAY_PART(lu->neighbour, 2 * edges),
-                               ARRAY_PART(lu->places, edges), ARRAY_PART(lu->edges, edges));
-}
-
 /* Lists of neighbours, without the repeated ones. */
-static void block_lu_connect(BlockLu *lu, int edge_count) {
+static void connect(BlockLu *lu, int edge_count) {
     int32_t *start = lu->start;
     memset(start, 0, ((size_t)lu->count + 2) * sizeof *start);
     for (int i = 0; i < edge_count; i++) {
@@ -97,24 +88,10 @@ static void list_blocks(BlockLu *lu) {
         }
 }
 
-static bool reserve_blocks(BlockLu *lu) {
-    const size_t below = (size_t)lu->below, blocks = (size_t)lu->count + 2 * below + 3;
-    return ARRAY_BLOCK_RESERVE(&lu->filled, ARRAY_PART(lu->blocks, blocks), ARRAY_PART(lu->row, below + 1));
-}
-
 static int find_block(const BlockLu *lu, int row, int column) {
     int x = lu->column[column];
     while (lu->row[x] != row) x++;
     return x;
-}
-
-static void place_edges(BlockLu *lu) {
-    const int lower = lu->count + 1, upper = lower + lu->below + 1;
-    for (int i = 0; i < lu->edge_count; i++) {
-        const int a = lu->position[lu->edges[i].a], b = lu->position[lu->edges[i].b];
-        const int x = a > b ? find_block(lu, a, b) : find_block(lu, b, a);
-        lu->places[i] = a > b ? (BlockPlace){lower + x, upper + x} : (BlockPlace){upper + x, lower + x};
-    }
 }
 
 bool block_lu_analyse(BlockLu *lu, int count, const BlockEdge *edges, int edge_count) {
@@ -123,17 +100,30 @@ bool block_lu_analyse(BlockLu *lu, int count, const BlockEdge *edges, int edge_c
         (size == 0 || memcmp(lu->edges, edges, size) == 0))
         return true;
     lu->edge_count = -1; /* until the new analysis is complete */
-    if (!block_lu_reserve(lu, count, edge_count)) return false;
+    const size_t nodes = (size_t)count + 2, most = (size_t)edge_count + 1;
+    if (!ARRAY_BLOCK_RESERVE(&lu->graph, ARRAY_PART(lu->column, nodes), ARRAY_PART(lu->position, nodes),
+                             ARRAY_PART(lu->order, nodes), ARRAY_PART(lu->start, nodes), ARRAY_PART(lu->parent, nodes),
+                             ARRAY_PART(lu->find, nodes), ARRAY_PART(lu->mark, nodes), ARRAY_PART(lu->row_start, nodes),
+                             ARRAY_PART(lu->neighbour, 2 * most), ARRAY_PART(lu->places, most),
+                             ARRAY_PART(lu->edges, most)))
+        return false;
     lu->count = count;
     if (size > 0) memcpy(lu->edges, edges, size);
-    block_lu_connect(lu, edge_count);
+    connect(lu, edge_count);
     const BlockNeighbours neighbours = {count, lu->start, lu->neighbour};
     if (!block_order_choose(&lu->choice, &neighbours, lu->order)) return false;
     for (int k = 0; k < count; k++) lu->position[lu->order[k]] = k;
-    if (!walk_rows(lu) || !reserve_blocks(lu)) return false;
+    if (!walk_rows(lu)) return false;
+    const size_t below = (size_t)lu->below, blocks = (size_t)lu->count + 2 * below + 3;
+    if (!ARRAY_BLOCK_RESERVE(&lu->filled, ARRAY_PART(lu->blocks, blocks), ARRAY_PART(lu->row, below + 1))) return false;
     list_blocks(lu);
     lu->edge_count = edge_count;
-    place_edges(lu);
+    const int lower = lu->count + 1, upper = lower + lu->below + 1;
+    for (int i = 0; i < edge_count; i++) {
+        const int a = lu->position[lu->edges[i].a], b = lu->position[lu->edges[i].b];
+        const int x = a > b ? find_block(lu, a, b) : find_block(lu, b, a);
+        lu->places[i] = a > b ? (BlockPlace){lower + x, upper + x} : (BlockPlace){upper + x, lower + x};
+    }
     return true;
 }
 
@@ -151,33 +141,22 @@ bool block_graph_reserve(BlockGraph *graph, int body_count, int pair_count) {
                                ARRAY_PART(graph->edge_of, pairs));
 }
 
-/* Returns the number of nodes. */
-static int number_bodies(BlockGraph *graph, const ContactProblem *problem, int pair_count) {
+/* A body that can move but has no inverse mass, in a direction, is 1e20 kg or kg m^2 heavy. */
+static double mass_of(float inverse) { return inverse > 0 ? 1 / (double)inverse : 1e20; }
+
+bool block_graph_load(BlockGraph *graph, const ContactProblem *problem, int pair_count) {
+    /* Nodes: the moving bodies that touch something. */
+    int count = 0, edges = 0;
     memset(graph->nodes, 0, (size_t)problem->body_count * sizeof *graph->nodes);
     for (int i = 0; i < pair_count; i++) graph->nodes[graph->ends[i].a] = graph->nodes[graph->ends[i].b] = 1;
-    int count = 0;
     for (int i = 0; i < problem->body_count; i++)
         graph->nodes[i] = graph->nodes[i] && problem_body_moves(&problem->bodies[i]) ? count++ : -1;
-    return count;
-}
-
-/* Returns the number of edges. */
-static int list_edges(BlockGraph *graph, int pair_count) {
-    int edges = 0;
     for (int i = 0; i < pair_count; i++) {
         const int a = graph->nodes[graph->ends[i].a], b = graph->nodes[graph->ends[i].b];
         graph->edge_of[i] = a >= 0 && b >= 0 ? edges : -1;
         if (graph->edge_of[i] >= 0) graph->edges[edges++] = (BlockEdge){a, b};
     }
-    return edges;
-}
-
-/* A body that can move but has no inverse mass, in a direction, is 1e20 kg or kg m^2 heavy. */
-static double mass_of(float inverse) { return inverse > 0 ? 1 / (double)inverse : 1e20; }
-
-bool block_graph_load(BlockGraph *graph, const ContactProblem *problem, int pair_count) {
-    const int count = number_bodies(graph, problem, pair_count);
-    if (!block_lu_analyse(&graph->lu, count, graph->edges, list_edges(graph, pair_count))) return false;
+    if (!block_lu_analyse(&graph->lu, count, graph->edges, edges)) return false;
     for (int i = 0; i < problem->body_count; i++) {
         if (graph->nodes[i] < 0) continue;
         const ProblemBody *body = &problem->bodies[i];

@@ -63,6 +63,18 @@ static inline void block_add_pair(Block3 *blocks, int a, int b, BlockPlace place
     aa->column[2] += as_body_a(columns[3]);
 }
 
+/* A pair's J^T D J in its own coordinates, by columns: its contact k has D_n = dn[slot + k], D_t = dt[slot + k], and
+   friction that follows the normal impulse by s[slot + k]. */
+static inline void block_stiffness(const BlockPair *pair, int slot, Vec4 dn, Vec4 dt, Vec4 s, Vec4 columns[4]) {
+    for (int c = 0; c < 4; c++) columns[c] = all4(0);
+    for (int k = 0; k < 2; k++) {
+        const Vec4 along = (pair->normal[k] + pair->tangent[k] * s[slot + k]) * dn[slot + k];
+        const Vec4 across = pair->tangent[k] * dt[slot + k];
+        const double *n = (const double *)&pair->normal[k], *t = (const double *)&pair->tangent[k];
+        for (int c = 0; c < 4; c++) columns[c] += along * n[c] + across * t[c];
+    }
+}
+
 /* block times the first three numbers of `by`. */
 static inline Vec4 block_times(const Block3 *block, const Vec4 *by) {
     const double *x = (const double *)by;

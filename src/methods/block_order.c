@@ -29,12 +29,6 @@ static int bits_in(uint64_t word) {
     return (int)(word * UINT64_C(0x0101010101010101) >> 56);
 }
 
-static int bits_of(const uint64_t *row, size_t words) {
-    int bits = 0;
-    for (size_t w = 0; w < words; w++) bits += bits_in(row[w]);
-    return bits;
-}
-
 /* The nodes that are left: a row of bits per node, for its neighbours, and one per degree, for the nodes that have
    it. */
 typedef struct Rows {
@@ -62,19 +56,6 @@ static bool load_rows(BlockOrder *order, const BlockNeighbours *graph, Rows *row
     return true;
 }
 
-/* The node of the smallest degree; the first of several. */
-static int take_node(Rows *rows) {
-    for (;; rows->lowest++) {
-        uint64_t *having = rows->having + (size_t)rows->lowest * rows->words;
-        for (size_t w = 0; w < rows->words; w++)
-            if (having[w] != 0) {
-                const int node = (int)w * WORD + __builtin_ctzll(having[w]);
-                having[w] &= having[w] - 1;
-                return node;
-            }
-    }
-}
-
 /* Joins the neighbours of the node with each other. */
 static void eliminate(Rows *rows, int node) {
     const size_t words = rows->words;
@@ -87,7 +68,9 @@ static void eliminate(Rows *rows, int node) {
             clear_bit(row, other);
             clear_bit(row, node);
             clear_bit(rows->having + (size_t)rows->degree[other] * words, other);
-            const int degree = rows->degree[other] = bits_of(row, words);
+            int degree = 0;
+            for (size_t x = 0; x < words; x++) degree += bits_in(row[x]);
+            rows->degree[other] = degree;
             set_bit(rows->having + (size_t)degree * words, other);
             if (degree < rows->lowest) rows->lowest = degree;
         }
@@ -97,7 +80,15 @@ static bool by_exact_degrees(BlockOrder *order, const BlockNeighbours *graph, in
     Rows rows;
     if (!load_rows(order, graph, &rows)) return false;
     for (int k = 0; k < graph->count; k++) {
-        nodes[k] = take_node(&rows);
+        /* The node of the smallest degree; the first of several. */
+        uint64_t *having = rows.having + (size_t)rows.lowest * rows.words, *end = having + rows.words;
+        for (; *having == 0; having++) {
+            if (having + 1 < end) continue;
+            end += rows.words; /* the row of the next degree */
+            rows.lowest++;
+        }
+        nodes[k] = ((int)(having - end) + (int)rows.words) * WORD + __builtin_ctzll(*having);
+        *having &= *having - 1;
         eliminate(&rows, nodes[k]);
     }
     return true;
@@ -120,18 +111,6 @@ typedef struct Quotient {
     int64_t *start, *seen;       /* seen: 0 for an absorbed element */
 } Quotient;
 
-static bool reserve_quotient(BlockOrder *order, const BlockNeighbours *graph, Quotient *q) {
-    const size_t count = (size_t)graph->count;
-    q->used = (size_t)graph->start[count];
-    q->order = order;
-    return array_reserve((void **)&order->list, &order->list_capacity, q->used + 1, sizeof *order->list) &&
-           ARRAY_BLOCK_RESERVE(&order->arrays, ARRAY_PART(q->length, count), ARRAY_PART(q->elements, count),
-                               ARRAY_PART(q->weight, count), ARRAY_PART(q->degree, count),
-                               ARRAY_PART(q->head, count + 1), ARRAY_PART(q->next, count), ARRAY_PART(q->last, count),
-                               ARRAY_PART(q->bucket, count), ARRAY_PART(q->follower, count), ARRAY_PART(q->tail, count),
-                               ARRAY_PART(q->start, count), ARRAY_PART(q->seen, count));
-}
-
 static void link_node(Quotient *q, int node, int degree) {
     const int first = q->head[degree];
     q->degree[node] = degree;
@@ -151,24 +130,6 @@ static void unlink_node(Quotient *q, int node) {
         q->head[q->degree[node]] = after;
 }
 
-static void load_quotient(Quotient *q, const BlockNeighbours *graph) {
-    q->count = q->lowest = graph->count;
-    q->list = q->order->list;
-    q->mark = 2;
-    memcpy(q->list, graph->neighbour, q->used * sizeof *q->list);
-    for (int i = 0; i <= q->count; i++) q->head[i] = -1;
-    for (int i = 0; i < q->count; i++) {
-        q->start[i] = graph->start[i];
-        q->length[i] = graph->start[i + 1] - graph->start[i];
-        q->elements[i] = 0;
-        q->weight[i] = 1;
-        q->bucket[i] = q->follower[i] = -1;
-        q->tail[i] = i;
-        q->seen[i] = 1;
-        link_node(q, i, q->length[i]);
-    }
-}
-
 static void chain(Quotient *q, int node, int follower) {
     q->weight[follower] = 0;
     q->follower[q->tail[node]] = follower;
@@ -176,7 +137,7 @@ static void chain(Quotient *q, int node, int follower) {
 }
 
 /* Moves the nodes of a list into that of the new element, and out of the lists by degree. Returns their weight. */
-static int block_order_collect(Quotient *q, int64_t from, int64_t end, int64_t *to) {
+static int collect(Quotient *q, int64_t from, int64_t end, int64_t *to) {
     int weight = 0;
     for (; from < end; from++) {
         const int node = q->list[from], mine = q->weight[node];
@@ -189,28 +150,24 @@ static int block_order_collect(Quotient *q, int64_t from, int64_t end, int64_t *
     return weight;
 }
 
-/* Room behind all lists for the new element's. All lists together are no longer than the rows of the factorization. */
-static bool reserve_list(Quotient *q, int pivot) {
+/* Makes the pivot an element of the nodes that it connects. */
+static bool make_element(Quotient *q, int pivot) {
+    /* Room behind all lists for the new element's. All lists together are no longer than the rows of the
+       factorization. */
     size_t most = q->used + (size_t)q->length[pivot];
     for (int i = 0; i < q->elements[pivot]; i++) most += (size_t)q->length[q->list[q->start[pivot] + i]];
     if (!array_reserve((void **)&q->order->list, &q->order->list_capacity, most, sizeof *q->list)) return false;
     q->list = q->order->list;
-    return true;
-}
-
-/* Makes the pivot an element of the nodes that it connects. */
-static bool make_element(Quotient *q, int pivot) {
-    if (!reserve_list(q, pivot)) return false;
     const int64_t own = q->start[pivot], begin = q->elements[pivot] == 0 ? own : (int64_t)q->used;
     int64_t end = begin;
     int weight = 0;
     q->weight[pivot] = -q->weight[pivot];
     for (int i = 0; i < q->elements[pivot]; i++) {
         const int element = q->list[own + i];
-        weight += block_order_collect(q, q->start[element], q->start[element] + q->length[element], &end);
+        weight += collect(q, q->start[element], q->start[element] + q->length[element], &end);
         q->seen[element] = 0;
     }
-    weight += block_order_collect(q, own + q->elements[pivot], own + q->length[pivot], &end);
+    weight += collect(q, own + q->elements[pivot], own + q->length[pivot], &end);
     if (begin != own) q->used = (size_t)end;
     q->start[pivot] = begin;
     q->length[pivot] = (int32_t)(end - begin);
@@ -218,22 +175,9 @@ static bool make_element(Quotient *q, int pivot) {
     return true;
 }
 
-/* Sets `seen` of each element that has nodes in common with the new one to mark and the weight that it has beyond. */
-static void measure_elements(Quotient *q, int pivot) {
-    for (int i = 0; i < q->length[pivot]; i++) {
-        const int node = q->list[q->start[pivot] + i];
-        for (int k = 0; k < q->elements[node]; k++) {
-            const int element = q->list[q->start[node] + k];
-            if (q->seen[element] == 0) continue;
-            if (q->seen[element] < q->mark) q->seen[element] = q->mark + q->degree[element];
-            q->seen[element] += q->weight[node]; /* which is negative */
-        }
-    }
-}
-
 /* Removes what is absorbed or connected by the pivot from a node's list, and adds the pivot as its first element.
    Returns the weight that it has beyond the pivot; 0: it is eliminated with the pivot. */
-static int block_order_shorten(Quotient *q, int node, int pivot, uint32_t *sum) {
+static int shorten(Quotient *q, int node, int pivot, uint32_t *sum) {
     int32_t *list = q->list + q->start[node];
     int kept = 0, weight = 0;
     for (int k = 0; k < q->elements[node]; k++) {
@@ -261,10 +205,20 @@ static int block_order_shorten(Quotient *q, int node, int pivot, uint32_t *sum) 
 }
 
 static void update_nodes(Quotient *q, int pivot) {
+    /* `seen` of each element that has nodes in common with the new one: mark and the weight that it has beyond. */
+    for (int i = 0; i < q->length[pivot]; i++) {
+        const int node = q->list[q->start[pivot] + i];
+        for (int k = 0; k < q->elements[node]; k++) {
+            const int element = q->list[q->start[node] + k];
+            if (q->seen[element] == 0) continue;
+            if (q->seen[element] < q->mark) q->seen[element] = q->mark + q->degree[element];
+            q->seen[element] += q->weight[node]; /* which is negative */
+        }
+    }
     for (int i = 0; i < q->length[pivot]; i++) {
         const int node = q->list[q->start[pivot] + i];
         uint32_t sum = 0;
-        const int weight = block_order_shorten(q, node, pivot, &sum);
+        const int weight = shorten(q, node, pivot, &sum);
         if (weight == 0) {
             q->degree[pivot] += q->weight[node];
             q->weight[pivot] += q->weight[node];
@@ -279,18 +233,14 @@ static void update_nodes(Quotient *q, int pivot) {
     }
 }
 
-static bool has_equal_list(const Quotient *q, int node, int other) {
-    bool equal = q->length[node] == q->length[other] && q->elements[node] == q->elements[other];
-    for (int k = 1; equal && k < q->length[other]; k++) equal = q->seen[q->list[q->start[other] + k]] == q->mark;
-    return equal;
-}
-
 /* Merges the nodes of a bucket that have the same list as `node`. */
 static void merge_equal(Quotient *q, int node) {
     q->mark++;
     for (int k = 1; k < q->length[node]; k++) q->seen[q->list[q->start[node] + k]] = q->mark;
     for (int before = node, other = q->next[node]; other >= 0; other = q->next[before]) {
-        if (!has_equal_list(q, node, other)) {
+        bool equal = q->length[node] == q->length[other] && q->elements[node] == q->elements[other];
+        for (int k = 1; equal && k < q->length[other]; k++) equal = q->seen[q->list[q->start[other] + k]] == q->mark;
+        if (!equal) {
             before = other;
             continue;
         }
@@ -329,15 +279,33 @@ static void end_element(Quotient *q, int pivot) {
 }
 
 static bool by_approximate_degrees(BlockOrder *order, const BlockNeighbours *graph, int32_t *nodes) {
-    Quotient q = {0};
-    if (!reserve_quotient(order, graph, &q)) return false;
-    load_quotient(&q, graph);
+    const size_t count = (size_t)graph->count, used = (size_t)graph->start[count];
+    Quotient q = {.count = graph->count, .lowest = graph->count, .used = used, .order = order, .mark = 2};
+    if (!array_reserve((void **)&order->list, &order->list_capacity, used + 1, sizeof *order->list) ||
+        !ARRAY_BLOCK_RESERVE(&order->arrays, ARRAY_PART(q.length, count), ARRAY_PART(q.elements, count),
+                             ARRAY_PART(q.weight, count), ARRAY_PART(q.degree, count), ARRAY_PART(q.head, count + 1),
+                             ARRAY_PART(q.next, count), ARRAY_PART(q.last, count), ARRAY_PART(q.bucket, count),
+                             ARRAY_PART(q.follower, count), ARRAY_PART(q.tail, count), ARRAY_PART(q.start, count),
+                             ARRAY_PART(q.seen, count)))
+        return false;
+    q.list = order->list;
+    memcpy(q.list, graph->neighbour, used * sizeof *q.list);
+    for (int i = 0; i <= q.count; i++) q.head[i] = -1;
+    for (int i = 0; i < q.count; i++) {
+        q.start[i] = graph->start[i];
+        q.length[i] = graph->start[i + 1] - graph->start[i];
+        q.elements[i] = 0;
+        q.weight[i] = 1;
+        q.bucket[i] = q.follower[i] = -1;
+        q.tail[i] = i;
+        q.seen[i] = 1;
+        link_node(&q, i, q.length[i]);
+    }
     while (q.ordered < q.count) {
         while (q.head[q.lowest] < 0) q.lowest++;
         const int pivot = q.head[q.lowest];
         unlink_node(&q, pivot);
         if (!make_element(&q, pivot)) return false;
-        measure_elements(&q, pivot);
         update_nodes(&q, pivot);
         for (int node = pivot; node >= 0; node = q.follower[node]) nodes[q.ordered++] = node;
         merge_nodes(&q, pivot);

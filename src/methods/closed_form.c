@@ -31,46 +31,39 @@ static const SettingSpec settings[] = {
     {"damping", "share of the missing velocity that it adds (default: 0.075)", SETTING_FLOAT(State, damping, 0, 2)},
     {0}};
 
-static void *closed_form_create(const Settings *chosen, Error *error) {
+static void *create(const Settings *chosen, Error *error) {
     static const State standard = {.stiffness = 0.25f, .damping = 0.075f};
     return settings_make(chosen, settings, &standard, sizeof standard, "closed-form", error);
 }
 
-/* 1/kg: the velocity along `facet` that an impulse of it makes. */
-static float response(const ProblemBody *bodies, const ContactPoint *contact, Vec2 facet) {
-    const ProblemBody *a = &bodies[contact->a], *b = &bodies[contact->b];
-    const float turn_a = vec2_cross(contact->arm_a, facet), turn_b = vec2_cross(contact->arm_b, facet);
-    return (a->inv_mass + b->inv_mass) * vec2_dot(facet, facet) + a->inv_inertia * turn_a * turn_a +
-           b->inv_inertia * turn_b * turn_b;
-}
-
 /* N s: the impulse of a facet. NaN is 0, too. */
-static float closed_form_push(const State *solver, const ContactProblem *problem, const ContactPoint *contact,
-                              Vec2 velocity, Vec2 facet) {
+static float push(const State *solver, const ContactProblem *problem, const ContactPoint *contact, Vec2 velocity,
+                  Vec2 facet) {
     const float along = vec2_dot(velocity, facet);
     const float wanted =
         solver->damping * (contact->bias - along) - solver->stiffness * (along + contact->separation / problem->dt);
-    const float answers = response(problem->bodies, contact, facet);
+    const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
+    const float turn_a = vec2_cross(contact->arm_a, facet), turn_b = vec2_cross(contact->arm_b, facet);
+    /* 1/kg: the velocity along the facet that an impulse of it makes */
+    const float answers = (a->inv_mass + b->inv_mass) * vec2_dot(facet, facet) + a->inv_inertia * turn_a * turn_a +
+                          b->inv_inertia * turn_b * turn_b;
     return wanted > 0 && answers > 0 ? 0.5f * wanted / answers : 0;
 }
 
-static ContactImpulse closed_form_answer(const State *solver, const ContactProblem *problem,
-                                         const ContactPoint *contact) {
-    const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
-    const BodyVelocity of_a = {a->velocity, a->angular_velocity}, of_b = {b->velocity, b->angular_velocity};
-    const Vec2 velocity = contact_relative_velocity(&of_a, &of_b, contact);
-    const Vec2 slip = vec2_scale(contact->friction, vec2_cross_scalar(contact->normal, 1.0f));
-    const float first = closed_form_push(solver, problem, contact, velocity, vec2_add(contact->normal, slip));
-    const float second = closed_form_push(solver, problem, contact, velocity, vec2_sub(contact->normal, slip));
-    return (ContactImpulse){first + second, contact->friction * (first - second)};
-}
-
-static bool closed_form_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    const State *solver = state;
     (void)error;
     contact_solution_begin(problem, solution);
     for (int i = 0; i < problem->contact_count; i++) {
-        solution->impulses[i] = closed_form_answer(state, problem, &problem->contacts[i]);
-        contact_push(solution->velocities, &problem->contacts[i], problem->bodies, solution->impulses[i]);
+        const ContactPoint *contact = &problem->contacts[i];
+        const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
+        const BodyVelocity of_a = {a->velocity, a->angular_velocity}, of_b = {b->velocity, b->angular_velocity};
+        const Vec2 velocity = contact_relative_velocity(&of_a, &of_b, contact);
+        const Vec2 slip = vec2_scale(contact->friction, vec2_cross_scalar(contact->normal, 1.0f));
+        const float first = push(solver, problem, contact, velocity, vec2_add(contact->normal, slip));
+        const float second = push(solver, problem, contact, velocity, vec2_sub(contact->normal, slip));
+        solution->impulses[i] = (ContactImpulse){first + second, contact->friction * (first - second)};
+        contact_push(solution->velocities, contact, problem->bodies, solution->impulses[i]);
     }
     return true;
 }
@@ -82,6 +75,6 @@ const ContactSolverKind solver_closed_form = {
                     .settings = settings,
                     .chart = METHOD_RUNS("", "damping=0.6", "stiffness=0,damping=1", "stiffness=0.5,damping=0.02",
                                          "stiffness=1,damping=0.5", "stiffness=1,damping=1")},
-    .create = closed_form_create,
-    .solve = closed_form_solve,
+    .create = create,
+    .solve = solve,
     .destroy = free};

@@ -57,32 +57,20 @@ static double kinetic(const ProblemBody *body, Motion motion) {
     return twice / 2;
 }
 
-static BodyVelocity criteria_before(const ProblemBody *body) {
-    return (BodyVelocity){body->velocity, body->angular_velocity};
-}
-
-static double energy_added(const ContactProblem *problem, const BodyVelocity *velocities) {
-    double sum = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        const BodyVelocity freely = criteria_before(&problem->bodies[i]);
-        sum +=
-            kinetic(&problem->bodies[i], motion_of(&velocities[i])) - kinetic(&problem->bodies[i], motion_of(&freely));
-    }
-    return sum;
-}
-
-static bool lacks_impulses(const ContactProblem *problem, const ContactSolution *solution) {
-    for (int i = 0; i < problem->contact_count; i++)
-        if (solution->impulses[i].normal != 0 || solution->impulses[i].tangent != 0) return false;
-    return problem->contact_count > 0;
-}
-
 ContactCriteria contact_criteria(const ContactProblem *problem, const ContactSolution *solution, bool push_out) {
-    ContactCriteria criteria = {.energy = energy_added(problem, solution->velocities)};
+    ContactCriteria criteria = {0};
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        const BodyVelocity freely = {body->velocity, body->angular_velocity};
+        criteria.energy += kinetic(body, motion_of(&solution->velocities[i])) - kinetic(body, motion_of(&freely));
+    }
     bool finite = isfinite(criteria.energy);
     for (int i = 0; i < problem->contact_count; i++)
         finite &= add_contact(&criteria, &problem->contacts[i], solution, i, push_out, problem->dt);
     if (!finite) return (ContactCriteria){INFINITY, INFINITY, INFINITY, INFINITY, INFINITY};
-    if (lacks_impulses(problem, solution)) criteria.signorini = criteria.cone = criteria.dissipation = NAN;
+    bool lacks_impulses = problem->contact_count > 0;
+    for (int i = 0; i < problem->contact_count; i++)
+        lacks_impulses &= solution->impulses[i].normal == 0 && solution->impulses[i].tangent == 0;
+    if (lacks_impulses) criteria.signorini = criteria.cone = criteria.dissipation = NAN;
     return criteria;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interior-point steps with a sparse direct solve over the bodies; equations and sources in
    methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step
-   (methods/interior_look.h):
+ (Look):
 
    1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at
       rest.
@@ -20,7 +20,6 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior.h"
-#include "methods/interior_look.h"
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
@@ -70,11 +69,61 @@ static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, pa
                              at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 20},
                                                     {&interior_far, 0.3, patient, 40}};
 
+/* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
+   that it has to reach.
+
+   An island is calm if none of its bodies move fast relative to each other where they touch, whatever the bias: boxes
+   that overlap and are pushed apart are calm, too. There errors add up from step to step: boxes creep at the speed of
+   the error, until a card slides out of a house of cards or a stack leans. So the tolerance is smaller than that of
+   impacts, `near`. After an impact an island is restless for some frames: calm, but the first sweeps leave much. There
+   errors have no time to add up, and `near` will do.
+
+   No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest
+   by gravity and the engine's slop. */
+
+/* More: an iteration takes as long as 10 sweeps or more. Fewer than FEW: stacks, gates. */
+enum { FEW_BODIES = 32, MANY_BODIES = 128 };
+
+typedef struct Look {
+    int bodies, loops; /* bodies: that move */
+    float fastest;     /* (m/s)^2, relative to each other where they touch */
+    float fall;        /* m/s, that gravity adds in a step */
+    float pace;        /* m/s, the unit of speeds at rest */
+    bool calm, many, slippery;
+    bool uneven, heavy; /* bodies of unlike masses touch */
+    bool restless;
+    bool slender;       /* towers: errors below are larger above */
+    float near, enough; /* m/s: residuals at which iterations stop, and that are taken */
+    PairResidual left;  /* sum over its pairs, after the first sweeps */
+} Look;
+
+/* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
+   An island is calm if bodies that touch move there, relative to each other, by less than `calm_below` and what gravity
+   adds in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance
+   of calm islands is at most `calm_near`, or `many_near` among many bodies, where smaller ones take a tenth more time;
+   `slippery_near` without friction, where nothing holds what an error moves: a stack of 12 stands 380 s, and 160 s at
+   2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks of 41 to 60 boxes sway for
+   seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack of 20 by 15 um in 10 s. */
+static const float calm_below = 1.03f, calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f,
+                   slender_near = 2e-5f;
+/* In calm islands plain sweeps are enough below this, or below so many roundings of what the impulses hold; without
+   friction, and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3 roundings. */
+static const float still = 2e-5f, roundings = 0.3f;
+/* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is
+   restless. */
+static const float restless_from = 2;
+/* Multiples of the other's mass, of two bodies that touch. Beyond the first, sweeps carry little between them. Beyond
+   the second, iterations from near the bounds break down at impacts: on 36 boxes under a bomb of 1e5 times their mass,
+   the error of sweeps of the same work is 3.5 times that of interior if it tries them, 10 times if not. */
+static const float uneven_from = 10, heavy_from = 100;
+/* Of the pace. */
+static const float closing = 1e-3f, calm_speed = 10;
+
 typedef struct State {
     float near; /* m/s */
     Interior interior;
     Islands islands;
-    InteriorLook *looks; /* [islands.count] */
+    Look *looks; /* [islands.count] */
     ArrayBlock look_block;
     Momentum momentum;
     double left;            /* of the island's work, in sweeps */
@@ -87,12 +136,75 @@ typedef struct State {
     float start_factors[START_SWEEPS], fallback_factors[FALLBACK_SWEEPS];
 } State;
 
+static float smaller(float x, float y) { return x < y ? x : y; }
+
+static bool is_uneven(float inv_mass_a, float inv_mass_b, float from) {
+    return inv_mass_a > 0 && inv_mass_b > 0 && (inv_mass_a > from * inv_mass_b || inv_mass_b > from * inv_mass_a);
+}
+
+/* Sweeps carry little between its bodies. */
+static bool jams(const Look *look) { return look->slippery || look->uneven; }
+
+/* Before the step. near: of impacts, m/s. */
+static void look_at_islands(State *solver, const ContactProblem *problem, float near) {
+    const Islands *islands = &solver->islands;
+    const float pace = sqrtf(10 * CONTACT_SLOP * problem->fall / problem->dt);
+    for (int k = 0; k < islands->count; k++)
+        solver->looks[k] = (Look){.bodies = islands->islands[k].bodies,
+                                  .loops = islands->islands[k].loops,
+                                  .fall = problem->fall,
+                                  .pace = pace,
+                                  .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
+                                  .many = islands->islands[k].bodies > MANY_BODIES};
+    for (int i = 0; i < problem->contact_count; i++) {
+        if (islands->island[i] < 0) continue;
+        Look *look = &solver->looks[islands->island[i]];
+        const ContactPoint *contact = &problem->contacts[i];
+        const float inv_mass_a = problem->bodies[contact->a].inv_mass,
+                    inv_mass_b = problem->bodies[contact->b].inv_mass, motion = residual_of_motion(problem, i);
+        if (!(motion <= look->fastest)) look->fastest = motion; /* NaN, too */
+        look->slippery |= contact->friction < INTERIOR_SLIPPERY;
+        look->uneven |= is_uneven(inv_mass_a, inv_mass_b, uneven_from);
+        look->heavy |= is_uneven(inv_mass_a, inv_mass_b, heavy_from);
+    }
+    for (int k = 0; k < islands->count; k++) {
+        Look *look = &solver->looks[k];
+        const float limit = look->fall + calm_below * look->pace;
+        look->calm = look->fastest < limit * limit;
+        const float share = look->slippery                ? slippery_near
+                            : look->slender               ? slender_near
+                            : look->many && !look->uneven ? many_near
+                                                          : calm_near;
+        look->near = look->calm ? smaller(near, share * look->pace) : near;
+        look->enough = look->calm && look->many ? look->near : near;
+    }
+}
+
+/* Adds up what the first sweeps left in each island. `island`: as Islands has it, or NULL if there is a single one. */
+static void look_at_residuals(Look *looks, const Sweeps *sweeps, const int32_t *island) {
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const int32_t k = island != NULL ? island[sweeps->first[i]] : 0;
+        if (k < 0) continue;
+        const PairResidual residual = residual_of_pair(sweeps, i);
+        looks[k].left.visit += residual.visit;
+        looks[k].left.held += residual.held;
+    }
+}
+
+/* Whether the residual, root mean square over so many contacts, is little more than rounding errors. */
+static bool is_still(const Look *look, int contacts) {
+    const float held = sqrtf(look->left.held / (float)contacts);
+    const float least = look->slippery || look->slender ? 0 : still * look->pace;
+    const float rounding = roundings * 0x1p-24f * (look->pace + held), limit = rounding > least ? rounding : least;
+    return look->calm && look->left.visit < limit * limit * (float)contacts;
+}
+
 static const SettingSpec settings[] = {
     {"near", "residual at which iterations stop, m/s (default: 0.002)", SETTING_FLOAT(State, near, 1e-9f, 1e6f)},
     KEEP_SETTING(SETTING_OWN),
     {0}};
 
-static void interior_destroy(void *state) {
+static void destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     interior_free(&solver->interior);
@@ -107,7 +219,7 @@ static void set_factors(float *factors, int count) {
     for (int s = 0; s < count; s++) factors[s] = momentum_factor_tuned(s, count);
 }
 
-static void *interior_create(const Settings *chosen, Error *error) {
+static void *create(const Settings *chosen, Error *error) {
     static const State standard = {.near = 0.002f};
     State *solver = settings_make(chosen, settings, &standard, sizeof standard, "interior", error);
     if (solver == NULL) return NULL;
@@ -117,7 +229,7 @@ static void *interior_create(const Settings *chosen, Error *error) {
 }
 
 /* Begins with the warm start, and with the first sweeps if the problem is calm. False when memory is short. */
-static bool interior_start(State *solver, const ContactProblem *problem, bool calm) {
+static bool start(State *solver, const ContactProblem *problem, bool calm) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     solver->left -= begin_work + (calm ? FIRST_SWEEPS : 0);
     return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) && (!calm || sweeps_run(sweeps, FIRST_SWEEPS));
@@ -129,23 +241,23 @@ static bool interior_start(State *solver, const ContactProblem *problem, bool ca
    carry little where light bodies hold heavy ones, or where there is no friction. Impacts of many bodies that are not
    solved by these sweeps are hard: iterations then converge sooner from the plain start. Sets *done if the sweeps are
    enough: the solution is stored. False when memory is short. */
-static bool try_sweeps(State *solver, const ContactProblem *problem, const InteriorLook *step,
-                       ContactSolution *solution, bool *done) {
+static bool try_sweeps(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
+                       bool *done) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     const float enough = step->calm ? step->near : trusted * solver->near;
     *done = false;
-    if (step->calm && (!step->many || interior_look_jams(step))) return true;
+    if (step->calm && (!step->many || jams(step))) return true;
     solver->left -= START_SWEEPS;
     if (!sweeps_run_momentum(sweeps, solver->start_factors, START_SWEEPS)) return false;
     *done = !residual_of_visits_reaches(sweeps, problem->contact_count, enough) && sweeps_end(sweeps, solution);
-    return *done || !step->many || interior_start(solver, problem, step->calm);
+    return *done || !step->many || start(solver, problem, step->calm);
 }
 
 /* Of the matrix of an island. */
-static double analysis_work(const InteriorLook *step) { return fmin(2 + step->bodies / 16.0, 14); }
+static double analysis_work(const Look *step) { return fmin(2 + step->bodies / 16.0, 14); }
 
 /* False when memory is short. */
-static bool load_interior(State *solver, const ContactProblem *problem, const InteriorLook *step) {
+static bool load_interior(State *solver, const ContactProblem *problem, const Look *step) {
     solver->left -= load_work + (solver->analysed ? 0 : analysis_work(step));
     solver->analysed = solver->loaded = true;
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
@@ -158,62 +270,49 @@ static int affordable(const State *solver, double before, double iteration_work)
 
 /* Whether there is room for enough iterations by what the island's loops tell, so that its matrix is not analysed in
    vain. */
-static bool seems_cheap(const State *solver, const InteriorLook *step) {
+static bool seems_cheap(const State *solver, const Look *step) {
     const double usual =
         interior_work(usual_products * step->loops * sqrt(step->loops), solver->momentum.sweeps.pair_count);
     return affordable(solver, load_work + analysis_work(step), usual) >= (step->many ? LEAST_OF_MANY : 0);
 }
 
-/* Loads the island, unless its iterations are too dear. Sets *cheap. False when memory is short. */
-static bool load_if_cheap(State *solver, const ContactProblem *problem, const InteriorLook *step, bool *cheap) {
-    *cheap = seems_cheap(solver, step);
-    if (!*cheap) return true;
-    if (!load_interior(solver, problem, step)) return false;
-    *cheap = affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_OF_MANY : 0);
-    return true;
-}
-
-/* Stores the answer of the iterations if it is the best so far. */
-static void interior_offer(State *solver, const ContactProblem *problem, ContactSolution *solution) {
-    const Interior *interior = &solver->interior;
-    if (interior->residual < solver->best && interior_end(interior, &solver->momentum.sweeps, problem, solution))
-        solver->best = interior->residual;
-}
-
 /* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let
    them open: a wall that creeps once goes on. */
-static const InteriorAttempt *attempts_of(const InteriorLook *step) {
-    if (!step->calm && step->bodies <= INTERIOR_FEW_BODIES) return near_bounds;
+static const InteriorAttempt *attempts_of(const Look *step) {
+    if (!step->calm && step->bodies <= FEW_BODIES) return near_bounds;
     if (!step->calm) return step->many || step->heavy ? at_impact + 1 : at_impact;
-    const bool many = step->many && !interior_look_jams(step);
+    const bool many = step->many && !jams(step);
     if (step->restless && !many) return near_bounds;
     return many ? at_rest_of_many : step->uneven ? at_rest_uneven : at_rest;
 }
 
 /* The attempts, until the residual is at most `near` or the work is done. False when memory is short. */
-static bool iterate_interior(State *solver, const ContactProblem *problem, const InteriorLook *step,
-                             ContactSolution *solution) {
+static bool iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
     Interior *interior = &solver->interior;
     const double near = (double)step->near;
     for (const InteriorAttempt *attempt = attempts_of(step); attempt->rule != NULL && solver->best > near; attempt++) {
         const double again = solver->loaded ? 0 : begin_work + FIRST_SWEEPS + load_work;
         const int most = affordable(solver, again, interior->iteration_work);
         if (most == 0) return true;
-        if (!solver->loaded && !(interior_start(solver, problem, step->calm) && load_interior(solver, problem, step)))
+        if (!solver->loaded && !(start(solver, problem, step->calm) && load_interior(solver, problem, step)))
             return false;
         solver->loaded = false;
-        /* What opens is not found in the next step, falls, and lands on what lies below. */
-        if (step->calm) interior_close(interior, interior_look_closing(step, solver->near), (double)problem->dt);
-        interior_iterate(interior, interior_best(), attempt, interior_look_speed(step), near, most);
+        /* Contacts of a calm island aim to close: an interior point leaves each a little open. What opens is not found
+           in the next step, falls, and lands on what lies below. */
+        if (step->calm)
+            interior_close(interior, (double)smaller(solver->near, closing * step->pace), (double)problem->dt);
+        const double speed = step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
+        interior_iterate(interior, interior_best(), attempt, speed, near, most);
         solver->left -= interior->iterations * interior->iteration_work;
-        interior_offer(solver, problem, solution);
+        if (interior->residual < solver->best && interior_end(interior, &solver->momentum.sweeps, problem, solution))
+            solver->best = interior->residual;
     }
     return true;
 }
 
-/* After interior_start(): as momentum:k=1,near=NEAR,more=128 (residual: methods/residual.h), or until the work is done.
+/* After start(): as momentum:k=1,near=NEAR,more=128 (residual: methods/residual.h), or until the work is done.
    False when memory is short. */
-static bool interior_sweep(State *solver, const ContactProblem *problem, float near) {
+static bool sweep(State *solver, const ContactProblem *problem, float near) {
     const int more = (int)fmin(fmax(solver->left - 1, 0), FALLBACK_SWEEPS) / STOPPING_BLOCK * STOPPING_BLOCK;
     const StoppingRule rule = {.near = near, .more = more};
     solver->left -= 1 + more;
@@ -221,19 +320,12 @@ static bool interior_sweep(State *solver, const ContactProblem *problem, float n
            momentum_run_more(&solver->momentum, &rule, solver->fallback_factors);
 }
 
-/* After interior_start(): all by sweeps with momentum. */
+/* After start(): all by sweeps with momentum. */
 static bool solve_by_sweeps(State *solver, const ContactProblem *problem, float near, ContactSolution *solution,
                             Error *error) {
     solution->fallbacks.by_sweeps = 1;
-    return (interior_sweep(solver, problem, near) && momentum_end(&solver->momentum, solution)) ||
+    return (sweep(solver, problem, near) && momentum_end(&solver->momentum, solution)) ||
            error_memory(error, "interior");
-}
-
-/* m/s, as that of the iterations. */
-static double residual_of(const Sweeps *sweeps, int contacts) {
-    InteriorLook all = {0};
-    interior_look_at_residuals(&all, sweeps, NULL);
-    return interior_look_residual(&all, contacts);
 }
 
 /* The problem with that solution as its warm start, valid until the next call. False when memory is short. */
@@ -258,76 +350,65 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
                       Error *error) {
     const bool finite = solver->best < INFINITY;
     ContactProblem from = *problem;
-    if ((finite && !begin_from(solver, problem, solution, &from)) || !interior_start(solver, &from, false) ||
-        !interior_sweep(solver, &from, near))
+    if ((finite && !begin_from(solver, problem, solution, &from)) || !start(solver, &from, false) ||
+        !sweep(solver, &from, near))
         return error_memory(error, "interior");
-    const double after = residual_of(&solver->momentum.sweeps, problem->contact_count);
+    Look all = {0}; /* as the residual of the iterations, m/s: */
+    look_at_residuals(&all, &solver->momentum.sweeps, NULL);
+    const double after = sqrt((double)all.left.visit / problem->contact_count);
     solution->fallbacks.by_sweeps = 1;
     return (finite && !(after < solver->best)) || momentum_end(&solver->momentum, solution) ||
            error_memory(error, "interior");
 }
 
-/* Iterations, then sweeps. */
-static bool solve_further(State *solver, const ContactProblem *problem, const InteriorLook *step,
-                          ContactSolution *solution, Error *error) {
-    solver->best = INFINITY;
-    bool cheap;
-    if (!load_if_cheap(solver, problem, step, &cheap)) return error_memory(error, "interior");
-    if (!cheap)
-        return interior_start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->enough, solution, error)
-                                                      : error_memory(error, "interior");
-    if (!iterate_interior(solver, problem, step, solution)) return error_memory(error, "interior");
-    return solver->best <= (double)step->enough || fall_back(solver, problem, step->enough, solution, error);
-}
-
 /* A problem that is a single island. */
-static bool solve_island(State *solver, const ContactProblem *problem, const InteriorLook *seen,
-                         ContactSolution *solution, Error *error) {
-    InteriorLook look = *seen, *step = &look;
+static bool solve_island(State *solver, const ContactProblem *problem, const Look *seen, ContactSolution *solution,
+                         Error *error) {
+    Look look = *seen, *step = &look;
     bool done = false;
     step->left = (PairResidual){0};
     solver->left = INTERIOR_MOST_WORK;
     solver->analysed = solver->loaded = false;
-    if (!interior_start(solver, problem, step->calm)) return error_memory(error, "interior");
+    if (!start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
-        interior_look_at_residuals(step, &solver->momentum.sweeps, NULL);
-        if (interior_look_is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution))
-            return true;
-        interior_look_again(step, solver->near, problem->contact_count);
+        look_at_residuals(step, &solver->momentum.sweeps, NULL);
+        if (is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
+        const float limit = restless_from * solver->near;
+        step->restless = step->bodies > FEW_BODIES && !step->slippery && !step->slender &&
+                         step->left.visit > limit * limit * (float)problem->contact_count;
+        if (step->restless) step->near = step->enough = solver->near;
     }
     if (step->many && !step->calm && !seems_cheap(solver, step))
         return solve_by_sweeps(solver, problem, solver->near, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
-    return done || solve_further(solver, problem, step, solution, error);
-}
-
-static bool are_mostly_calm(const State *solver, int contacts) {
-    const Islands *islands = &solver->islands;
-    int calm = 0;
-    for (int k = 0; k < islands->count; k++) calm += solver->looks[k].calm ? islands->islands[k].contacts : 0;
-    return 2 * calm > contacts;
-}
-
-/* The first sweeps of all islands at once, where most are calm: the same bits in less time. Sets *done to whether they
-   are stored. False when memory is short. */
-static bool sweep_all(State *solver, const ContactProblem *problem, ContactSolution *solution, bool *done) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
-    *done = false;
-    if (!are_mostly_calm(solver, problem->contact_count)) return true;
-    if (!interior_start(solver, problem, true)) return false;
-    interior_look_at_residuals(solver->looks, sweeps, solver->islands.island);
-    *done = sweeps_end(sweeps, solution);
-    return true;
+    if (done) return true;
+    /* Iterations, unless they are too dear; then sweeps. */
+    solver->best = INFINITY;
+    bool cheap = seems_cheap(solver, step);
+    if (cheap && !load_interior(solver, problem, step)) return error_memory(error, "interior");
+    cheap = cheap && affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_OF_MANY : 0);
+    if (!cheap)
+        return start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->enough, solution, error)
+                                             : error_memory(error, "interior");
+    if (!iterate(solver, problem, step, solution)) return error_memory(error, "interior");
+    return solver->best <= (double)step->enough || fall_back(solver, problem, step->enough, solution, error);
 }
 
 static bool solve_islands(State *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Islands *islands = &solver->islands;
-    bool swept;
-    if (!sweep_all(solver, problem, solution, &swept)) return error_memory(error, "interior");
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    int calm = 0;
+    for (int k = 0; k < islands->count; k++) calm += solver->looks[k].calm ? islands->islands[k].contacts : 0;
+    bool swept = 2 * calm > problem->contact_count;
+    if (swept) { /* the first sweeps of all islands at once: the same bits in less time */
+        if (!start(solver, problem, true)) return error_memory(error, "interior");
+        look_at_residuals(solver->looks, sweeps, islands->island);
+        swept = sweeps_end(sweeps, solution);
+    }
     if (!swept) contact_solution_begin(problem, solution);
     for (int k = 0; k < islands->count; k++) {
-        const InteriorLook *step = &solver->looks[k];
-        if (swept && interior_look_is_still(step, islands->islands[k].contacts)) continue;
+        const Look *step = &solver->looks[k];
+        if (swept && is_still(step, islands->islands[k].contacts)) continue;
         ContactSolution of_part;
         const ContactProblem part = islands_take(islands, problem, k, &of_part);
         if (!solve_island(solver, &part, step, &of_part, error)) return false;
@@ -338,13 +419,13 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
     return true;
 }
 
-static bool interior_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const Islands *islands = &solver->islands;
     if (!islands_find(&solver->islands, problem) ||
         !ARRAY_BLOCK_RESERVE(&solver->look_block, ARRAY_PART(solver->looks, islands->count)))
         return error_memory(error, "interior");
-    interior_look(solver->looks, islands, problem, solver->near);
+    look_at_islands(solver, problem, solver->near);
     /* A body alone in the air would change the order of elimination. */
     const bool single = islands->count == 1 && islands->islands[0].bodies == islands->moving &&
                         islands->islands[0].contacts == problem->contact_count;
@@ -367,6 +448,6 @@ const ContactSolverKind solver_interior = {
                     .chart = METHOD_RUNS("near=1", "near=0.1", "near=0.02", "near=0.002", "near=0.0005", "near=0.0001"),
                     .chart_quick = METHOD_RUNS("near=0.002"),
                     .stability_place = 2},
-    .create = interior_create,
-    .solve = interior_solve,
-    .destroy = interior_destroy};
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -32,7 +32,7 @@ const InteriorKernels *interior_best(void) {
 static double larger(double x, double y) { return x > y ? x : y; }
 
 /* Moves the start to the inside of all bounds and returns the first tau^2. */
-static double interior_point_begin(Interior *s, const InteriorRule *rule, double scale) {
+static double begin(Interior *s, const InteriorRule *rule, double scale) {
     const double impulse = rule->impulse * scale, gap = rule->gap * scale, beyond = rule->slip * scale;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
@@ -50,18 +50,6 @@ static double interior_point_begin(Interior *s, const InteriorRule *rule, double
     return rule->first * scale * scale;
 }
 
-/* Between jammed bodies impulses can grow without an effect on velocities, until their rounding in float makes
-   velocities of a quarter of the problem's. */
-static bool is_jammed(const Interior *s, double speed) {
-    const double largest = 0x1p22 * speed;
-    bool jammed = false;
-    for (int i = 0; i < s->group_count; i++) {
-        const Vec4 held = s->groups[i].answer_normal * s->groups[i].inverse_normal;
-        jammed |= (held[0] > largest) | (held[1] > largest) | (held[2] > largest) | (held[3] > largest);
-    }
-    return jammed;
-}
-
 static void keep_best(Interior *s) {
     for (int i = 0; i < s->group_count; i++) {
         s->groups[i].best_normal = s->groups[i].answer_normal;
@@ -69,27 +57,15 @@ static void keep_best(Interior *s) {
     }
 }
 
-/* And its residual. */
-static void take_best(Interior *s, const InteriorKernels *kernels) {
-    for (int i = 0; i < s->group_count; i++) {
-        s->groups[i].answer_normal = s->groups[i].best_normal;
-        s->groups[i].answer_tangent = s->groups[i].best_tangent;
-    }
-    s->residual = kernels->answer(s);
-}
-
-/* A warm start that is worse than none: a body that held others is gone. */
-static void drop_start(Interior *s, const InteriorKernels *kernels) {
-    for (int i = 0; i < s->group_count; i++) s->groups[i].answer_normal = s->groups[i].answer_tangent = (Vec4){0};
-    s->residual = kernels->answer(s);
-}
-
 void interior_iterate(Interior *s, const InteriorKernels *kernels, const InteriorAttempt *attempt, double speed,
                       double near, int most) {
     const InteriorRule *rule = attempt->rule;
-    if (!(s->residual < speed)) drop_start(s, kernels);
+    if (!(s->residual < speed)) { /* a warm start that is worse than none: a body that held others is gone */
+        for (int i = 0; i < s->group_count; i++) s->groups[i].answer_normal = s->groups[i].answer_tangent = (Vec4){0};
+        s->residual = kernels->answer(s);
+    }
     const double scale = scale_of_residual * s->residual + attempt->least_scale * speed;
-    double target = interior_point_begin(s, rule, scale), best = s->residual, estimate = 0;
+    double target = begin(s, rule, scale), best = s->residual, estimate = 0;
     most = attempt->iterations < most ? attempt->iterations : most;
     bool solved = false;
     keep_best(s);
@@ -108,14 +84,22 @@ void interior_iterate(Interior *s, const InteriorKernels *kernels, const Interio
         best = residual;
         keep_best(s);
     }
-    if (!solved) take_best(s, kernels);
-    if (is_jammed(s, speed)) s->residual = INFINITY;
-}
-
-/* Rounded into the cone. */
-static ContactImpulse impulse_of(const InteriorGroup *group, int slot, float friction) {
-    const float normal = (float)group->answer_normal[slot], limit = friction * normal;
-    return (ContactImpulse){normal, contact_clamp((float)group->answer_tangent[slot], -limit, limit)};
+    if (!solved) {
+        for (int i = 0; i < s->group_count; i++) {
+            s->groups[i].answer_normal = s->groups[i].best_normal;
+            s->groups[i].answer_tangent = s->groups[i].best_tangent;
+        }
+        s->residual = kernels->answer(s);
+    }
+    /* Between jammed bodies impulses can grow without an effect on velocities, until their rounding in float makes
+       velocities of a quarter of the problem's. */
+    const double largest = 0x1p22 * speed;
+    bool jammed = false;
+    for (int i = 0; i < s->group_count; i++) {
+        const Vec4 held = s->groups[i].answer_normal * s->groups[i].inverse_normal;
+        jammed |= (held[0] > largest) | (held[1] > largest) | (held[2] > largest) | (held[3] > largest);
+    }
+    if (jammed) s->residual = INFINITY;
 }
 
 bool interior_end(const Interior *s, const Sweeps *sweeps, const ContactProblem *problem, ContactSolution *solution) {
@@ -123,9 +107,12 @@ bool interior_end(const Interior *s, const Sweeps *sweeps, const ContactProblem 
     contact_solution_begin(problem, solution);
     for (int i = 0; i < sweeps->pair_count; i++) {
         if (s->pairs[i].a == s->graph.lu.count && s->pairs[i].b == s->graph.lu.count) continue;
-        for (int k = 0; k < sweep_pair_points(&sweeps->pairs[i]); k++)
-            solution->impulses[sweeps->first[i] + k] =
-                impulse_of(&s->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, sweeps->pairs[i].friction);
+        const InteriorGroup *group = &s->groups[i / BLOCK_PAIRS];
+        for (int k = 0, slot = i % BLOCK_PAIRS * 2; k < sweep_pair_points(&sweeps->pairs[i]); k++, slot++) {
+            const float normal = (float)group->answer_normal[slot], limit = sweeps->pairs[i].friction * normal;
+            solution->impulses[sweeps->first[i] + k] = /* rounded into the cone */
+                (ContactImpulse){normal, contact_clamp((float)group->answer_tangent[slot], -limit, limit)};
+        }
     }
     for (int k = 0; k < s->graph.lu.count; k++) {
         const Vec4 v = s->velocities[k];
@@ -145,14 +132,6 @@ void interior_free(Interior *interior) {
     block_graph_free(&interior->graph);
     free(interior->memory.memory);
     *interior = (Interior){0};
-}
-
-static bool interior_point_reserve(Interior *s, const Sweeps *sweeps) {
-    const size_t bodies = (size_t)sweeps->body_count + 1, groups = (size_t)sweeps->pair_count / BLOCK_PAIRS + 1;
-    return block_graph_reserve(&s->graph, sweeps->body_count, sweeps->pair_count) &&
-           ARRAY_BLOCK_RESERVE(&s->memory, ARRAY_PART(s->groups, groups), ARRAY_PART(s->pairs, BLOCK_PAIRS * groups),
-                               ARRAY_PART(s->velocities, bodies), ARRAY_PART(s->start, bodies),
-                               ARRAY_PART(s->changes, bodies), ARRAY_PART(s->corrected, bodies));
 }
 
 static bool load_graph(Interior *s, const Sweeps *sweeps, const ContactProblem *problem) {
@@ -175,15 +154,6 @@ static bool load_graph(Interior *s, const Sweeps *sweeps, const ContactProblem *
    sweeps: nearly the same for each pair, the products of blocks in the factorization, and waiting for memory. */
 double interior_work(double products, int pair_count) { return 6 + 0.42 * products / pair_count + pair_count / 400.0; }
 
-static double count_products(const BlockLu *lu) {
-    double products = 0;
-    for (int k = 0; k < lu->count; k++) {
-        const double below = lu->column[k + 1] - lu->column[k];
-        products += below * below;
-    }
-    return products;
-}
-
 static double dot(Vec4 x, Vec4 y) { return ((x[0] * y[0] + x[1] * y[1]) + x[2] * y[2]) + x[3] * y[3]; }
 
 static void load_slot(InteriorGroup *group, int slot, const SweepPair *pair, int k) {
@@ -191,7 +161,7 @@ static void load_slot(InteriorGroup *group, int slot, const SweepPair *pair, int
     const double friction = (double)pair->friction;
     group->mass_normal[slot] = (double)point->mass_normal;
     group->mass_tangent[slot] = (double)point->mass_tangent;
-    group->inverse_normal[slot] = point->mass_normal > 0; /* see interior_point_invert() */
+    group->inverse_normal[slot] = point->mass_normal > 0; /* see interior_load() */
     group->inverse_tangent[slot] = point->mass_tangent > 0;
     group->friction[slot] = friction > friction_min ? friction : friction_min;
     group->bias[slot] = (double)point->bias;
@@ -219,40 +189,45 @@ static void load_pair(Interior *s, int i, const Sweeps *sweeps, const ContactPro
     }
 }
 
-/* Without contacts: open, at rest, without effect. */
-static void clear_slots(Interior *s, int i) {
-    const Vec4 zero = {0}, one = {1, 1, 1, 1};
-    static const BlockPair none = {0};
-    InteriorGroup *g = &s->groups[i];
-    g->rows = (BlockRows){zero, zero, zero, zero, zero, zero};
-    g->inverse_normal = g->inverse_tangent = g->depth = zero;
-    g->free_normal = g->free_tangent = g->answer_normal = g->answer_tangent = zero;
-    g->mass_normal = g->mass_tangent = g->friction = one;
-    g->bias = -one;
-    s->pairs[BLOCK_PAIRS * i] = s->pairs[BLOCK_PAIRS * i + 1] = none;
-}
-
-/* The inverses were 1 for a positive mass, else 0. */
-static void interior_point_invert(InteriorGroup *g) {
-    const Vec4 one = {1, 1, 1, 1};
-    g->inverse_normal /= g->mass_normal + (one - g->inverse_normal);
-    g->inverse_tangent /= g->mass_tangent + (one - g->inverse_tangent);
-}
-
 bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sweeps, const ContactProblem *problem) {
-    if (!interior_point_reserve(s, sweeps) || !load_graph(s, sweeps, problem)) return false;
+    const size_t bodies = (size_t)sweeps->body_count + 1, groups = (size_t)sweeps->pair_count / BLOCK_PAIRS + 1;
+    if (!block_graph_reserve(&s->graph, sweeps->body_count, sweeps->pair_count) ||
+        !ARRAY_BLOCK_RESERVE(&s->memory, ARRAY_PART(s->groups, groups), ARRAY_PART(s->pairs, BLOCK_PAIRS * groups),
+                             ARRAY_PART(s->velocities, bodies), ARRAY_PART(s->start, bodies),
+                             ARRAY_PART(s->changes, bodies), ARRAY_PART(s->corrected, bodies)) ||
+        !load_graph(s, sweeps, problem))
+        return false;
+    const BlockLu *lu = &s->graph.lu;
+    const Vec4 zero = {0}, one = {1, 1, 1, 1};
     s->group_count = (sweeps->pair_count + BLOCK_PAIRS - 1) / BLOCK_PAIRS;
     s->contact_count = 0;
     s->rounding = 0;
-    for (int i = 0; i < s->group_count; i++) clear_slots(s, i);
+    for (int i = 0; i < s->group_count; i++) { /* without contacts: open, at rest, without effect */
+        InteriorGroup *g = &s->groups[i];
+        g->rows = (BlockRows){zero, zero, zero, zero, zero, zero};
+        g->inverse_normal = g->inverse_tangent = g->depth = zero;
+        g->free_normal = g->free_tangent = g->answer_normal = g->answer_tangent = zero;
+        g->mass_normal = g->mass_tangent = g->friction = one;
+        g->bias = -one;
+        s->pairs[BLOCK_PAIRS * i] = s->pairs[BLOCK_PAIRS * i + 1] = (BlockPair){0};
+    }
     for (int i = 0; i < sweeps->pair_count; i++) load_pair(s, i, sweeps, problem);
-    for (int i = 0; i < s->group_count; i++) interior_point_invert(&s->groups[i]);
+    for (int i = 0; i < s->group_count; i++) { /* the inverses are 1 for a positive mass, else 0 */
+        InteriorGroup *g = &s->groups[i];
+        g->inverse_normal /= g->mass_normal + (one - g->inverse_normal);
+        g->inverse_tangent /= g->mass_tangent + (one - g->inverse_tangent);
+    }
     if (sweeps->pair_count % BLOCK_PAIRS != 0) {
-        const int32_t none = s->graph.lu.count, spare = block_lu_spare(&s->graph.lu);
+        const int32_t none = lu->count, spare = block_lu_spare(lu);
         s->pairs[sweeps->pair_count] = (BlockPair){.a = none, .b = none, .place = {spare, spare}};
     }
     s->residual = kernels->answer(s);
-    s->iteration_work = interior_work(count_products(&s->graph.lu), sweeps->pair_count);
+    double products = 0;
+    for (int k = 0; k < lu->count; k++) {
+        const double below = lu->column[k + 1] - lu->column[k];
+        products += below * below;
+    }
+    s->iteration_work = interior_work(products, sweeps->pair_count);
     s->iterations = 0;
     return true;
 }

@@ -61,14 +61,6 @@ static int32_t count_pair(Islands *s, const ContactProblem *problem, int i) {
     return *number;
 }
 
-static void count_contacts(Islands *s, const ContactProblem *problem) {
-    s->count = 0;
-    for (int i = 0; i < problem->contact_count; i++) {
-        s->island[i] = is_new_pair(problem, i) ? count_pair(s, problem, i) : s->island[i - 1];
-        if (s->island[i] >= 0) s->islands[s->island[i]].contacts++;
-    }
-}
-
 static int32_t island_of_body(Islands *s, int body) {
     return s->parent[body] < 0 ? -1 : s->number[islands_root(s->parent, body)];
 }
@@ -76,7 +68,11 @@ static int32_t island_of_body(Islands *s, int body) {
 bool islands_find(Islands *s, const ContactProblem *problem) {
     if (!islands_reserve(s, problem)) return false;
     islands_connect(s, problem);
-    count_contacts(s, problem);
+    s->count = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        s->island[i] = is_new_pair(problem, i) ? count_pair(s, problem, i) : s->island[i - 1];
+        if (s->island[i] >= 0) s->islands[s->island[i]].contacts++;
+    }
     for (int i = 0; i < problem->body_count; i++) {
         const int32_t k = island_of_body(s, i);
         if (k < 0) continue;
@@ -119,20 +115,16 @@ static int find_fixed(Islands *s, const ContactProblem *problem, int k, const in
     return count;
 }
 
-/* Sorts the island's bodies into s->bodies: `members`, and `fixed` that are behind their place there. */
-static void islands_merge(Islands *s, const int32_t *members, int count, int fixed_count) {
-    const int32_t *fixed = &s->bodies[count];
-    for (int i = 0, f = 0, at = 0; at < count + fixed_count; at++)
-        s->bodies[at] = f < fixed_count && (i == count || fixed[f] < members[i]) ? fixed[f++] : members[i++];
-}
-
 ContactProblem islands_take(Islands *s, const ContactProblem *problem, int k, ContactSolution *room) {
     if (!s->sorted) islands_sort(s, problem);
     const Island *island = &s->islands[k];
     const int32_t *members = &s->members[s->behind_members[k] - island->bodies];
     const int32_t *contacts = &s->contacts[s->behind_contacts[k] - island->contacts];
     const int fixed = find_fixed(s, problem, k, contacts);
-    islands_merge(s, members, island->bodies, fixed);
+    /* Members, and those that do not move, which are behind their place, in order. */
+    const int32_t *still = &s->bodies[island->bodies];
+    for (int i = 0, f = 0, at = 0; at < island->bodies + fixed; at++)
+        s->bodies[at] = f < fixed && (i == island->bodies || still[f] < members[i]) ? still[f++] : members[i++];
     ContactProblem part = {.body_count = island->bodies + fixed,
                            .contact_count = island->contacts,
                            .bomb = -1,

@@ -23,37 +23,31 @@ const MethodDescription *method_describe(const char *text) {
     return kind != NULL ? kind->description : NULL;
 }
 
-static bool unknown_method(const char *text, Error *error) {
-    NameList known = {0};
-    for (int i = 0; method_kinds[i].description != NULL; i++) name_list_add(&known, method_kinds[i].description->name);
-    return error_unknown(error, "method", text, "a method", &known);
-}
-
-/* ":node planck.mjs,k=8": the words before the settings are those of a command. */
-static bool parse_program(Method *method, const char *text, Error *error) {
-    const MethodDescription *description = method->kind->description;
-    char all[METHOD_TEXT_SIZE + sizeof "program="];
-    if (text[strspn(text, ": ")] == '\0' || text[strspn(text, ": ")] == ',')
-        return error_input(error, description->name, "needs a program, as in '%s:python3 mine.py,name=Mine'",
-                           description->name);
-    snprintf(all, sizeof all, "program=%s", text + 1);
-    return settings_parse(&method->settings, all, description->settings, description->name, error);
-}
-
 bool method_parse(Method *method, const char *text, Error *error) {
     if (strlen(text) >= sizeof method->text)
         return error_input(error, text, "a method's text has at most %zu characters", sizeof method->text - 1);
     strcpy(method->text, text);
-    size_t length = strcspn(text, ":");
-    char name[METHOD_TEXT_SIZE];
-    memcpy(name, text, length);
-    name[length] = '\0';
     method->kind = method_find(text);
-    if (method->kind == NULL) return unknown_method(name, error);
-    if (method->kind->description->external) return parse_program(method, text + length, error);
-    if (strcmp(text + length, ":") == 0) return error_input(error, "method", "'%s' has no setting behind ':'", text);
-    return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "",
-                          method->kind->description->settings, name, error);
+    if (method->kind == NULL) {
+        char name[METHOD_TEXT_SIZE];
+        NameList known = {0};
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(text, ":"), text);
+        for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
+            name_list_add(&known, kind->description->name);
+        return error_unknown(error, "method", name, "a method", &known);
+    }
+    const MethodDescription *description = method->kind->description;
+    const char *name = description->name, *rest = text + strlen(name); /* "" or ":..." */
+    if (!description->external) {
+        if (strcmp(rest, ":") == 0) return error_input(error, "method", "'%s' has no setting behind ':'", text);
+        return settings_parse(&method->settings, rest + (*rest == ':'), description->settings, name, error);
+    }
+    /* ":node planck.mjs,k=8": the words before the settings are those of a command. */
+    char all[METHOD_TEXT_SIZE + sizeof "program="];
+    if (rest[strspn(rest, ": ")] == '\0' || rest[strspn(rest, ": ")] == ',')
+        return error_input(error, name, "needs a program, as in '%s:python3 mine.py,name=Mine'", name);
+    snprintf(all, sizeof all, "program=%s", rest + 1);
+    return settings_parse(&method->settings, all, description->settings, name, error);
 }
 
 static bool add_defaults(Settings *settings, const MethodDescription *method, const char *defaults) {
@@ -83,13 +77,6 @@ bool method_with_network(Method *method, const char *name, const char *path, Err
                                                  error_input(error, path, "the name is too long for a setting"));
 }
 
-static void method_trace(const ContactSolverKind *kind, const Settings *settings) {
-    char text[1024] = "";
-    for (int i = 0; i < settings->count; i++)
-        text_add(text, sizeof text, "%s%s=%s", i > 0 ? "," : ":", settings->items[i].key, settings->items[i].value);
-    trace_line("method %s%s", kind->description.name, text);
-}
-
 bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error) {
     const ContactSolverKind *kind = method->kind->solver;
     if (kind == NULL) return error_input(error, method->text, "is not a contact solver; this needs one");
@@ -107,7 +94,10 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
         if (!settings_default(&settings, scene_settings[i].key, scene_settings[i].value))
             return error_input(error, scene->name, "%s does not fit a setting", scene_settings[i].key);
     }
-    method_trace(kind, &settings);
+    char text[1024] = "";
+    for (int i = 0; i < settings.count; i++)
+        text_add(text, sizeof text, "%s%s=%s", i > 0 ? "," : ":", settings.items[i].key, settings.items[i].value);
+    trace_line("method %s%s", kind->description.name, text);
     solver->kind = kind;
     solver->state = kind->create(&settings, error);
     return solver->state != NULL;

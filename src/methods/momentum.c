@@ -82,11 +82,6 @@ static void choose_all(Momentum *momentum) {
     for (int k = 0; k < momentum->sweeps.groups; k++) momentum->chosen[k] = true;
 }
 
-static void keep_all(Momentum *momentum) {
-    choose_all(momentum);
-    sweeps_keep(&momentum->sweeps, momentum->chosen);
-}
-
 /* Finds the islands, whose residuals are not known yet. */
 static void watch(Momentum *momentum) {
     Sweeps *sweeps = &momentum->sweeps;
@@ -150,7 +145,7 @@ static bool is_due(const MomentumIsland *course, const Run *run) {
 }
 
 /* Measures the residuals of the chosen islands, and copies the solutions of those that are better than ever. */
-static void momentum_measure(Momentum *momentum) {
+static void measure(Momentum *momentum) {
     Sweeps *sweeps = &momentum->sweeps;
     MomentumIsland *courses = momentum->courses;
     bool *chosen = momentum->chosen;
@@ -168,7 +163,7 @@ static void momentum_measure(Momentum *momentum) {
 }
 
 /* At a look. Returns true where numbers are NaN or infinite: the island goes back to what was best. */
-static bool momentum_judge(MomentumIsland *course) {
+static bool judge(MomentumIsland *course) {
     const bool lost = !(course->left < HUGE_VALF);
     if (lost) course->left = course->best;
     if (lost || course->left > risen * course->least) {
@@ -181,7 +176,7 @@ static bool momentum_judge(MomentumIsland *course) {
     return false;
 }
 
-static void momentum_look(Momentum *momentum, const Run *run) {
+static void look(Momentum *momentum, const Run *run) {
     const int groups = momentum->sweeps.groups;
     bool any_due = false, any_lost = false;
     for (int k = 0; k < groups; k++) {
@@ -189,22 +184,12 @@ static void momentum_look(Momentum *momentum, const Run *run) {
         any_due |= momentum->chosen[k];
     }
     if (!any_due) return;
-    momentum_measure(momentum);
+    measure(momentum);
     for (int k = 0; k < groups; k++) {
-        momentum->chosen[k] = is_due(&momentum->courses[k], run) && momentum_judge(&momentum->courses[k]);
+        momentum->chosen[k] = is_due(&momentum->courses[k], run) && judge(&momentum->courses[k]);
         any_lost |= momentum->chosen[k];
     }
     if (any_lost) sweeps_return(&momentum->sweeps, momentum->chosen);
-}
-
-/* Before the sweep after so many of the block. */
-static float factor_of(const MomentumIsland *course, const Run *run, int after) {
-    const int sweep = course->sweeps + after, first = 2 * SLIDING_EVERY;
-    if (sweep == 0) return 0;
-    const float wanted = course->plain ? 0 : run->factors[sweep];
-    const bool begins = run->done + after < SLIDING_EVERY || (run->total > 0 && run->total < first);
-    const float most = begins || course->most < 0 ? course->most : 1;
-    return wanted < most ? wanted : most;
 }
 
 /* False when memory is short. */
@@ -212,37 +197,31 @@ static bool run_block(Momentum *momentum, Run *run, int count) {
     Sweeps *sweeps = &momentum->sweeps;
     float *factor = momentum->factors;
     for (int s = 0; s < count; s++)
-        for (int k = 0; k < sweeps->groups; k++) *factor++ = factor_of(&momentum->courses[k], run, s);
+        for (int k = 0; k < sweeps->groups; k++) {
+            const MomentumIsland *course = &momentum->courses[k];
+            const int sweep = course->sweeps + s;
+            const float wanted = course->plain || sweep == 0 ? 0 : run->factors[sweep];
+            const bool begins = run->done + s < SLIDING_EVERY || (run->total > 0 && run->total < 2 * SLIDING_EVERY);
+            const float most = begins || course->most < 0 ? course->most : 1;
+            *factor++ = sweep == 0 || wanted < most ? wanted : most;
+        }
     if (!(run->done == 0 ? sweeps_run_momentum(sweeps, momentum->factors, count)
                          : sweeps_continue_momentum(sweeps, momentum->factors, count)))
         return false;
     for (int k = 0; k < sweeps->groups; k++) momentum->courses[k].sweeps += count;
     run->done += count;
-    momentum_look(momentum, run);
+    look(momentum, run);
     return true;
 }
 
-/* Chooses the islands whose residual was smaller before. False if no residual was. */
-static bool choose_worse(Momentum *momentum) {
+/* Takes islands whose residual was smaller before back to their best solutions. */
+static void settle(Momentum *momentum) {
     bool any = false;
     for (int k = 0; k < momentum->sweeps.groups; k++) {
         momentum->chosen[k] = !(momentum->courses[k].left <= momentum->courses[k].best);
         any |= momentum->chosen[k];
     }
-    return any;
-}
-
-/* Takes islands back to their best solutions. */
-static void settle(Momentum *momentum) {
-    if (choose_worse(momentum)) sweeps_return(&momentum->sweeps, momentum->chosen);
-}
-
-static void restart_all(Momentum *momentum) {
-    for (int k = 0; k < momentum->sweeps.groups; k++) restart(&momentum->courses[k], false);
-}
-
-static void forget_best(Momentum *momentum) {
-    for (int k = 0; k < momentum->sweeps.groups; k++) momentum->courses[k].best = HUGE_VALF;
+    if (any) sweeps_return(&momentum->sweeps, momentum->chosen);
 }
 
 bool momentum_run(Momentum *momentum, const float *factors, int count) {
@@ -251,9 +230,12 @@ bool momentum_run(Momentum *momentum, const float *factors, int count) {
     Run run = {.factors = factors, .total = count};
     momentum->refreshes = count >= LONG_RUN;
     watch(momentum);
-    restart_all(momentum);
-    forget_best(momentum); /* the start: its impulses may be outside of the cones */
-    keep_all(momentum);    /* for islands in which the first numbers are infinite */
+    for (int k = 0; k < momentum->sweeps.groups; k++) {
+        restart(&momentum->courses[k], false);
+        momentum->courses[k].best = HUGE_VALF; /* not the start: its impulses may be outside of the cones */
+    }
+    choose_all(momentum); /* for islands in which the first numbers are infinite */
+    sweeps_keep(&momentum->sweeps, momentum->chosen);
     while (run.done < count) {
         const int left = count - run.done;
         if (!run_block(momentum, &run, left < 2 * every ? left : every)) return false;
@@ -269,10 +251,10 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
     Run run = {.factors = factors};
     momentum->refreshes = true;
     watch(momentum);
-    forget_best(momentum);
+    for (int k = 0; k < sweeps->groups; k++) momentum->courses[k].best = HUGE_VALF;
     choose_all(momentum);
-    momentum_measure(momentum);
-    restart_all(momentum);
+    measure(momentum);
+    for (int k = 0; k < sweeps->groups; k++) restart(&momentum->courses[k], false);
     while (stopping_needs_more(rule, run.done, sweeps, problem))
         if (!run_block(momentum, &run, STOPPING_BLOCK)) return false;
     if (residual_reaches(sweeps, problem->contact_count, rule->near)) settle(momentum);
@@ -302,7 +284,7 @@ typedef struct State {
 
 static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS("sweeps"), KEEP_SETTING(SETTING_OWN), {0}};
 
-static void momentum_destroy(void *state) {
+static void destroy(void *state) {
     State *solver = state;
     if (solver == NULL) return;
     momentum_free(&solver->momentum);
@@ -310,7 +292,7 @@ static void momentum_destroy(void *state) {
     free(solver);
 }
 
-static void *momentum_create(const Settings *chosen, Error *error) {
+static void *create(const Settings *chosen, Error *error) {
     static const State standard = {.rule.k = 10};
     State *solver = stopping_make(chosen, settings, &standard, sizeof standard, "momentum", error);
     if (solver == NULL) return NULL;
@@ -318,7 +300,7 @@ static void *momentum_create(const Settings *chosen, Error *error) {
     solver->momentum.rule = solver->rule;
     if (solver->rule.more > 0) solver->momentum.more_factors = momentum_factors_make(solver->rule.more);
     if (solver->factors != NULL && (solver->rule.more == 0 || solver->momentum.more_factors != NULL)) return solver;
-    momentum_destroy(solver);
+    destroy(solver);
     error_memory(error, "momentum");
     return NULL;
 }
@@ -341,6 +323,6 @@ const ContactSolverKind solver_momentum = {
                     .chart_quick = METHOD_RUNS("k=10", "k=20", "k=5,near=0.1,more=10000"),
                     .stability = METHOD_RUNS("", "k=20"),
                     .stability_place = 3},
-    .create = momentum_create,
+    .create = create,
     .solve = solve_momentum,
-    .destroy = momentum_destroy};
+    .destroy = destroy};

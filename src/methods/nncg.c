@@ -56,28 +56,9 @@ typedef struct Nncg {
 
 static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS("sweeps"), KEEP_SETTING(SETTING_OWN), {0}};
 
-static void *nncg_create(const Settings *chosen, Error *error) {
+static void *create(const Settings *chosen, Error *error) {
     static const Nncg standard = {.rule.k = 10};
     return stopping_make(chosen, settings, &standard, sizeof standard, "nncg", error);
-}
-
-static bool nncg_reserve(Nncg *solver) {
-    const size_t pairs = (size_t)solver->sweeps.pair_count, bodies = (size_t)solver->sweeps.body_count;
-    return ARRAY_BLOCK_RESERVE(&solver->arrays, ARRAY_PART(solver->pair_before, pairs),
-                               ARRAY_PART(solver->pair_direction, pairs), ARRAY_PART(solver->body_before, bodies),
-                               ARRAY_PART(solver->body_direction, bodies), ARRAY_PART(solver->islands, pairs));
-}
-
-/* d = 0 */
-static void begin_all(Nncg *solver) {
-    const Sweeps *sweeps = &solver->sweeps;
-    size_t bodies = (size_t)sweeps->body_count * sizeof(NncgRow), pairs = (size_t)sweeps->pair_count * sizeof(NncgRow);
-    memset(solver->body_direction, 0, bodies);
-    memset(solver->pair_direction, 0, pairs);
-    memcpy(solver->body_before, sweeps->bodies, bodies);
-    for (int i = 0; i < sweeps->pair_count; i++)
-        memcpy(&solver->pair_before[i], sweeps->pairs[i].sums, sizeof *solver->pair_before);
-    for (int k = 0; k < sweeps->groups; k++) solver->islands[k].before = 0;
 }
 
 static float add_up(float partial[2][4]) {
@@ -85,14 +66,7 @@ static float add_up(float partial[2][4]) {
     return (partial[0][0] + partial[0][2]) + (partial[0][1] + partial[0][3]);
 }
 
-static void nncg_decide(NncgIsland *island) {
-    const float squared = add_up(island->squared);
-    island->restarts = add_up(island->along) < 0.0f;
-    island->beta = squared < island->before ? squared / island->before : 1.0f;
-    island->before = squared;
-}
-
-static void nncg_measure(Nncg *solver) {
+static void measure(Nncg *solver) {
     const Sweeps *sweeps = &solver->sweeps;
     for (int k = 0; k < sweeps->groups; k++) solver->islands[k] = (NncgIsland){.before = solver->islands[k].before};
     for (int i = 0; i < sweeps->pair_count; i++) {
@@ -106,7 +80,13 @@ static void nncg_measure(Nncg *solver) {
             island->along[odd][k] += step * solver->pair_direction[i].values[k];
         }
     }
-    for (int k = 0; k < sweeps->groups; k++) nncg_decide(&solver->islands[k]);
+    for (int k = 0; k < sweeps->groups; k++) {
+        NncgIsland *island = &solver->islands[k];
+        const float squared = add_up(island->squared);
+        island->restarts = add_up(island->along) < 0.0f;
+        island->beta = squared < island->before ? squared / island->before : 1.0f;
+        island->before = squared;
+    }
 }
 
 /* p = p' + beta d and d = beta d - g for one row; or p = p' and d = 0. */
@@ -124,48 +104,50 @@ static void extrapolate_row(void *row, NncgRow *before, NncgRow *direction, cons
     memcpy(row, &now, sizeof now);
 }
 
-static void nncg_extrapolate(Nncg *solver) {
-    Sweeps *sweeps = &solver->sweeps;
-    for (int i = 0; i < sweeps->pair_count; i++)
-        extrapolate_row(sweeps->pairs[i].sums, &solver->pair_before[i], &solver->pair_direction[i],
-                        &solver->islands[sweeps->group[i]]);
-    for (int i = 0; i < sweeps->body_count; i++)
-        extrapolate_row(&sweeps->bodies[i], &solver->body_before[i], &solver->body_direction[i],
-                        &solver->islands[sweeps->group_of_body[i]]);
-}
-
-/* True after sweep number `sweep`, counted from 1, if none follows. */
-static bool is_last(const Nncg *solver, int sweep, const ContactProblem *problem) {
-    const int done = sweep - solver->rule.k;
-    return done >= 0 && done % STOPPING_BLOCK == 0 &&
-           !stopping_needs_more(&solver->rule, done, &solver->sweeps, problem);
-}
-
 /* False when memory is short. */
-static bool nncg_run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
-    if (!sweeps_begin(&solver->sweeps, kernel, problem, true) || !nncg_reserve(solver)) return false;
-    if (solver->sweeps.pair_count == 0) return true; /* and no island */
-    sweeps_group(&solver->sweeps);
-    begin_all(solver);
+static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
+    Sweeps *sweeps = &solver->sweeps;
+    if (!sweeps_begin(sweeps, kernel, problem, true)) return false;
+    const size_t pairs = (size_t)sweeps->pair_count, bodies = (size_t)sweeps->body_count;
+    if (!ARRAY_BLOCK_RESERVE(&solver->arrays, ARRAY_PART(solver->pair_before, pairs),
+                             ARRAY_PART(solver->pair_direction, pairs), ARRAY_PART(solver->body_before, bodies),
+                             ARRAY_PART(solver->body_direction, bodies), ARRAY_PART(solver->islands, pairs)))
+        return false;
+    if (pairs == 0) return true; /* and no island */
+    sweeps_group(sweeps);
+    /* d = 0 */
+    memset(solver->body_direction, 0, bodies * sizeof *solver->body_direction);
+    memset(solver->pair_direction, 0, pairs * sizeof *solver->pair_direction);
+    memcpy(solver->body_before, sweeps->bodies, bodies * sizeof *solver->body_before);
+    for (size_t i = 0; i < pairs; i++)
+        memcpy(&solver->pair_before[i], sweeps->pairs[i].sums, sizeof *solver->pair_before);
+    for (int k = 0; k < sweeps->groups; k++) solver->islands[k].before = 0;
     for (int sweep = 1;; sweep++) {
-        if (!sweeps_run(&solver->sweeps, 1)) return false;
-        if (is_last(solver, sweep, problem)) return true;
-        nncg_measure(solver);
-        nncg_extrapolate(solver);
+        const int done = sweep - solver->rule.k;
+        if (!sweeps_run(sweeps, 1)) return false;
+        if (done >= 0 && done % STOPPING_BLOCK == 0 && !stopping_needs_more(&solver->rule, done, sweeps, problem))
+            return true;
+        measure(solver);
+        for (int i = 0; i < sweeps->pair_count; i++)
+            extrapolate_row(sweeps->pairs[i].sums, &solver->pair_before[i], &solver->pair_direction[i],
+                            &solver->islands[sweeps->group[i]]);
+        for (int i = 0; i < sweeps->body_count; i++)
+            extrapolate_row(&sweeps->bodies[i], &solver->body_before[i], &solver->body_direction[i],
+                            &solver->islands[sweeps->group_of_body[i]]);
     }
 }
 
 /* NaN and infinite numbers may depend on the order of visits; so they are computed one by one, the same everywhere. */
-static bool nncg_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Nncg *solver = state;
-    if (!nncg_run(solver, sweeps_best_kernel(), problem)) return error_memory(error, "nncg");
+    if (!run(solver, sweeps_best_kernel(), problem)) return error_memory(error, "nncg");
     if (sweeps_end(&solver->sweeps, solution) || solver->sweeps.kernel == SWEEP_ONE_BY_ONE) return true;
-    if (!nncg_run(solver, SWEEP_ONE_BY_ONE, problem)) return error_memory(error, "nncg");
+    if (!run(solver, SWEEP_ONE_BY_ONE, problem)) return error_memory(error, "nncg");
     sweeps_end(&solver->sweeps, solution);
     return true;
 }
 
-static void nncg_destroy(void *state) {
+static void destroy(void *state) {
     Nncg *solver = state;
     if (solver == NULL) return;
     sweeps_free(&solver->sweeps);
@@ -184,6 +166,6 @@ const ContactSolverKind solver_nncg = {
                                          "k=5,near=0.0002,more=10000"),
                     .chart_quick = METHOD_RUNS("k=20", "k=1,near=0.02,more=10000"),
                     .stability_place = 5},
-    .create = nncg_create,
-    .solve = nncg_solve,
-    .destroy = nncg_destroy};
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -37,26 +37,20 @@ static void add_impulse(BodyVelocity *velocity, const ContactProblem *problem, c
         pushed->inv_inertia * vec2_cross(body == contact->a ? contact->arm_a : contact->arm_b, impulse);
 }
 
-static float clamp(float value, float low, float high) { return value < low ? low : value > high ? high : value; }
-
-/* The impulses of one visit of this contact, less those so far. */
-static ContactImpulse jacobi_impulse(const PairMoment *moment, const ContactProblem *problem, int i) {
-    const ContactPoint *contact = &problem->contacts[i];
-    const ContactImpulse so_far = moment->impulses[i];
-    const Vec2 velocity =
-        pair_point_velocity(contact, &moment->velocities[contact->a], &moment->velocities[contact->b]);
-    float normal = so_far.normal - contact->mass_normal * (velocity.x - contact->bias);
-    normal = normal > 0 ? normal : 0;
-    const float most = contact->friction * normal;
-    const float tangent = clamp(so_far.tangent - contact->mass_tangent * velocity.y, -most, most);
-    return (ContactImpulse){normal - so_far.normal, tangent - so_far.tangent};
-}
-
 void pair_moment_jacobi(PairMoment *moment, const ContactProblem *problem) {
     memset(moment->pushes, 0, (size_t)problem->body_count * sizeof *moment->pushes);
     for (int i = 0; i < problem->contact_count; i++) {
+        /* The impulses of one visit of this contact, less those so far. */
         const ContactPoint *contact = &problem->contacts[i];
-        const ContactImpulse push = moment->alone[i] = jacobi_impulse(moment, problem, i);
+        const ContactImpulse so_far = moment->impulses[i];
+        const Vec2 velocity =
+            pair_point_velocity(contact, &moment->velocities[contact->a], &moment->velocities[contact->b]);
+        float normal = so_far.normal - contact->mass_normal * (velocity.x - contact->bias);
+        normal = normal > 0 ? normal : 0;
+        const float most = contact->friction * normal, wanted = so_far.tangent - contact->mass_tangent * velocity.y;
+        const float tangent = wanted < -most ? -most : wanted > most ? most : wanted;
+        const ContactImpulse push = {normal - so_far.normal, tangent - so_far.tangent};
+        moment->alone[i] = push;
         add_impulse(&moment->pushes[contact->a], problem, contact, push, contact->a, 1);
         add_impulse(&moment->pushes[contact->b], problem, contact, push, contact->b, 1);
     }
@@ -95,7 +89,7 @@ static Vec2 in_contact_frame(const ContactPoint *contact, Vec2 v) {
     return vec2(vec2_dot(v, contact->normal), vec2_dot(v, vec2_cross_scalar(contact->normal, 1.0f)));
 }
 
-static float *pair_put(float *to, Vec2 v) {
+static float *put(float *to, Vec2 v) {
     *to++ = v.x;
     *to++ = v.y;
     return to;
@@ -117,67 +111,60 @@ Vec2 pair_point_velocity(const ContactPoint *contact, const BodyVelocity *a, con
     return in_contact_frame(contact, vec2_sub(of_b, of_a));
 }
 
-static float *put_point(float *to, const ContactProblem *problem, const PairMoment *now, int i, float inverse_mass) {
-    const ContactPoint *contact = &problem->contacts[i];
-    const ContactImpulse so_far = now->impulses[i];
-    to = pair_put(to, pair_point_velocity(contact, &now->velocities[contact->a], &now->velocities[contact->b]));
-    *to++ = contact->bias;
-    to = pair_put(to, vec2_scale(inverse_mass, vec2(so_far.normal, so_far.tangent)));
-    to = pair_put(to, in_contact_frame(contact, contact->arm_a));
-    return pair_put(to, in_contact_frame(contact, contact->arm_b));
-}
-
-static float *contact_inputs(const ContactProblem *problem, const PairMoment *now, int first, float *inputs) {
+static float *put_contact_inputs(float *to, const ContactProblem *problem, const PairMoment *now, int first) {
     enum { EACH = 9 };
     const int count = pair_contact_count(problem, first);
     const float inverse_mass = pair_inverse_mass(problem, first);
-    for (int i = 0; i < PAIR_POINTS; i++) {
-        if (i < count)
-            inputs = put_point(inputs, problem, now, first + i, inverse_mass);
-        else
-            for (int k = 0; k < EACH; k++) *inputs++ = 0;
+    for (int i = first; i < first + PAIR_POINTS; i++) {
+        if (i >= first + count) {
+            for (int k = 0; k < EACH; k++) *to++ = 0;
+            continue;
+        }
+        const ContactPoint *contact = &problem->contacts[i];
+        const ContactImpulse so_far = now->impulses[i];
+        to = put(to, pair_point_velocity(contact, &now->velocities[contact->a], &now->velocities[contact->b]));
+        *to++ = contact->bias;
+        to = put(to, vec2_scale(inverse_mass, vec2(so_far.normal, so_far.tangent)));
+        to = put(to, in_contact_frame(contact, contact->arm_a));
+        to = put(to, in_contact_frame(contact, contact->arm_b));
     }
-    *inputs++ = problem->bodies[problem->contacts[first].a].inv_mass / inverse_mass;
-    *inputs++ = count > 1 ? 1.0f : 0.0f;
-    return inputs;
+    *to++ = problem->bodies[problem->contacts[first].a].inv_mass / inverse_mass;
+    *to++ = count > 1 ? 1.0f : 0.0f;
+    return to;
 }
 
 static float *put_velocity(float *to, const ContactPoint *contact, BodyVelocity velocity) {
-    to = pair_put(to, in_contact_frame(contact, velocity.linear));
+    to = put(to, in_contact_frame(contact, velocity.linear));
     *to++ = velocity.angular;
     return to;
 }
 
-static float *neighbour_inputs(const ContactProblem *problem, const PairMoment *now, int first, float *inputs) {
-    const ContactPoint *contact = &problem->contacts[first];
-    const int bodies[2] = {contact->a, contact->b};
-    for (int k = 0; k < 2; k++)
-        inputs = put_velocity(inputs, contact, pair_moment_others(now, problem, first, bodies[k]));
-    for (int k = 0; k < 2; k++) {
-        const ProblemBody *before = &problem->bodies[bodies[k]];
-        const BodyVelocity *after = &now->velocities[bodies[k]];
-        BodyVelocity done = {vec2_sub(after->linear, before->velocity), after->angular - before->angular_velocity};
-        inputs = put_velocity(inputs, contact, done);
-    }
-    return inputs;
-}
-
 void pair_inputs(const ContactProblem *problem, const PairMoment *now, int first, PairView view, float *inputs) {
     if (pair_views[view].by_contact) {
-        inputs = contact_inputs(problem, now, first, inputs);
-        if (view == PAIR_NEIGHBOURS) neighbour_inputs(problem, now, first, inputs);
+        inputs = put_contact_inputs(inputs, problem, now, first);
+        const ContactPoint *contact = &problem->contacts[first];
+        const int bodies[2] = {contact->a, contact->b};
+        for (int k = 0; k < 2 && view == PAIR_NEIGHBOURS; k++)
+            inputs = put_velocity(inputs, contact, pair_moment_others(now, problem, first, bodies[k]));
+        for (int k = 0; k < 2 && view == PAIR_NEIGHBOURS; k++) {
+            const ProblemBody *before = &problem->bodies[bodies[k]];
+            const BodyVelocity *after = &now->velocities[bodies[k]];
+            const BodyVelocity done = {vec2_sub(after->linear, before->velocity),
+                                       after->angular - before->angular_velocity};
+            inputs = put_velocity(inputs, contact, done);
+        }
         return;
     }
     const int a = problem->contacts[first].a, b = problem->contacts[first].b;
     const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
     const BodyVelocity of_a = velocity_now(problem, now, a), of_b = velocity_now(problem, now, b);
     if (view == PAIR_RELATIVE)
-        inputs = pair_put(inputs, vec2_sub(body_b->position, body_a->position));
+        inputs = put(inputs, vec2_sub(body_b->position, body_a->position));
     else
-        inputs = pair_put(pair_put(inputs, body_a->position), body_b->position);
-    inputs = pair_put(pair_put(inputs, of_a.linear), of_b.linear);
-    inputs = pair_put(inputs, vec2(of_a.angular, of_b.angular));
-    if (view != PAIR_RAW_UNTURNED) pair_put(inputs, vec2(body_a->angle, body_b->angle));
+        inputs = put(put(inputs, body_a->position), body_b->position);
+    inputs = put(put(inputs, of_a.linear), of_b.linear);
+    inputs = put(inputs, vec2(of_a.angular, of_b.angular));
+    if (view != PAIR_RAW_UNTURNED) put(inputs, vec2(body_a->angle, body_b->angle));
 }
 
 int pair_contact_count(const ContactProblem *problem, int first) {
@@ -204,14 +191,9 @@ static Vec2 in_world(const ContactPoint *contact, Vec2 v) {
     return vec2_add(vec2_scale(v.x, contact->normal), vec2_scale(v.y, vec2_cross_scalar(contact->normal, 1.0f)));
 }
 
-static void pair_changes_put(float *to, Vec2 v) {
-    to[0] = v.x;
-    to[1] = v.y;
-}
-
 static void put_velocities(float changes[PAIR_CHANGES], Vec2 a, Vec2 b) {
-    pair_changes_put(changes, a);
-    pair_changes_put(changes + 3, b);
+    put(changes, a);
+    put(changes + 3, b);
 }
 
 void pair_to_contact_frame(const ContactPoint *contact, float changes[PAIR_CHANGES]) {
@@ -234,7 +216,7 @@ void pair_point_changes(const ContactProblem *problem, const ContactImpulse *imp
         if (i < count)
             beyond = vec2(impulses[first + i].normal - contact->warm_normal,
                           impulses[first + i].tangent - contact->warm_tangent);
-        pair_changes_put(changes + 2 * i, vec2_scale(inverse_mass, beyond));
+        put(changes + 2 * i, vec2_scale(inverse_mass, beyond));
     }
 }
 
@@ -261,13 +243,6 @@ void pair_changes(const ContactProblem *problem, const ContactSolution *solution
     changes[5] = b->inv_inertia * turn_b;
 }
 
-static void net_change(const ContactProblem *problem, const ContactSolution *solution, int body, float changes[3]) {
-    const ProblemBody *before = &problem->bodies[body];
-    const BodyVelocity *after = &solution->velocities[body];
-    pair_changes_put(changes, vec2_sub(after->linear, before->velocity));
-    changes[2] = after->angular - before->angular_velocity;
-}
-
 void pair_step_changes(const ContactProblem *problem, const ContactSolution *solution, int first, PairView view,
                        PairTarget target, float changes[PAIR_CHANGES]) {
     const ContactPoint *contact = &problem->contacts[first];
@@ -276,24 +251,17 @@ void pair_step_changes(const ContactProblem *problem, const ContactSolution *sol
         return;
     }
     if (target == TARGET_NET) {
-        net_change(problem, solution, contact->a, changes);
-        net_change(problem, solution, contact->b, changes + 3);
+        for (int k = 0; k < 2; k++) {
+            const int body = k == 0 ? contact->a : contact->b;
+            const ProblemBody *before = &problem->bodies[body];
+            const BodyVelocity *after = &solution->velocities[body];
+            float *change = put(changes + 3 * k, vec2_sub(after->linear, before->velocity));
+            *change = after->angular - before->angular_velocity;
+        }
     } else {
         pair_changes(problem, solution, first, pair_contact_count(problem, first), changes);
     }
     if (pair_views[view].by_contact) pair_to_contact_frame(contact, changes);
-}
-
-static const float unit_tolerance = 1e-3f; /* of a normal's squared length */
-
-static void pair_context_put(float *to, Vec2 v) {
-    to[0] = v.x;
-    to[1] = v.y;
-}
-
-static void pair_context_put_velocity(float *to, const ProblemBody *body) {
-    pair_context_put(to, body->velocity);
-    to[2] = body->angular_velocity;
 }
 
 void pair_context(const ContactProblem *problem, int first, float context[PAIR_CONTEXT]) {
@@ -309,15 +277,16 @@ void pair_context(const ContactProblem *problem, int first, float context[PAIR_C
     context[CONTEXT_INV_INERTIA_A] = a->inv_inertia;
     context[CONTEXT_INV_MASS_B] = b->inv_mass;
     context[CONTEXT_INV_INERTIA_B] = b->inv_inertia;
-    pair_context_put(context + CONTEXT_NORMAL, contact->normal);
+    put(context + CONTEXT_NORMAL, contact->normal);
     context[CONTEXT_FRICTION] = contact->friction;
-    pair_context_put(context + CONTEXT_ARM_A, vec2_scale(1.0f / (float)count, arm_a));
-    pair_context_put(context + CONTEXT_ARM_B, vec2_scale(1.0f / (float)count, arm_b));
-    pair_context_put_velocity(context + CONTEXT_VELOCITIES, a);
-    pair_context_put_velocity(context + CONTEXT_VELOCITIES + 3, b);
+    put(context + CONTEXT_ARM_A, vec2_scale(1.0f / (float)count, arm_a));
+    put(context + CONTEXT_ARM_B, vec2_scale(1.0f / (float)count, arm_b));
+    *put(context + CONTEXT_VELOCITIES, a->velocity) = a->angular_velocity;
+    *put(context + CONTEXT_VELOCITIES + 3, b->velocity) = b->angular_velocity;
 }
 
 const char *pair_context_fault(const float context[PAIR_CONTEXT]) {
+    static const float unit_tolerance = 1e-3f; /* of a normal's squared length */
     const Vec2 normal = vec2(context[CONTEXT_NORMAL], context[CONTEXT_NORMAL + 1]);
     for (int i = CONTEXT_INV_MASS_A; i <= CONTEXT_INV_INERTIA_B; i++)
         if (context[i] < 0) return "an inverse mass or inertia below 0";

@@ -22,32 +22,6 @@ void pair_network_free(PairNetwork *pair) {
     *pair = (PairNetwork){0};
 }
 
-static bool refuse_inputs(const Network *network, const char *path, Error *error) {
-    NameList known = {0};
-    for (int v = 0; v < PAIR_VIEWS; v++) {
-        char view[64];
-        snprintf(view, sizeof view, "%s (%d)", pair_views[v].name, pair_views[v].count);
-        name_list_add(&known, view);
-    }
-    return error_input(error, path, "the network has %d inputs (%.80s); it needs those of %s", network->widths[0],
-                       network->inputs, known.text);
-}
-
-static bool refuse_target(const Network *network, const char *path, Error *error) {
-    NameList known = {0};
-    for (int t = 0; t < PAIR_TARGETS; t++) name_list_add(&known, pair_target_names[t]);
-    return error_unknown(error, path, network->target, "a target of pair networks", &known);
-}
-
-static bool find_target(const char *name, PairTarget *target) {
-    for (PairTarget t = 0; t < PAIR_TARGETS; t++) {
-        if (strcmp(pair_target_names[t], name) != 0) continue;
-        *target = t;
-        return true;
-    }
-    return false;
-}
-
 /* Whether the view has the inputs that the target needs. */
 static bool check_view(const PairNetwork *pair, const char *path, Error *error) {
     if (pair->target == TARGET_POINTS && !pair_views[pair->view].by_contact)
@@ -81,10 +55,24 @@ static bool check_outputs(const PairNetwork *pair, const char *path, Error *erro
 bool pair_network_read(PairNetwork *pair, const char *path, Error *error) {
     Network *network = pair->network = network_read(path, error);
     if (network == NULL) return false;
-    bool seen = pair_view_of_inputs(network->inputs, &pair->view) && network->widths[0] == pair_views[pair->view].count;
-    bool ok = (seen || refuse_inputs(network, path, error)) &&
-              (find_target(network->target, &pair->target) || refuse_target(network, path, error)) &&
-              check_view(pair, path, error) && check_outputs(pair, path, error);
+    NameList known = {0};
+    bool ok = pair_view_of_inputs(network->inputs, &pair->view) && network->widths[0] == pair_views[pair->view].count;
+    if (!ok) {
+        for (int v = 0; v < PAIR_VIEWS; v++) {
+            char view[64];
+            snprintf(view, sizeof view, "%s (%d)", pair_views[v].name, pair_views[v].count);
+            name_list_add(&known, view);
+        }
+        error_input(error, path, "the network has %d inputs (%.80s); it needs those of %s", network->widths[0],
+                    network->inputs, known.text);
+        pair_network_free(pair);
+        return false;
+    }
+    for (pair->target = 0; pair->target < PAIR_TARGETS; pair->target++)
+        if (strcmp(pair_target_names[pair->target], network->target) == 0) break;
+    for (int t = 0; t < PAIR_TARGETS; t++) name_list_add(&known, pair_target_names[t]);
+    ok = pair->target < PAIR_TARGETS ? check_view(pair, path, error) && check_outputs(pair, path, error)
+                                     : error_unknown(error, path, network->target, "a target of pair networks", &known);
     if (ok) {
         pair->scratch = malloc(network_batch_scratch(network) * sizeof *pair->scratch);
         ok = pair->scratch != NULL || error_memory(error, path);
@@ -93,27 +81,11 @@ bool pair_network_read(PairNetwork *pair, const char *path, Error *error) {
     return ok;
 }
 
-static int pairs_of(const ContactProblem *problem) {
-    int pairs = 0;
-    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) pairs++;
-    return pairs;
-}
-
-/* The moment of the step for all pairs; *now is NULL for the problem's own velocities. */
-static bool find_moment(PairNetwork *pair, const ContactProblem *problem, const PairMoment **now) {
-    *now = NULL;
-    if (!pair_views[pair->view].by_contact) return true;
-    if (!pair_moment_reserve(&pair->moment, problem)) return false;
-    static const SequentialOptions options = {.accumulate = true, .warm = true};
-    ContactSolution begun = pair_moment_solution(&pair->moment);
-    sequential_impulses_begin(problem, &options, &begun);
-    if (pair->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&pair->moment, problem);
-    *now = &pair->moment;
-    return true;
-}
-
 const float *pair_network_predict(PairNetwork *pair, const ContactProblem *problem, int *pairs) {
-    const int count = *pairs = pairs_of(problem), width = pair_views[pair->view].count;
+    int count = 0;
+    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) count++;
+    *pairs = count;
+    const int width = pair_views[pair->view].count;
     const size_t inputs_size = (size_t)count * (size_t)width;
     const size_t outputs_size = (size_t)count * (size_t)pair_network_outputs(pair);
     if (!array_reserve((void **)&pair->numbers, &pair->capacity, inputs_size + outputs_size + 1, sizeof(float)))
@@ -124,8 +96,15 @@ const float *pair_network_predict(PairNetwork *pair, const ContactProblem *probl
         for (size_t i = 0; i < outputs_size; i++) outputs[i] = pair->network->output_mean[i / (size_t)count];
         return outputs;
     }
-    const PairMoment *now;
-    if (!find_moment(pair, problem, &now)) return NULL;
+    const PairMoment *now = NULL; /* of the step, for all pairs; NULL: the problem's own velocities */
+    if (pair_views[pair->view].by_contact) {
+        static const SequentialOptions options = {.accumulate = true, .warm = true};
+        if (!pair_moment_reserve(&pair->moment, problem)) return NULL;
+        ContactSolution begun = pair_moment_solution(&pair->moment);
+        sequential_impulses_begin(problem, &options, &begun);
+        if (pair->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&pair->moment, problem);
+        now = &pair->moment;
+    }
     for (int first = 0, p = 0; first < problem->contact_count; first += pair_contact_count(problem, first), p++) {
         float numbers[PAIR_INPUTS_MAX];
         pair_inputs(problem, now, first, pair->view, numbers);
@@ -209,14 +188,6 @@ static bool is_finite_velocity(const BodyVelocity *velocity) {
     return isfinite(velocity->linear.x) && isfinite(velocity->linear.y) && isfinite(velocity->angular);
 }
 
-/* The total momentum that changes of a pair create, N s. */
-static double created_momentum(const ProblemBody *a, const ProblemBody *b, const float changes[PAIR_CHANGES]) {
-    if (a->inv_mass == 0.0f || b->inv_mass == 0.0f) return 0;
-    const double mass_a = 1.0 / a->inv_mass, mass_b = 1.0 / b->inv_mass;
-    const double x = mass_a * changes[0] + mass_b * changes[3], y = mass_a * changes[1] + mass_b * changes[4];
-    return sqrt(x * x + y * y);
-}
-
 /* A change with a NaN or infinite number is discarded and counted. */
 static void add_changes(const PairNetwork *network, const ContactProblem *problem, int first,
                         const float changes[PAIR_CHANGES], ContactSolution *solution) {
@@ -230,8 +201,11 @@ static void add_changes(const PairNetwork *network, const ContactProblem *proble
     }
     solution->velocities[a] = of_a;
     solution->velocities[b] = of_b;
-    if (network->target == TARGET_NET || pair_network_outputs(network) == PAIR_CHANGES)
-        solution->momentum_error += (float)created_momentum(body_a, body_b, changes);
+    if (network->target != TARGET_NET && pair_network_outputs(network) != PAIR_CHANGES) return;
+    if (body_a->inv_mass == 0.0f || body_b->inv_mass == 0.0f) return;
+    const double mass_a = 1.0 / body_a->inv_mass, mass_b = 1.0 / body_b->inv_mass; /* N s, created in all: */
+    const double x = mass_a * changes[0] + mass_b * changes[3], y = mass_a * changes[1] + mass_b * changes[4];
+    solution->momentum_error += (float)sqrt(x * x + y * y);
 }
 
 static bool count_pairs(PairSolver *solver, const ContactProblem *problem) {
@@ -244,29 +218,6 @@ static bool count_pairs(PairSolver *solver, const ContactProblem *problem) {
         solver->pair_counts[problem->contacts[first].b]++;
     }
     return true;
-}
-
-/* TARGET_NET: every pair of a body predicts its whole change, so the body takes their mean. */
-static void take_shares(const PairSolver *solver, const ContactPoint *contact, float changes[PAIR_CHANGES]) {
-    for (int i = 0; i < PAIR_CHANGES; i++)
-        changes[i] /= (float)solver->pair_counts[i < PAIR_CHANGES / 2 ? contact->a : contact->b];
-}
-
-/* TARGET_IMPULSE: sweeps over the pairs, each predicted from the current velocities. */
-static void visit_pairs(PairSolver *solver, const ContactProblem *problem, ContactSolution *solution) {
-    const PairMoment now = {.velocities = solution->velocities};
-    for (int sweep = 0; sweep < solver->sweep_count; sweep++)
-        for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
-            float outputs[PAIR_CHANGES], changes[PAIR_CHANGES];
-            pair_network_predict_one(&solver->network, problem, &now, first, outputs);
-            changes_of(&solver->network, problem, first, outputs, 1, changes);
-            add_changes(&solver->network, problem, first, changes, solution);
-        }
-}
-
-static ContactImpulse into_cone(ContactImpulse impulse, float friction) {
-    const float normal = impulse.normal > 0.0f ? impulse.normal : 0.0f, most = friction * normal;
-    return (ContactImpulse){normal, contact_clamp(impulse.tangent, -most, most)};
 }
 
 /* outputs: one number of the pair every `stride`. A point without outputs, or with NaN or infinite ones, keeps its warm
@@ -287,7 +238,8 @@ static void push_points(const ContactProblem *problem, int first, const float *o
             else
                 solution->fallbacks.not_finite++;
         }
-        solution->impulses[first + i] = into_cone(impulse, contact->friction);
+        const float normal = impulse.normal > 0.0f ? impulse.normal : 0.0f, most = contact->friction * normal;
+        solution->impulses[first + i] = (ContactImpulse){normal, contact_clamp(impulse.tangent, -most, most)};
         solution->fallbacks.outside_cone += impulse.normal != solution->impulses[first + i].normal ||
                                             impulse.tangent != solution->impulses[first + i].tangent;
         contact_push(solution->velocities, contact, problem->bodies, solution->impulses[first + i]);
@@ -300,10 +252,17 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
     contact_solution_begin(problem, solution);
     solution->momentum_error = 0;
     solution->fallbacks = (NetworkFallbacks){0};
-    if (network->target == TARGET_IMPULSE) {
-        visit_pairs(solver, problem, solution);
-        return true;
-    }
+    /* An impulse: sweeps over the pairs, each predicted from the current velocities. */
+    const PairMoment now = {.velocities = solution->velocities};
+    for (int sweep = 0; network->target == TARGET_IMPULSE && sweep < solver->sweep_count; sweep++)
+        for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
+            float output[PAIR_CHANGES], changes[PAIR_CHANGES];
+            pair_network_predict_one(network, problem, &now, first, output);
+            changes_of(network, problem, first, output, 1, changes);
+            add_changes(network, problem, first, changes, solution);
+        }
+    if (network->target == TARGET_IMPULSE) return true;
+    /* Else all are predicted at once. */
     int pairs;
     const float *outputs = pair_network_predict(network, problem, &pairs);
     if (outputs == NULL || (network->target == TARGET_NET && !count_pairs(solver, problem)))
@@ -315,7 +274,10 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
         }
         float changes[PAIR_CHANGES];
         changes_of(network, problem, first, outputs, pairs, changes);
-        if (network->target == TARGET_NET) take_shares(solver, &problem->contacts[first], changes);
+        /* Every pair of a body predicts its whole change, so the body takes their mean. */
+        const ContactPoint *contact = &problem->contacts[first];
+        for (int i = 0; network->target == TARGET_NET && i < PAIR_CHANGES; i++)
+            changes[i] /= (float)solver->pair_counts[i < PAIR_CHANGES / 2 ? contact->a : contact->b];
         add_changes(network, problem, first, changes, solution);
     }
     return true;
@@ -391,23 +353,22 @@ static const SettingSpec settings[] = {{"network", "file of the trained network 
                                        PAIR_SOLVER_NET,
                                        {0}};
 
-static bool pair_net_check(const PairNetwork *network, const char *path, Error *error) {
-    if (network->target == TARGET_POINTS)
-        return error_input(
-            error, path,
-            "the network has the target points, which is for contact-net; pair-net needs the target pair, "
-            "net or impulse");
-    if (network->target == TARGET_IMPULSE && pair_views[network->view].by_contact)
-        return error_input(error, path,
-                           "the network has the target impulse and the inputs %s, which include accumulated impulses; "
-                           "pair-net has none",
-                           pair_views[network->view].name);
-    return true;
-}
-
 static void *pair_net_create(const Settings *chosen, Error *error) {
     PairSolver *solver = pair_solver_create("pair-net", settings, chosen, error);
-    if (solver == NULL || pair_net_check(&solver->network, settings_get(chosen, "network"), error)) return solver;
+    if (solver == NULL) return NULL;
+    const PairNetwork *network = &solver->network;
+    const char *path = settings_get(chosen, "network");
+    if (network->target == TARGET_POINTS)
+        error_input(error, path,
+                    "the network has the target points, which is for contact-net; pair-net needs the target pair, "
+                    "net or impulse");
+    else if (network->target == TARGET_IMPULSE && pair_views[network->view].by_contact)
+        error_input(error, path,
+                    "the network has the target impulse and the inputs %s, which include accumulated impulses; "
+                    "pair-net has none",
+                    pair_views[network->view].name);
+    else
+        return solver;
     pair_solver_destroy(solver);
     return NULL;
 }

@@ -67,23 +67,13 @@ static double missed(Reference *r, double *rms) {
     return isnan(total) ? (double)NAN : largest;
 }
 
-/* The pair's J^T D J in its own coordinates, by columns. */
-static inline void stiffness(const ReferenceGroup *g, const BlockPair *pair, int slot, Vec4 columns[4]) {
-    for (int c = 0; c < 4; c++) columns[c] = all4(0);
-    for (int k = 0; k < 2; k++) {
-        const Vec4 along = (pair->normal[k] + pair->tangent[k] * g->s[slot + k]) * g->dn[slot + k];
-        const Vec4 across = pair->tangent[k] * g->dt[slot + k];
-        const double *n = (const double *)&pair->normal[k], *t = (const double *)&pair->tangent[k];
-        for (int c = 0; c < 4; c++) columns[c] += along * n[c] + across * t[c];
-    }
-}
-
 static void factor_matrix(Reference *r) {
     BlockLu *lu = &r->graph.lu;
     begin_blocks(&r->graph);
     for (int i = 0; i < BLOCK_PAIRS * r->group_count; i++) {
         Vec4 columns[4];
-        stiffness(&r->groups[i / BLOCK_PAIRS], &r->pairs[i], i % BLOCK_PAIRS * 2, columns);
+        const ReferenceGroup *g = &r->groups[i / BLOCK_PAIRS];
+        block_stiffness(&r->pairs[i], i % BLOCK_PAIRS * 2, g->dn, g->dt, g->s, columns);
         block_add_pair(lu->blocks, r->pairs[i].a, r->pairs[i].b, r->pairs[i].place, columns);
     }
     block_lu_factor(lu);

@@ -24,7 +24,7 @@ void reference_free(Reference *r) {
     *r = (Reference){0};
 }
 
-static bool reference_point_reserve(Reference *r, const ContactProblem *problem) {
+static bool reserve(Reference *r, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1, contacts = (size_t)problem->contact_count + 1;
     const size_t pairs = contacts + BLOCK_PAIRS, groups = pairs / BLOCK_PAIRS + 1;
     return block_graph_reserve(&r->graph, problem->body_count, problem->contact_count) &&
@@ -68,36 +68,30 @@ static void load_slot(ReferenceGroup *group, int slot, BlockPair *pair, int k, c
     group->free_tangent[slot] = sum4(pair->tangent[k] * before);
 }
 
-/* A slot that takes part in all operations and has no effect. */
-static void clear_group(ReferenceGroup *group) {
-    const Vec4 one = {1, 1, 1, 1};
-    *group = (ReferenceGroup){.mass_normal = one, .mass_tangent = one, .friction = one, .free_normal = one};
-    group->now = (ReferencePoint){.l = one, .u = one, .w = one, .z = one, .p = one, .q = one};
-}
-
-/* One that changes nothing, as all its bodies are fixed, keeps its cleared slots. */
-static void load_pair(Reference *r, int i, const ContactProblem *problem) {
-    BlockPair *pair = &r->pairs[i];
-    if (!block_graph_place(&r->graph, i, pair)) return;
-    const int first = r->first[i], count = r->first[i + 1] - first;
-    r->contact_count += count;
-    for (int k = 0; k < count; k++)
-        load_slot(&r->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, pair, k, problem, first + k, r->push_out);
-}
-
 /* The problem, without impulses. False when memory is short. */
-static bool reference_point_load(Reference *r, const ContactProblem *problem) {
-    if (!reference_point_reserve(r, problem)) return false;
+static bool load(Reference *r, const ContactProblem *problem) {
+    if (!reserve(r, problem)) return false;
     find_pairs(r, problem);
     if (!block_graph_load(&r->graph, problem, r->pair_count)) return false;
     const int32_t none = r->graph.lu.count, spare = block_lu_spare(&r->graph.lu);
     Vec4 *const numbers[] = {r->moved, r->changes, r->first_changes, r->kept[0].moved, r->kept[1].moved};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) numbers[i][none] = (Vec4){0};
     r->contact_count = r->factorizations = r->attempts = 0;
-    for (int i = 0; i < r->group_count; i++) clear_group(&r->groups[i]);
+    const Vec4 one = {1, 1, 1, 1};
+    for (int i = 0; i < r->group_count; i++) { /* slots that take part in all operations and have no effect */
+        r->groups[i] = (ReferenceGroup){.mass_normal = one, .mass_tangent = one, .friction = one, .free_normal = one};
+        r->groups[i].now = (ReferencePoint){.l = one, .u = one, .w = one, .z = one, .p = one, .q = one};
+    }
     for (int i = 0; i < BLOCK_PAIRS * r->group_count; i++)
         r->pairs[i] = (BlockPair){.a = none, .b = none, .place = {spare, spare}};
-    for (int i = 0; i < r->pair_count; i++) load_pair(r, i, problem);
+    for (int i = 0; i < r->pair_count; i++) {
+        BlockPair *pair = &r->pairs[i];
+        const int first = r->first[i], count = r->first[i + 1] - first;
+        if (!block_graph_place(&r->graph, i, pair)) continue; /* it changes nothing, as its bodies are fixed */
+        r->contact_count += count;
+        for (int k = 0; k < count; k++)
+            load_slot(&r->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, pair, k, problem, first + k, r->push_out);
+    }
     return true;
 }
 
@@ -112,16 +106,7 @@ static void set_start(Reference *r, const ContactProblem *problem, const Contact
         }
 }
 
-/* The last answer. */
-static void set_answer(Reference *r) {
-    for (int i = 0; i < r->pair_count; i++)
-        for (int x = r->first[i], slot = i % BLOCK_PAIRS * 2; x < r->first[i + 1]; x++, slot++) {
-            r->groups[i / BLOCK_PAIRS].normal[slot] = r->impulses[x].normal;
-            r->groups[i / BLOCK_PAIRS].tangent[slot] = r->impulses[x].tangent;
-        }
-}
-
-static void reference_point_store(Reference *r, const ContactProblem *problem) {
+static void store(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < r->pair_count; i++)
         for (int x = r->first[i], slot = i % BLOCK_PAIRS * 2; x < r->first[i + 1]; x++, slot++) {
             const ReferenceGroup *group = &r->groups[i / BLOCK_PAIRS];
@@ -146,10 +131,10 @@ static const ReferenceKernels *kernels(const Reference *r) {
 }
 
 static bool solve_scaled(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
-    if (!reference_point_load(r, problem)) return error_memory(error, "reference");
+    if (!load(r, problem)) return error_memory(error, "reference");
     set_start(r, problem, start);
     kernels(r)->run(r);
-    reference_point_store(r, problem);
+    store(r, problem);
     return true;
 }
 
@@ -177,7 +162,7 @@ static double share_without_gain(const Reference *r, const ContactProblem *probl
 static bool take_without_gain(Reference *r, const ContactProblem *problem, Error *error) {
     const double share = share_without_gain(r, problem);
     r->push_out = true;
-    if (!reference_point_load(r, problem)) return error_memory(error, "reference");
+    if (!load(r, problem)) return error_memory(error, "reference");
     for (int i = 0; i < problem->contact_count; i++) {
         r->impulses[i].normal *= share;
         r->impulses[i].tangent *= share;
@@ -189,7 +174,11 @@ static bool take_without_gain(Reference *r, const ContactProblem *problem, Error
         v->y = (double)body->velocity.y + share * (v->y - (double)body->velocity.y);
         v->spin = (double)body->angular_velocity + share * (v->spin - (double)body->angular_velocity);
     }
-    set_answer(r);
+    for (int i = 0; i < r->pair_count; i++)
+        for (int x = r->first[i], slot = i % BLOCK_PAIRS * 2; x < r->first[i + 1]; x++, slot++) {
+            r->groups[i / BLOCK_PAIRS].normal[slot] = r->impulses[x].normal;
+            r->groups[i / BLOCK_PAIRS].tangent[slot] = r->impulses[x].tangent;
+        }
     r->residual = kernels(r)->residual(r);
     return true;
 }
@@ -248,7 +237,7 @@ void reference_round(const Reference *r, const ContactProblem *problem, ContactS
 bool reference_residual(Reference *r, const ContactProblem *problem, const ContactImpulse *impulses, double *residual,
                         Error *error) {
     r->push_out = true;
-    if (!reference_point_load(r, problem)) return error_memory(error, "reference");
+    if (!load(r, problem)) return error_memory(error, "reference");
     set_start(r, problem, impulses);
     *residual = kernels(r)->residual(r);
     return true;
@@ -258,15 +247,6 @@ bool reference_residual(Reference *r, const ContactProblem *problem, const Conta
 static double squared_distance(const ReferenceVelocity *u, const ReferenceVelocity *v, double spin_weight) {
     double x = u->x - v->x, y = u->y - v->y, spin = u->spin - v->spin;
     return x * x + y * y + spin_weight * (spin * spin);
-}
-
-static double larger(double x, double y) { return x > y ? x : y; }
-
-static bool is_right(const ReferenceVelocity *found, const ReferenceVelocity *reference,
-                     const ReferenceVelocity *freely) {
-    const double least = 0.05 * 0.05, part = 0.05 * 0.05, half_spin = 0.25;
-    double allowed = larger(least, part * squared_distance(reference, freely, half_spin));
-    return squared_distance(found, reference, half_spin) <= allowed;
 }
 
 SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *velocities,
@@ -285,7 +265,9 @@ SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *
             most = square;
             error.worst = i;
         }
-        error.right += is_right(&found, &reference[i], &freely);
+        const double least = 0.05 * 0.05, part = 0.05 * 0.05, half_spin = 0.25;
+        const double of_change = part * squared_distance(&reference[i], &freely, half_spin);
+        error.right += squared_distance(&found, &reference[i], half_spin) <= (of_change > least ? of_change : least);
         error.counted++;
     }
     if (error.counted > 0) error.rms = isnan(sum) ? INFINITY : sqrt(sum / error.counted);
@@ -295,14 +277,14 @@ SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *
 /* The reference (methods/reference.h) as a contact solver, for runs of converged steps. A step that does not
    converge ends with the answer that reference.h states, and is counted. */
 
-static void *reference_point_create(const Settings *chosen, Error *error) {
+static void *create(const Settings *chosen, Error *error) {
     (void)chosen;
     Reference *reference = calloc(1, sizeof *reference);
     if (reference == NULL) error_memory(error, "reference");
     return reference;
 }
 
-static bool reference_point_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Reference *reference = state;
     if (!reference_solve(reference, problem, NULL, error)) return false;
     reference_round(reference, problem, solution);
@@ -312,7 +294,7 @@ static bool reference_point_solve(void *state, const ContactProblem *problem, Co
     return true;
 }
 
-static void reference_point_destroy(void *state) {
+static void destroy(void *state) {
     Reference *reference = state;
     if (reference == NULL) return;
     reference_free(reference);
@@ -329,6 +311,6 @@ const ContactSolverKind solver_reference = {
                     .settings = settings,
                     .converges = "",
                     .stability_place = 6},
-    .create = reference_point_create,
-    .solve = reference_point_solve,
-    .destroy = reference_point_destroy};
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -40,8 +40,7 @@ static float squared_of_visit(const SweepPair *pair, int k, Vec2 velocity) {
     return normal * normal + tangent * tangent + if_finite;
 }
 
-static inline float residual_measure(OfPoint *of, const SweepPair *pair, int k, const SweepBody *a,
-                                     const SweepBody *b) {
+static inline float measure(OfPoint *of, const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
     const SweepPoint *point = &pair->points[k];
     return of(pair, k,
               relative_velocity(vec2(b->x, b->y), b->spin, point->arm_b, vec2(a->x, a->y), a->spin, point->arm_a));
@@ -56,7 +55,7 @@ static inline bool sum_reaches(const Sweeps *sweeps, int contact_count, float li
         const SweepPair *pair = &sweeps->pairs[i];
         const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
         const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-        const float first = residual_measure(of, pair, 0, a, b), second = residual_measure(of, pair, 1, a, b);
+        const float first = measure(of, pair, 0, a, b), second = measure(of, pair, 1, a, b);
         sum += first;
         sum += sweep_pair_points(pair) == 2 ? second : 0;
         if (or_nan ? !(sum < enough) : sum >= enough) return true;
@@ -79,7 +78,7 @@ PairResidual residual_of_pair(const Sweeps *sweeps, int i) {
     PairResidual sum = {0};
     for (int k = 0; k < sweep_pair_points(pair); k++) {
         const float held = pair->sums[k].normal / pair->points[k].mass_normal;
-        sum.visit += residual_measure(squared_of_visit, pair, k, a, b);
+        sum.visit += measure(squared_of_visit, pair, k, a, b);
         sum.held += held * held;
     }
     return sum;
@@ -108,22 +107,21 @@ static float overshoot_of_point(const SweepPair *pair, int k, Vec2 velocity) {
     return slides < 0 && overshoot > 0 ? overshoot : 0;
 }
 
-static float overshoot_of_pair(const Sweeps *sweeps, int i) {
-    const SweepPair *pair = &sweeps->pairs[i];
-    if (!sweep_pair_may_overshoot(pair)) return 0;
-    const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
-    const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-    const float first = residual_measure(overshoot_of_point, pair, 0, a, b);
-    if (sweep_pair_points(pair) == 1) return first;
-    const float second = residual_measure(overshoot_of_point, pair, 1, a, b);
-    return second > first ? second : first;
-}
-
 void overshoot_of_pairs(const Sweeps *sweeps, float *overshoot) {
-    if (sweeps->kernel == SWEEP_LANES)
+    if (sweeps->kernel == SWEEP_LANES) {
         sweeps_overshoots_in_lanes(sweeps, overshoot);
-    else
-        for (int i = 0; i < sweeps->pair_count; i++) overshoot[i] = overshoot_of_pair(sweeps, i);
+        return;
+    }
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const SweepPair *pair = &sweeps->pairs[i];
+        const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
+        const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
+        overshoot[i] = 0;
+        for (int k = 0; k < sweep_pair_points(pair) && sweep_pair_may_overshoot(pair); k++) {
+            const float of_point = measure(overshoot_of_point, pair, k, a, b);
+            if (of_point > overshoot[i]) overshoot[i] = of_point;
+        }
+    }
 }
 
 bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit) {

@@ -75,7 +75,7 @@ typedef struct SoftStep {
 #define SKIN_SHARE 0.1f     /* of the smallest side */
 #define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
 
-static void soft_step_push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
+static void push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
     a->velocity = vec2_sub(a->velocity, vec2_scale(a->inv_mass, impulse));
     a->spin -= a->inv_inertia * vec2_cross(point->arm_a, impulse);
     b->velocity = vec2_add(b->velocity, vec2_scale(b->inv_mass, impulse));
@@ -107,8 +107,8 @@ static void apply_forces(SoftStep *stepping, Vec2 fall) {
             const ContactImpulse *impulse = &point->impulse;
             point->total.normal += impulse->normal;
             point->total.tangent += impulse->tangent;
-            soft_step_push(&stepping->bodies[pair->a], &stepping->bodies[pair->b], point,
-                           vec2_add(vec2_scale(impulse->normal, pair->normal), vec2_scale(impulse->tangent, tangent)));
+            push(&stepping->bodies[pair->a], &stepping->bodies[pair->b], point,
+                 vec2_add(vec2_scale(impulse->normal, pair->normal), vec2_scale(impulse->tangent, tangent)));
         }
     }
 }
@@ -126,27 +126,25 @@ static void solve_normal(const SoftPair *pair, SoftPoint *point, SoftBody *a, So
     float sum = old - point->mass_normal * (mass_share * velocity + bias) - impulse_share * old;
     point->impulse.normal = 0.0f > sum ? 0.0f : sum;
     point->total.normal += point->impulse.normal - old;
-    soft_step_push(a, b, point, vec2_scale(point->impulse.normal - old, pair->normal));
-}
-
-static void solve_friction(const SoftPair *pair, SoftPoint *point, SoftBody *a, SoftBody *b) {
-    const Vec2 tangent = vec2_cross_scalar(pair->normal, 1.0f);
-    float velocity = vec2_dot(relative_velocity(a, b, point), tangent), old = point->impulse.tangent;
-    float most = pair->friction * point->impulse.normal;
-    point->impulse.tangent = contact_clamp(old - point->mass_tangent * velocity, -most, most);
-    point->total.tangent += point->impulse.tangent - old;
-    soft_step_push(a, b, point, vec2_scale(point->impulse.tangent - old, tangent));
+    push(a, b, point, vec2_scale(point->impulse.normal - old, pair->normal));
 }
 
 /* One visit of all contacts; relaxing: without the springs, with friction. */
-static void soft_step_sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
+static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
     static const Softness rigid = {1, 0, 0};
     for (const SoftPair *pair = stepping->pairs; pair < stepping->pairs + stepping->pair_count; pair++) {
         SoftPoint *points = &stepping->points[pair->first];
         SoftBody a = stepping->bodies[pair->a], b = stepping->bodies[pair->b];
         const Softness *softness = relaxing ? &rigid : pair->softness;
         for (int k = 0; k < pair->count; k++) solve_normal(pair, &points[k], &a, &b, softness, inverse_h);
-        for (int k = 0; relaxing && k < pair->count; k++) solve_friction(pair, &points[k], &a, &b);
+        const Vec2 tangent = vec2_cross_scalar(pair->normal, 1.0f);
+        for (SoftPoint *point = points; relaxing && point < points + pair->count; point++) {
+            const float velocity = vec2_dot(relative_velocity(&a, &b, point), tangent), old = point->impulse.tangent;
+            const float most = pair->friction * point->impulse.normal;
+            point->impulse.tangent = contact_clamp(old - point->mass_tangent * velocity, -most, most);
+            point->total.tangent += point->impulse.tangent - old;
+            push(&a, &b, point, vec2_scale(point->impulse.tangent - old, tangent));
+        }
         stepping->bodies[pair->a] = a;
         stepping->bodies[pair->b] = b;
     }
@@ -154,7 +152,7 @@ static void soft_step_sweep(SoftStep *stepping, bool relaxing, float inverse_h) 
 
 /* The rotation by its tangent, scaled to length 1, as in Box2D: a cosine for each substep would cost more than its
    contacts. */
-static void soft_step_integrate(SoftStep *stepping, float h) {
+static void integrate(SoftStep *stepping, float h) {
     for (int i = 0; i < stepping->body_count; i++) {
         SoftBody *body = &stepping->bodies[i];
         BodyPose *pose = &stepping->poses[i];
@@ -168,17 +166,6 @@ static void soft_step_integrate(SoftStep *stepping, float h) {
     }
 }
 
-/* Takes all substeps of a step that has begun: moves bodies and poses, fills the points' impulses. */
-static void take_substeps(SoftStep *stepping, Vec2 gravity, float dt) {
-    const float h = dt / (float)stepping->substeps, inverse_h = 1.0f / h;
-    for (int i = 0; i < stepping->substeps; i++) {
-        apply_forces(stepping, vec2_scale(h, gravity));
-        soft_step_sweep(stepping, false, inverse_h);
-        soft_step_integrate(stepping, h);
-        soft_step_sweep(stepping, true, inverse_h);
-    }
-}
-
 static const SettingSpec settings[] = {
     {"substeps", "small steps per step (default: 4)", SETTING_INT(SoftStep, substeps, 1, 1000)},
     {"hertz", "frequency of the contacts' springs (default: 30)", SETTING_FLOAT(SoftStep, hertz, 0.01f, 1e4f)},
@@ -186,7 +173,7 @@ static const SettingSpec settings[] = {
     KEEP_SETTING(SETTING_FLOAT(SoftStep, keep, 0, 1)),
     {0}};
 
-static void soft_step_destroy(void *state) {
+static void destroy(void *state) {
     SoftStep *stepping = state;
     step_memory_free(&stepping->memory);
     free(stepping->arrays.memory);
@@ -194,7 +181,7 @@ static void soft_step_destroy(void *state) {
     free(stepping);
 }
 
-static void *soft_step_create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     static const SoftStep standard = {.substeps = 4, .hertz = 30, .damping = 10};
     (void)scene;
     return settings_make(chosen, settings, &standard, sizeof standard, "soft-step", error);
@@ -204,39 +191,6 @@ static Softness make_softness(float hertz, float damping, float h) {
     const float omega = 6.28318531f * hertz;
     float rate = 2.0f * damping + h * omega, stiffness = h * omega * rate, rigid = 1.0f / (1.0f + stiffness);
     return (Softness){stiffness * rigid, rigid, stiffness * rigid * (omega / rate)};
-}
-
-/* A spring of a higher frequency than an eighth of the substeps' would swing. */
-static void set_softness(SoftStep *stepping, const Scene *scene, float h) {
-    const float highest = 0.125f / h, hertz = stepping->hertz < highest ? stepping->hertz : highest;
-    const Softness rigid = {1, 0, 0};
-    stepping->moving = scene->position_correction ? make_softness(hertz, stepping->damping, h) : rigid;
-    stepping->fixed = scene->position_correction ? make_softness(2.0f * hertz, stepping->damping, h) : rigid;
-}
-
-static bool soft_step_reserve(SoftStep *stepping, const ContactProblem *problem) {
-    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    return array_reserve((void **)&stepping->kept, &stepping->kept_capacity, contacts, sizeof *stepping->kept) &&
-           ARRAY_BLOCK_RESERVE(&stepping->arrays, ARRAY_PART(stepping->bodies, bodies),
-                               ARRAY_PART(stepping->poses, bodies), ARRAY_PART(stepping->pairs, contacts),
-                               ARRAY_PART(stepping->points, contacts));
-}
-
-/* The impulses of the last substep; in an unknown step an equal share of those of the last step. */
-static ContactImpulse warm_start(const SoftStep *stepping, const ContactPoint *contact, int i) {
-    if (stepping->memory.before[i] >= 0) return stepping->kept[stepping->memory.before[i]];
-    const float share = 1.0f / (float)stepping->substeps;
-    return (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
-}
-
-/* In a step of unknown past, a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP
-   are at rest. */
-static float first_gap(const SoftStep *stepping, const ContactProblem *problem, const ContactPoint *contact, int i) {
-    const Vec2 a = problem->bodies[contact->a].size, b = problem->bodies[contact->b].size;
-    const float side = fminf(fminf(a.x, a.y), fminf(b.x, b.y)), skin = fminf(SKIN, SKIN_SHARE * side);
-    const float gap = contact->separation + (stepping->keep > 0 ? 0 : skin);
-    const bool closed = stepping->memory.before[i] < 0 && contact->warm_normal > 0;
-    return closed && gap > 0 ? 0 : gap;
 }
 
 static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) {
@@ -254,21 +208,43 @@ static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) 
                                                              contact->friction,
                                                              moving ? &stepping->moving : &stepping->fixed};
     }
+    const Vec2 a = problem->bodies[contact->a].size, b = problem->bodies[contact->b].size;
+    const float side = fminf(fminf(a.x, a.y), fminf(b.x, b.y)), skin = fminf(SKIN, SKIN_SHARE * side);
+    const float apart = contact->separation + (stepping->keep > 0 ? 0 : skin);
+    /* The impulses of the last substep. In a step of unknown past an equal share of those of the last step; and there
+       a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP are at rest. */
+    const int before = stepping->memory.before[i];
+    const float share = 1.0f / (float)stepping->substeps;
+    const ContactImpulse start = before >= 0
+                                     ? stepping->kept[before]
+                                     : (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
+    const float gap = before < 0 && contact->warm_normal > 0 && apart > 0 ? 0 : apart;
     const Vec2 between = vec2_sub(contact->arm_b, contact->arm_a);
-    stepping->points[i] =
-        (SoftPoint){.arm_a = contact->arm_a,
-                    .arm_b = contact->arm_b,
-                    .base = first_gap(stepping, problem, contact, i) - vec2_dot(between, contact->normal),
-                    .mass_normal = contact->mass_normal,
-                    .mass_tangent = contact->mass_tangent,
-                    .impulse = warm_start(stepping, contact, i)};
+    stepping->points[i] = (SoftPoint){.arm_a = contact->arm_a,
+                                      .arm_b = contact->arm_b,
+                                      .base = gap - vec2_dot(between, contact->normal),
+                                      .mass_normal = contact->mass_normal,
+                                      .mass_tangent = contact->mass_tangent,
+                                      .impulse = start};
 }
 
-static bool soft_step_begin(SoftStep *stepping, const BegunStep *begun) {
+static bool begin(SoftStep *stepping, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
-    if (!step_memory_match(&stepping->memory, begun->world, begun->step) || !soft_step_reserve(stepping, problem))
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    if (!step_memory_match(&stepping->memory, begun->world, begun->step) ||
+        !array_reserve((void **)&stepping->kept, &stepping->kept_capacity, contacts, sizeof *stepping->kept) ||
+        !ARRAY_BLOCK_RESERVE(&stepping->arrays, ARRAY_PART(stepping->bodies, bodies),
+                             ARRAY_PART(stepping->poses, bodies), ARRAY_PART(stepping->pairs, contacts),
+                             ARRAY_PART(stepping->points, contacts)))
         return false;
-    set_softness(stepping, begun->step->scene, problem->dt / (float)stepping->substeps);
+    /* A spring of a higher frequency than an eighth of the substeps' would swing. */
+    const float h = problem->dt / (float)stepping->substeps, highest = 0.125f / h;
+    const float hertz = stepping->hertz < highest ? stepping->hertz : highest;
+    stepping->moving = stepping->fixed = (Softness){1, 0, 0};
+    if (begun->step->scene->position_correction) {
+        stepping->moving = make_softness(hertz, stepping->damping, h);
+        stepping->fixed = make_softness(2.0f * hertz, stepping->damping, h);
+    }
     stepping->body_count = problem->body_count;
     stepping->point_count = problem->contact_count;
     stepping->pair_count = 0;
@@ -285,28 +261,29 @@ static bool soft_step_begin(SoftStep *stepping, const BegunStep *begun) {
     return true;
 }
 
-/* False if an impulse is NaN or infinite. */
-static bool soft_step_end(SoftStep *stepping, ContactSolution *solution) {
-    bool finite = true;
+static bool solve(void *state, BegunStep *begun, Error *error) {
+    SoftStep *stepping = state;
+    if (!begin(stepping, begun)) return error_memory(error, "soft-step");
+    const float h = begun->problem->dt / (float)stepping->substeps, inverse_h = 1.0f / h;
+    for (int i = 0; i < stepping->substeps; i++) {
+        apply_forces(stepping, vec2_scale(h, begun->step->scene->gravity));
+        sweep(stepping, false, inverse_h);
+        integrate(stepping, h);
+        sweep(stepping, true, inverse_h);
+    }
+    ContactSolution *solution = begun->solution;
+    begun->poses = stepping->poses;
     for (int i = 0; i < stepping->body_count; i++)
         solution->velocities[i] = (BodyVelocity){stepping->bodies[i].velocity, stepping->bodies[i].spin};
+    bool finite = true;
     for (int i = 0; i < stepping->point_count; i++) {
         solution->impulses[i] = stepping->points[i].total;
         finite &= isfinite(solution->impulses[i].normal) && isfinite(solution->impulses[i].tangent);
     }
-    return finite;
+    return finite || error_failure(error, FAILURE_NOT_FINITE, "soft-step", "an impulse is NaN or infinite");
 }
 
-static bool soft_step_solve(void *state, BegunStep *begun, Error *error) {
-    SoftStep *stepping = state;
-    if (!soft_step_begin(stepping, begun)) return error_memory(error, "soft-step");
-    take_substeps(stepping, begun->step->scene->gravity, begun->problem->dt);
-    begun->poses = stepping->poses;
-    return soft_step_end(stepping, begun->solution) ||
-           error_failure(error, FAILURE_NOT_FINITE, "soft-step", "an impulse is NaN or infinite");
-}
-
-static void soft_step_keep(void *state, const World *world) {
+static void keep(void *state, const World *world) {
     SoftStep *stepping = state;
     step_memory_keep(&stepping->memory, world);
     for (int i = 0; i < stepping->point_count; i++) stepping->kept[i] = stepping->points[i].impulse;
@@ -323,7 +300,7 @@ const SteppingKind stepping_soft_step = {
                                          "substeps=16", "substeps=32,hertz=60", "substeps=4,keep=0.05"),
                     .chart_quick = METHOD_RUNS("substeps=4"),
                     .stability = METHOD_RUNS("", "keep=0.05")},
-    .create = soft_step_create,
-    .solve = soft_step_solve,
-    .keep = soft_step_keep,
-    .destroy = soft_step_destroy};
+    .create = create,
+    .solve = solve,
+    .keep = keep,
+    .destroy = destroy};

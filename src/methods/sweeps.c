@@ -2,7 +2,9 @@
 /* Sweeps over many contacts at once: their schedule, the runs, and how a contact problem is packed for them.
 
    List scheduling assigns visits, in the order of the sweeps, to the first level that comes after all their
-   dependencies and has a free slot. Visits of different sweeps share levels. */
+   dependencies and has a free slot. Visits of different sweeps share levels.
+
+   The order of visits is the problem's, or that of colours. */
 #include "methods/sweeps.h"
 
 #include "base/base.h"
@@ -12,6 +14,43 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+void colours_free(Colours *colours) {
+    free(colours->arrays.memory);
+    *colours = (Colours){0};
+}
+
+bool colours_order(Colours *colours, const ContactProblem *problem) {
+    const size_t contacts = (size_t)problem->contact_count, bodies = (size_t)problem->body_count;
+    int begin[COLOURS + 1] = {0}, pairs = 0;
+    if (!ARRAY_BLOCK_RESERVE(&colours->arrays, ARRAY_PART(colours->visits, contacts),
+                             ARRAY_PART(colours->pairs, contacts + 1), ARRAY_PART(colours->colour, contacts),
+                             ARRAY_PART(colours->taken, bodies)))
+        return false;
+    memset(colours->taken, 0, bodies * sizeof *colours->taken);
+    for (int i = 0; i < problem->contact_count; i += contact_surface_points(problem, i)) colours->pairs[pairs++] = i;
+    colours->pairs[pairs] = problem->contact_count;
+    /* Each pair takes the lowest colour that neither of its moving bodies has yet. If all are taken: the last one,
+       whose visits do not commute and keep their order. */
+    for (int i = pairs - 1; i >= 0; i--) {
+        const ContactPoint *contact = &problem->contacts[colours->pairs[i]];
+        uint64_t *a = &colours->taken[contact->a], *b = &colours->taken[contact->b];
+        const uint64_t open = ~(*a | *b);
+        const int colour = open != 0 ? __builtin_ctzll(open) : COLOURS - 1;
+        *a |= (uint64_t)problem_body_moves(&problem->bodies[contact->a]) << colour;
+        *b |= (uint64_t)problem_body_moves(&problem->bodies[contact->b]) << colour;
+        colours->colour[i] = (uint8_t)colour;
+        begin[colour + 1] += colours->pairs[i + 1] - colours->pairs[i];
+    }
+    /* Counting sort by colour. */
+    for (int i = 0; i < COLOURS; i++) begin[i + 1] += begin[i];
+    for (int i = 0; i < pairs; i++) {
+        int32_t *visit = &colours->visits[begin[colours->colour[i]]];
+        begin[colours->colour[i]] += colours->pairs[i + 1] - colours->pairs[i];
+        for (int first = colours->pairs[i]; first < colours->pairs[i + 1]; first++) *visit++ = first;
+    }
+    return true;
+}
 
 /* Appends an empty level. */
 static bool add_level(SweepSchedule *schedule, const Sweeps *sweeps, bool turns) {
@@ -38,41 +77,6 @@ static bool add_level(SweepSchedule *schedule, const Sweeps *sweeps, bool turns)
     schedule->open[schedule->level_count] = schedule->level_count;
     schedule->level_count++;
     return true;
-}
-
-/* The first level from this one on that has room. Path halving, as in union-find, skips full levels quickly. */
-static int32_t find_open(SweepSchedule *schedule, int32_t level) {
-    int32_t *open = schedule->open;
-    while (level < schedule->level_count && open[level] != level) {
-        if (open[level] < schedule->level_count) open[level] = open[open[level]];
-        level = open[level];
-    }
-    return level;
-}
-
-/* Assigns one visit to *level and returns its slot. False when memory is short. */
-static bool sweeps_place(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair, int32_t a, int32_t b, bool turns,
-                         int32_t *level, int32_t *slot) {
-    *level = find_open(schedule, *level);
-    if (*level == schedule->level_count && !add_level(schedule, sweeps, turns)) return false;
-    *slot = schedule->filled[*level]++;
-    schedule->levels[*level].pair[*slot] = pair * PAIR_FLOATS;
-    schedule->levels[*level].a[*slot] = a * BODY_FLOATS;
-    schedule->levels[*level].b[*slot] = b * BODY_FLOATS;
-    if (*slot == LEVEL_WIDTH - 1) schedule->open[*level] = *level + 1;
-    return true;
-}
-
-/* Even sweeps use the first half of the bodies and sums, odd ones the second. */
-static void place_turns(SweepSchedule *schedule, const Sweeps *sweeps, int32_t pair, int32_t sweep, int32_t level,
-                        int32_t slot) {
-    int32_t half = (sweeps->pair_count + 1) * SUMS_FLOATS, body_half = (sweeps->body_count + 1) * BODY_FLOATS;
-    SweepTurns *turns = &schedule->turns[level];
-    turns->from[slot] = (1 - sweep % 2) * half + pair * SUMS_FLOATS;
-    turns->to[slot] = sweep % 2 * half + pair * SUMS_FLOATS;
-    turns->factor[slot] = sweep * sweeps->groups + sweeps->group[pair];
-    schedule->levels[level].a[slot] += sweep % 2 * body_half;
-    schedule->levels[level].b[slot] += sweep % 2 * body_half;
 }
 
 /* A body is extrapolated at its first visit in a sweep, when the previous sweep no longer changes it. */
@@ -104,20 +108,39 @@ static bool sort_body_turns(SweepSchedule *schedule) {
     return true;
 }
 
-/* Schedules one visit after all its dependencies. */
+/* Schedules one visit after all its dependencies, in the first level that has room. False when memory is short. */
 static bool add_visit(SweepSchedule *schedule, Sweeps *sweeps, int32_t pair, int32_t sweep, bool turns) {
     int32_t *ready = sweeps->ready;
-    SweepEnds ends = sweeps->ends[pair];
-    bool moves_a = ends.a >= 0, moves_b = ends.b >= 0;
-    int32_t a = moves_a ? ends.a : ~ends.a, b = moves_b ? ends.b : ~ends.b;
-    const int32_t group = sweeps->group[pair];
+    const SweepEnds ends = sweeps->ends[pair];
+    const bool moves_a = ends.a >= 0, moves_b = ends.b >= 0;
+    const int32_t a = sweep_body_at(ends.a), b = sweep_body_at(ends.b), group = sweeps->group[pair];
     if (turns && ((moves_a && !add_body_turn(schedule, sweeps, a, group, sweep)) ||
                   (moves_b && !add_body_turn(schedule, sweeps, b, group, sweep))))
         return false;
-    int32_t level = moves_a ? ready[a] : 0, slot;
+    int32_t level = moves_a ? ready[a] : 0;
     if (moves_b && ready[b] > level) level = ready[b];
-    if (!sweeps_place(schedule, sweeps, pair, a, b, turns, &level, &slot)) return false;
-    if (turns) place_turns(schedule, sweeps, pair, sweep, level, slot);
+    /* Path halving, as in union-find, skips full levels quickly. */
+    int32_t *open = schedule->open;
+    while (level < schedule->level_count && open[level] != level) {
+        if (open[level] < schedule->level_count) open[level] = open[open[level]];
+        level = open[level];
+    }
+    if (level == schedule->level_count && !add_level(schedule, sweeps, turns)) return false;
+    const int32_t slot = schedule->filled[level]++;
+    SweepLevel *to = &schedule->levels[level];
+    to->pair[slot] = pair * PAIR_FLOATS;
+    to->a[slot] = a * BODY_FLOATS;
+    to->b[slot] = b * BODY_FLOATS;
+    if (slot == LEVEL_WIDTH - 1) schedule->open[level] = level + 1;
+    if (turns) { /* even sweeps use the first half of the bodies and sums, odd ones the second */
+        const int32_t half = (sweeps->pair_count + 1) * SUMS_FLOATS, odd = sweep % 2;
+        SweepTurns *slots = &schedule->turns[level];
+        slots->from[slot] = (1 - odd) * half + pair * SUMS_FLOATS;
+        slots->to[slot] = odd * half + pair * SUMS_FLOATS;
+        slots->factor[slot] = sweep * sweeps->groups + group;
+        to->a[slot] += odd * (sweeps->body_count + 1) * BODY_FLOATS;
+        to->b[slot] += odd * (sweeps->body_count + 1) * BODY_FLOATS;
+    }
     if (moves_a) ready[a] = level + 1;
     if (moves_b) ready[b] = level + 1;
     return true;
@@ -186,23 +209,18 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
     return true;
 }
 
-/* The number of sweeps in one schedule: an equal part of all sweeps, if possible. With momentum extrapolation an even
-   number if the schedule is run more than once: each run begins in the same half of the bodies and sums. */
-static int sweeps_of_schedule(const Sweeps *sweeps, int count, bool turns) {
-    const int limit = sweeps->coloured ? COLOURED_AT_ONCE : SWEEPS_AT_ONCE;
-    int most = VISITS_AT_ONCE / sweeps->pair_count;
-    if (most > limit) most = limit;
-    if (most < 1) most = 1;
-    if (sweeps->block > 0) count = sweeps->block;
-    if (count <= most) return count;
-    int equal = count / ((count + most - 1) / most);
-    return turns ? equal + equal % 2 : equal;
-}
-
 /* By lanes if the processor has them and enough visits share a level. False when memory is short. */
 static bool sweeps_run_schedule(Sweeps *sweeps, const float *factors, int count) {
-    bool turns = factors != NULL;
-    int at_once = sweeps_of_schedule(sweeps, count, turns);
+    const bool turns = factors != NULL;
+    /* Sweeps in one schedule: an equal part of all, if possible. With momentum extrapolation an even number if the
+       schedule is run more than once: each run begins in the same half of the bodies and sums. */
+    const int limit = sweeps->coloured ? COLOURED_AT_ONCE : SWEEPS_AT_ONCE;
+    int most = VISITS_AT_ONCE / sweeps->pair_count, at_once = sweeps->block > 0 ? sweeps->block : count;
+    most = most > limit ? limit : most < 1 ? 1 : most;
+    if (at_once > most) {
+        at_once /= (at_once + most - 1) / most;
+        if (turns) at_once += at_once % 2;
+    }
     if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once, turns)) return false;
     bool narrow = LEVEL_PAYS * sweeps->whole.level_count > at_once * sweeps->pair_count;
     if (sweeps->kernel == SWEEP_ONE_BY_ONE || narrow) {
@@ -218,14 +236,6 @@ static bool sweeps_run_schedule(Sweeps *sweeps, const float *factors, int count)
 
 bool sweeps_run(Sweeps *sweeps, int count) {
     return sweeps->pair_count == 0 || sweeps_run_schedule(sweeps, NULL, count);
-}
-
-/* Both halves are equal: before the first sweep there is no change to extrapolate. */
-static void begin_turns(Sweeps *sweeps) {
-    size_t half = (size_t)sweeps->pair_count + 1, bodies = (size_t)sweeps->body_count + 1;
-    memcpy(sweeps->bodies + bodies, sweeps->bodies, bodies * sizeof *sweeps->bodies);
-    for (size_t i = 0; i < half; i++) memcpy(sweeps->sums + 2 * i, sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
-    memcpy(sweeps->sums + 2 * half, sweeps->sums, 2 * half * sizeof *sweeps->sums);
 }
 
 static void swap_halves(Sweeps *sweeps) {
@@ -246,8 +256,12 @@ static void end_turns(Sweeps *sweeps, int count) {
 }
 
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count) {
+    const size_t half = (size_t)sweeps->pair_count + 1, bodies = (size_t)sweeps->body_count + 1;
     if (sweeps->pair_count == 0 || count == 0) return true;
-    begin_turns(sweeps);
+    /* Both halves are equal: before the first sweep there is no change to extrapolate. */
+    memcpy(sweeps->bodies + bodies, sweeps->bodies, bodies * sizeof *sweeps->bodies);
+    for (size_t i = 0; i < half; i++) memcpy(sweeps->sums + 2 * i, sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
+    memcpy(sweeps->sums + 2 * half, sweeps->sums, 2 * half * sizeof *sweeps->sums);
     if (!sweeps_run_schedule(sweeps, factors, count)) return false;
     end_turns(sweeps, count);
     return true;
@@ -281,49 +295,36 @@ void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem, const bool *c
         if (chosen == NULL || chosen[sweeps->group_of_body[i]]) add_velocity(&previous[i], &sweeps->bodies[i], 1);
 }
 
-/* Whether an island goes on through the pair's body a or b: unlike in `ends`, not through one that does not move. */
-static bool connects_a(const Sweeps *sweeps, int i) {
-    return sweeps->bodies[sweep_body_at(sweeps->ends[i].a)].inv_mass > 0 || sweeps->pairs[i].inv_inertia_a > 0;
-}
-
-static bool connects_b(const Sweeps *sweeps, int i) {
-    return sweeps->bodies[sweep_body_at(sweeps->ends[i].b)].inv_mass > 0 || sweeps->pairs[i].points[0].extra > 0;
-}
-
 void sweeps_group(Sweeps *sweeps) {
     int32_t *parent = sweeps->ready, *number = sweeps->seen; /* of the next schedule */
     for (int32_t i = 0; i < sweeps->body_count; i++) parent[i] = i, number[i] = -1;
-    for (int i = 0; i < sweeps->pair_count; i++) {
-        const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
-        if (connects_a(sweeps, i) && connects_b(sweeps, i)) parent[islands_root(parent, b)] = islands_root(parent, a);
-    }
     sweeps->groups = 0;
-    for (int i = 0; i < sweeps->pair_count; i++) {
-        const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
-        int32_t *group = &number[islands_root(parent, connects_b(sweeps, i) ? b : a)];
-        if (*group < 0) *group = sweeps->groups++;
-        sweeps->group[i] = sweeps->group_of_body[a] = sweeps->group_of_body[b] = *group;
-    }
-}
-
-static void keep_all(Sweeps *sweeps) {
-    memcpy(sweeps->kept_bodies, sweeps->bodies, (size_t)sweeps->body_count * sizeof *sweeps->bodies);
-    for (int i = 0; i < sweeps->pair_count; i++)
-        memcpy(&sweeps->kept_sums[2 * i], sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < sweeps->pair_count; i++) {
+            const SweepPair *pair = &sweeps->pairs[i];
+            const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
+            /* Whether the island goes on through a body: unlike in `ends`, not through one that does not move. */
+            const bool through_a = sweeps->bodies[a].inv_mass > 0 || pair->inv_inertia_a > 0,
+                       through_b = sweeps->bodies[b].inv_mass > 0 || pair->points[0].extra > 0;
+            if (pass == 0) {
+                if (through_a && through_b) parent[islands_root(parent, b)] = islands_root(parent, a);
+                continue;
+            }
+            int32_t *group = &number[islands_root(parent, through_b ? b : a)];
+            if (*group < 0) *group = sweeps->groups++;
+            sweeps->group[i] = sweeps->group_of_body[a] = sweeps->group_of_body[b] = *group;
+        }
 }
 
 void sweeps_keep(Sweeps *sweeps, const bool *chosen) {
     bool all = true;
     for (int k = 0; k < sweeps->groups; k++) all &= chosen[k];
-    if (all) {
-        keep_all(sweeps);
-        return;
-    }
+    if (all) memcpy(sweeps->kept_bodies, sweeps->bodies, (size_t)sweeps->body_count * sizeof *sweeps->bodies);
     for (int i = 0; i < sweeps->pair_count; i++) {
         if (!chosen[sweeps->group[i]]) continue;
         const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
         memcpy(&sweeps->kept_sums[2 * i], sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
-        sweeps->kept_bodies[a] = sweeps->bodies[a], sweeps->kept_bodies[b] = sweeps->bodies[b];
+        if (!all) sweeps->kept_bodies[a] = sweeps->bodies[a], sweeps->kept_bodies[b] = sweeps->bodies[b];
     }
 }
 
@@ -379,29 +380,6 @@ static bool sweeps_reserve(Sweeps *sweeps, const ContactProblem *problem) {
 
 static bool is_negative_zero(float x) { return x == 0.0f && signbit(x); }
 
-/* True if an impulse can change the velocity. For a static body only if it is -0, which may become 0. */
-static bool sweeps_moves(const ProblemBody *body) {
-    return problem_body_moves(body) || is_negative_zero(body->velocity.x) || is_negative_zero(body->velocity.y) ||
-           is_negative_zero(body->angular_velocity);
-}
-
-static void load_bodies(Sweeps *sweeps, const ContactProblem *problem) {
-    sweeps->body_count = problem->body_count;
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
-        sweeps->moves[i] = sweeps_moves(body);
-        sweeps->group_of_body[i] = 0;
-    }
-    sweeps->bodies[problem->body_count] = (SweepBody){0};
-}
-
-/* If neither moves, a counts as moving: visits of one pair must not share a level. */
-static SweepEnds ends_of(const Sweeps *sweeps, int a, int b) {
-    bool moves_a = sweeps->moves[a] || !sweeps->moves[b];
-    return (SweepEnds){moves_a ? a : ~a, sweeps->moves[b] ? b : ~b};
-}
-
 /* Member by member, so that a record is written once and not copied. */
 static void load_point(SweepPair *pair, int k, const ContactPoint *contact, float extra, bool warm) {
     SweepPoint *point = &pair->points[k];
@@ -428,25 +406,33 @@ static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, b
     load_point(pair, 1, points == 2 ? next : &none, points == 2 ? -1.0f : 0.0f, warm);
     sweeps->first[sweeps->pair_count] = first;
     sweeps->group[sweeps->pair_count] = 0;
-    sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
+    /* If neither moves, a counts as moving: visits of one pair must not share a level. */
+    const bool moves_b = sweeps->moves[contact->b], moves_a = sweeps->moves[contact->a] || !moves_b;
+    sweeps->ends[sweeps->pair_count++] =
+        (SweepEnds){moves_a ? contact->a : ~contact->a, moves_b ? contact->b : ~contact->b};
     return points;
 }
 
 /* visits: the order of contacts, with those of a pair adjacent; NULL for the problem's order. */
-static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, const int32_t *visits, bool warm) {
-    sweeps->pair_count = 0;
-    for (int i = 0; i < problem->contact_count;) i += load_pair(sweeps, problem, visits != NULL ? visits[i] : i, warm);
-    sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
-}
-
 static bool begin_sweeps(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, const int32_t *visits,
                          bool warm) {
     if (!sweeps_reserve(sweeps, problem)) return false;
     sweeps->kernel = kernel;
     sweeps->coloured = visits != NULL;
     sweeps->groups = 1;
-    load_bodies(sweeps, problem);
-    load_pairs(sweeps, problem, visits, warm);
+    sweeps->body_count = problem->body_count;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
+        /* An impulse can change the velocity of a static body only if it is -0, which may become 0. */
+        sweeps->moves[i] = problem_body_moves(body) || is_negative_zero(body->velocity.x) ||
+                           is_negative_zero(body->velocity.y) || is_negative_zero(body->angular_velocity);
+        sweeps->group_of_body[i] = 0;
+    }
+    sweeps->bodies[problem->body_count] = (SweepBody){0};
+    sweeps->pair_count = 0;
+    for (int i = 0; i < problem->contact_count;) i += load_pair(sweeps, problem, visits != NULL ? visits[i] : i, warm);
+    sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
     sweeps_push_sums(sweeps, NULL);
     return true;
 }

@@ -54,21 +54,10 @@ typedef struct Colours {
 
 void colours_free(Colours *colours);
 
-/* Returns the lowest colour that is free in `taken` (one bit per colour) for both moving bodies of the contact, and
-   takes it. If all are taken: the last colour, whose visits do not commute and keep their order. */
-static inline int colours_take(uint64_t *taken, const ContactProblem *problem, const ContactPoint *contact) {
-    uint64_t *a = &taken[contact->a], *b = &taken[contact->b];
-    const uint64_t open = ~(*a | *b);
-    const int colour = open != 0 ? __builtin_ctzll(open) : COLOURS - 1;
-    *a |= (uint64_t)problem_body_moves(&problem->bodies[contact->a]) << colour;
-    *b |= (uint64_t)problem_body_moves(&problem->bodies[contact->b]) << colour;
-    return colour;
-}
-
 /* Fills colours->visits. False when memory is short. */
 bool colours_order(Colours *colours, const ContactProblem *problem);
 
-/* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (sweeps_scalar.c).
+/* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (engine.c).
 
    Contacts that share no moving body commute exactly. sweeps.c sorts the visits of several sweeps into levels
    of independent visits, and a level is solved in the lanes of a vector, one pair of bodies per lane (sweeps_lanes.c).

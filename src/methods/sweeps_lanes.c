@@ -2,7 +2,7 @@
 /* The sweep kernel over the lanes of a vector: eight by AVX2, without fused multiply-add, which rounds once where the
    scalar reference implementation rounds twice; else four, as other processors and WebAssembly have them.
 
-   The operations of sweeps_scalar.c, with three exceptions that have the same bits for finite numbers: x - y for
+   The operations of engine.c, with three exceptions that have the same bits for finite numbers: x - y for
    x + -y, the tangent's components written out, and no change of the velocity of a static body. */
 #include "methods/sweeps.h"
 
@@ -108,12 +108,6 @@ static inline void load_extrapolated(Lanes out[4], const float *base, const int3
     transpose(out, rows);
 }
 
-/* Replaces the row of two sweeps ago. */
-static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const float *factors) {
-    const Row from = row_of(base, turn->from), change = row_of(base, turn->to) - from;
-    *row_at(base, turn->to) = from - (factors[turn->factor] * change + 0.0f);
-}
-
 /* Velocities of the bodies at one end of the pairs, one pair per lane. */
 typedef struct Side {
     Lanes x, y, spin, inv_mass, inv_inertia;
@@ -155,32 +149,22 @@ static inline Surface surface_of(const Lanes shared[4]) {
     return (Surface){{shared[0], shared[1]}, {shared[1], -shared[0]}, shared[2]};
 }
 
-/* arms: of a and b, x and y; masses: normal, tangent, bias. */
-static inline void solve_normal(Side *a, Side *b, const Surface *surface, const Lanes arms[4], const Lanes masses[4],
-                                Lanes *sum) {
-    const LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]};
-    const Lanes along = dot(relative_velocity(a, b, arm_a, arm_b), surface->normal);
-    const Lanes total = lanes_max(*sum + masses[0] * (masses[2] - along), (Lanes){0});
-    const Lanes normal = total - *sum;
-    *sum = total;
-    apply(a, b, arm_a, arm_b, scaled(normal, surface->normal));
-}
-
-static inline void solve_friction(Side *a, Side *b, const Surface *surface, const Lanes arms[4], const Lanes masses[4],
-                                  Lanes sum_normal, Lanes *sum) {
-    const LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]};
-    const Lanes along = dot(relative_velocity(a, b, arm_a, arm_b), surface->tangent);
-    const Lanes limit = surface->friction * sum_normal;
-    const Lanes total = lanes_max(-limit, lanes_min(*sum - masses[1] * along, limit));
-    const Lanes tangent = total - *sum;
-    *sum = total;
-    apply(a, b, arm_a, arm_b, scaled(tangent, surface->tangent));
-}
-
+/* One visit of a point: the normal impulse, then friction. arms: of a and b, x and y; masses: normal, tangent, bias. */
 static inline void solve_point(Side *a, Side *b, const Surface *surface, const Lanes arms[4], const Lanes masses[4],
                                Lanes *sum_normal, Lanes *sum_tangent) {
-    solve_normal(a, b, surface, arms, masses, sum_normal);
-    solve_friction(a, b, surface, arms, masses, *sum_normal, sum_tangent);
+    const LaneVec arm_a = {arms[0], arms[1]}, arm_b = {arms[2], arms[3]};
+    const Lanes apart = dot(relative_velocity(a, b, arm_a, arm_b), surface->normal);
+    const Lanes pushed = lanes_max(*sum_normal + masses[0] * (masses[2] - apart), (Lanes){0});
+    const Lanes normal = pushed - *sum_normal;
+    *sum_normal = pushed;
+    apply(a, b, arm_a, arm_b, scaled(normal, surface->normal));
+
+    const Lanes along = dot(relative_velocity(a, b, arm_a, arm_b), surface->tangent);
+    const Lanes limit = surface->friction * pushed;
+    const Lanes dragged = lanes_max(-limit, lanes_min(*sum_tangent - masses[1] * along, limit));
+    const Lanes tangent = dragged - *sum_tangent;
+    *sum_tangent = dragged;
+    apply(a, b, arm_a, arm_b, scaled(tangent, surface->tangent));
 }
 
 static inline Side load_side(const Sweeps *sweeps, const int32_t *offsets, Lanes inv_inertia) {
@@ -236,24 +220,28 @@ __attribute__((always_inline)) static inline void solve_pairs(Sweeps *sweeps, co
         store_rows(&sweeps->sums->normal, turns->to + lane, sums);
 }
 
-static void run_levels(Sweeps *sweeps, const SweepSchedule *schedule) {
-    for (int i = 0; i < schedule->level_count; i++)
-        for (int lane = 0; lane < schedule->filled[i]; lane += LANES)
-            solve_pairs(sweeps, &schedule->levels[i], NULL, lane, NULL);
-}
-
-static void run_levels_extrapolating(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
+void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
     for (int i = 0, turn = 0; i < schedule->level_count; i++) {
-        for (; turn < schedule->turns_end[i]; turn++)
-            extrapolate_body(&sweeps->bodies->x, &schedule->body_turns[turn], factors);
+        const SweepLevel *level = &schedule->levels[i];
+        if (factors == NULL) {
+            for (int lane = 0; lane < schedule->filled[i]; lane += LANES) solve_pairs(sweeps, level, NULL, lane, NULL);
+            continue;
+        }
+        /* The rows of two sweeps ago are replaced. */
+        for (; turn < schedule->turns_end[i]; turn++) {
+            const SweepBodyTurn *body = &schedule->body_turns[turn];
+            Row *to = row_at(&sweeps->bodies->x, body->to);
+            const Row from = row_of(&sweeps->bodies->x, body->from);
+            *to = from - (factors[body->factor] * (*to - from) + 0.0f);
+        }
         for (int lane = 0; lane < schedule->filled[i]; lane += LANES)
-            solve_pairs(sweeps, &schedule->levels[i], &schedule->turns[i], lane, factors);
+            solve_pairs(sweeps, level, &schedule->turns[i], lane, factors);
     }
 }
 
 /* What is measured at the points of pairs: two at most, of the same bodies. */
 typedef struct LanePoint {
-    Lanes arms[4], masses[4]; /* as in solve_normal() */
+    Lanes arms[4], masses[4]; /* as in solve_point() */
     Lanes normal, tangent;    /* the sums */
 } LanePoint;
 
@@ -345,17 +333,13 @@ void sweeps_residuals_in_lanes(const Sweeps *sweeps, float *squared) {
     }
 }
 
-static inline bool any_may_overshoot(const Sweeps *sweeps, int first) {
-    bool may = false;
-    for (int i = first; i < first + LANES && i < sweeps->pair_count; i++)
-        may |= sweep_pair_may_overshoot(&sweeps->pairs[i]);
-    return may;
-}
-
 void sweeps_overshoots_in_lanes(const Sweeps *sweeps, float *overshoot) {
     for (int first = 0; first < sweeps->pair_count; first += LANES) {
         Lanes most = {0};
-        if (any_may_overshoot(sweeps, first)) {
+        bool may = false;
+        for (int i = first; i < first + LANES && i < sweeps->pair_count; i++)
+            may |= sweep_pair_may_overshoot(&sweeps->pairs[i]);
+        if (may) {
             const SweepLevel at = pairs_from(sweeps, first);
             const LanePair pair = load_pair_lanes(sweeps, &at);
             const Lanes second = overshoot_of_point(&pair, &pair.points[1]);
@@ -365,13 +349,6 @@ void sweeps_overshoots_in_lanes(const Sweeps *sweeps, float *overshoot) {
         }
         store_from(sweeps, first, most, overshoot);
     }
-}
-
-void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
-    if (factors != NULL)
-        run_levels_extrapolating(sweeps, schedule, factors);
-    else
-        run_levels(sweeps, schedule);
 }
 
 bool sweeps_have_lanes(void) {
