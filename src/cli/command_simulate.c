@@ -29,7 +29,7 @@ typedef struct SimulateResult {
     const char *method, *output; /* output: NULL if no run is written */
     int bodies;
     uint64_t state; /* hash of the last frame */
-    NetworkFallbacks fallbacks;
+    Fallbacks fallbacks;
     SimulateVerdict verdict;
     bool judged; /* there is a verdict */
 } SimulateResult;
@@ -153,7 +153,7 @@ typedef struct Fallback {
 
 enum { FALLBACKS = 5 };
 
-static void list_fallbacks(const NetworkFallbacks *fallbacks, Fallback list[FALLBACKS]) {
+static void list_fallbacks(const Fallbacks *fallbacks, Fallback list[FALLBACKS]) {
     const Fallback all[FALLBACKS] = {
         {"not_converged", "steps that did not converge", fallbacks->not_converged},
         {"by_sweeps", "steps solved by sweeps instead", fallbacks->by_sweeps},

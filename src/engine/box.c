@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two boxes: how deep they overlap, where along x they would, and the manifold where they touch. */
-#include "engine/engine.h"
+#include "engine/boxes.h"
 
 #include <float.h>
 #include <math.h>
@@ -10,19 +10,19 @@
 static double dot(Vec2 a, Vec2 b) { return (double)a.x * (double)b.x + (double)a.y * (double)b.y; }
 
 /* Half the extent of a box along an axis, m. */
-static double box_reach(const Box *box, Vec2 axis) {
+static double reach(const Box *box, Vec2 axis) {
     return fabs(dot(box->rotation.column1, axis)) * (double)box->half.x +
            fabs(dot(box->rotation.column2, axis)) * (double)box->half.y;
 }
 
 /* The overlap along one axis. */
-static double box_along(const Box *a, const Box *b, Vec2 axis) {
-    return box_reach(a, axis) + box_reach(b, axis) - fabs(dot(b->position, axis) - dot(a->position, axis));
+static double along(const Box *a, const Box *b, Vec2 axis) {
+    return reach(a, axis) + reach(b, axis) - fabs(dot(b->position, axis) - dot(a->position, axis));
 }
 
 double overlap_depth(const Box *a, const Box *b) {
-    return fmin(fmin(box_along(a, b, a->rotation.column1), box_along(a, b, a->rotation.column2)),
-                fmin(box_along(a, b, b->rotation.column1), box_along(a, b, b->rotation.column2)));
+    return fmin(fmin(along(a, b, a->rotation.column1), along(a, b, a->rotation.column2)),
+                fmin(along(a, b, b->rotation.column1), along(a, b, b->rotation.column2)));
 }
 
 static double largest(const Box *box) {
@@ -35,28 +35,26 @@ static double rounding(const Box *a, const Box *b) { return 2 * (double)FLT_EPSI
 
 bool overlap_exceeds(const Box *a, const Box *b, double depth) {
     const double limit = depth + rounding(a, b);
-    return box_along(a, b, a->rotation.column1) > limit && box_along(a, b, a->rotation.column2) > limit &&
-           box_along(a, b, b->rotation.column1) > limit && box_along(a, b, b->rotation.column2) > limit;
-}
-
-/* Cuts the span to the x at which the projections on the axis overlap by more than the limit. */
-static void box_cut(OverlapSpan *span, const Box *a, const Box *b, Vec2 axis, double both, double limit) {
-    const double least = 1e-9, room = both - limit;
-    const double across = ((double)b->position.y - (double)a->position.y) * (double)axis.y;
-    if (room <= 0 || (fabs((double)axis.x) < least && fabs(across) >= room)) *span = (OverlapSpan){0, 0};
-    if (fabs((double)axis.x) < least) return;
-    const double first = (double)a->position.x + (-room - across) / (double)axis.x;
-    const double second = (double)a->position.x + (room - across) / (double)axis.x;
-    span->from = fmax(span->from, fmin(first, second));
-    span->to = fmin(span->to, fmax(first, second));
+    return along(a, b, a->rotation.column1) > limit && along(a, b, a->rotation.column2) > limit &&
+           along(a, b, b->rotation.column1) > limit && along(a, b, b->rotation.column2) > limit;
 }
 
 OverlapSpan overlap_span(const Box *a, const Box *b, double depth, bool any_rotation) {
     const Vec2 axes[] = {a->rotation.column1, a->rotation.column2, b->rotation.column1, b->rotation.column2};
     const double radius = vec2_distance(b->half, vec2(0, 0)), limit = depth + rounding(a, b);
     OverlapSpan span = {-INFINITY, INFINITY};
-    for (int i = 0; i < (any_rotation ? 2 : 4); i++)
-        box_cut(&span, a, b, axes[i], box_reach(a, axes[i]) + (any_rotation ? radius : box_reach(b, axes[i])), limit);
+    /* Each axis cuts the span to the x at which the projections on it overlap by more than the limit. */
+    for (int i = 0; i < (any_rotation ? 2 : 4); i++) {
+        const Vec2 axis = axes[i];
+        const double least = 1e-9, room = reach(a, axis) + (any_rotation ? radius : reach(b, axis)) - limit;
+        const double across = ((double)b->position.y - (double)a->position.y) * (double)axis.y;
+        if (room <= 0 || (fabs((double)axis.x) < least && fabs(across) >= room)) span = (OverlapSpan){0, 0};
+        if (fabs((double)axis.x) < least) continue;
+        const double first = (double)a->position.x + (-room - across) / (double)axis.x;
+        const double second = (double)a->position.x + (room - across) / (double)axis.x;
+        span.from = fmax(span.from, fmin(first, second));
+        span.to = fmin(span.to, fmax(first, second));
+    }
     return span;
 }
 
@@ -72,38 +70,29 @@ static int by_low(const void *a, const void *b) {
     return left->body - right->body;
 }
 
-/* The axis along which the boxes are further apart. */
-static bool spread_along_y(const Box *boxes, int count) {
-    Vec2 low = boxes[0].position, high = low;
-    for (int i = 1; i < count; i++) {
-        low = vec2(fminf(low.x, boxes[i].position.x), fminf(low.y, boxes[i].position.y));
-        high = vec2(fmaxf(high.x, boxes[i].position.x), fmaxf(high.y, boxes[i].position.y));
-    }
-    return high.y - low.y > high.x - low.x;
-}
-
-static BodyPair box_sweep(const Entry *entries, const Box *boxes, const bool *fixed, int count, double depth) {
-    for (int i = 0; i < count; i++)
-        for (int k = i + 1; k < count && entries[k].low <= entries[i].high; k++) {
-            const int a = entries[i].body, b = entries[k].body;
-            if ((fixed[a] && fixed[b]) || !overlap_exceeds(&boxes[a], &boxes[b], depth)) continue;
-            return (BodyPair){a < b ? a : b, a < b ? b : a};
-        }
-    return (BodyPair){-1, -1};
-}
-
 bool overlap_find(const Box *boxes, const bool *fixed, int count, double depth, BodyPair *found) {
     *found = (BodyPair){-1, -1};
     if (count == 0) return true;
     Entry *entries = malloc((size_t)count * sizeof *entries);
     if (entries == NULL) return false;
-    const bool along_y = spread_along_y(boxes, count);
+    /* Sorted along the axis along which the boxes are further apart. */
+    Vec2 low = boxes[0].position, high = low;
+    for (int i = 1; i < count; i++) {
+        low = vec2(fminf(low.x, boxes[i].position.x), fminf(low.y, boxes[i].position.y));
+        high = vec2(fmaxf(high.x, boxes[i].position.x), fmaxf(high.y, boxes[i].position.y));
+    }
+    const bool along_y = high.y - low.y > high.x - low.x;
     for (int i = 0; i < count; i++) {
         const Bounds bounds = bounds_of_box(&boxes[i]);
         entries[i] = (Entry){along_y ? bounds.low.y : bounds.low.x, along_y ? bounds.high.y : bounds.high.x, i};
     }
     qsort(entries, (size_t)count, sizeof *entries, by_low);
-    *found = box_sweep(entries, boxes, fixed, count, depth);
+    for (int i = 0; i < count && found->a < 0; i++)
+        for (int k = i + 1; k < count && entries[k].low <= entries[i].high && found->a < 0; k++) {
+            const int a = entries[i].body, b = entries[k].body;
+            if (!(fixed[a] && fixed[b]) && overlap_exceeds(&boxes[a], &boxes[b], depth))
+                *found = (BodyPair){a < b ? a : b, a < b ? b : a};
+        }
     free(entries);
     return true;
 }
@@ -192,7 +181,7 @@ static void find_incident_edge(ClipVertex edge[2], const Box *box, Vec2 referenc
 
 /* Clips to the half-plane normal . x <= offset; `clip_edge` is the reference edge on that line. False if fewer than two
    points remain. */
-static inline bool box_clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
+static inline bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
     int count = 0;
     float distance0 = vec2_dot(normal, in[0].position) - offset;
     float distance1 = vec2_dot(normal, in[1].position) - offset;
@@ -214,12 +203,6 @@ static inline bool box_clip(ClipVertex out[2], const ClipVertex in[2], Vec2 norm
     return count == 2;
 }
 
-static uint32_t feature_of(const ClipVertex *v, bool reference_is_b) {
-    uint32_t reference = v->in_reference | (uint32_t)v->out_reference << 8;
-    uint32_t incident = v->in_incident | (uint32_t)v->out_incident << 8;
-    return reference_is_b ? incident | reference << 16 : reference | incident << 16;
-}
-
 /* Returns the separation along the reference face. Inlined, so that contacts by all faces without a gap cost no more
    than if there were no others. */
 static inline __attribute__((always_inline)) float compute(Manifold *manifold, const Box *a, const Box *b,
@@ -239,10 +222,9 @@ static inline __attribute__((always_inline)) float compute(Manifold *manifold, c
 
     ClipVertex edge[2], half_clipped[2], clipped[2];
     find_incident_edge(edge, incident, front_normal);
-    if (!box_clip(half_clipped, edge, vec2_negate(side_normal), -side + side_half,
-                  face.along_y ? EDGE_LEFT : EDGE_BOTTOM))
+    if (!clip(half_clipped, edge, vec2_negate(side_normal), -side + side_half, face.along_y ? EDGE_LEFT : EDGE_BOTTOM))
         return face.separation;
-    if (!box_clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP))
+    if (!clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP))
         return face.separation;
 
     for (int i = 0; i < 2; i++) {
@@ -250,7 +232,10 @@ static inline __attribute__((always_inline)) float compute(Manifold *manifold, c
         if (separation > gap) continue;
         /* Projected onto the reference face, so that both lever arms end in the same point. */
         Vec2 position = vec2_sub(clipped[i].position, vec2_scale(separation, front_normal));
-        manifold->points[manifold->count++] = (ManifoldPoint){position, separation, feature_of(&clipped[i], face.of_b)};
+        const uint32_t of_reference = clipped[i].in_reference | (uint32_t)clipped[i].out_reference << 8;
+        const uint32_t of_incident = clipped[i].in_incident | (uint32_t)clipped[i].out_incident << 8;
+        const uint32_t feature = face.of_b ? of_incident | of_reference << 16 : of_reference | of_incident << 16;
+        manifold->points[manifold->count++] = (ManifoldPoint){position, separation, feature};
     }
     return face.separation;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The broad phase: pairs of bounds that overlap, by sort and sweep or by comparing all. */
 #include "base/base.h"
-#include "engine/engine.h"
+#include "engine/boxes.h"
 
 #include <float.h>
 #include <math.h>
@@ -90,19 +90,17 @@ static bool insertion_sort(SweptBounds *items, int count, size_t most, size_t *m
     return true;
 }
 
-/* Two neighbouring runs that are sorted, into one; stable. */
-static void broad_phase_merge(const SweptBounds *from, int middle, int count, SweptBounds *to) {
-    for (int i = 0, left = 0, right = middle; i < count; i++)
-        to[i] = right == count || (left < middle && from[left].low <= from[right].low) ? from[left++] : from[right++];
-}
-
 /* Merge sort, for a list in any order. Both sorts are stable, so that it matters to no bit where one takes over. */
 static void merge_sort(SweptBounds *items, SweptBounds *scratch, int count, size_t *moved) {
     SweptBounds *from = items, *to = scratch;
     for (int length = 1; length < count; length *= 2) {
         for (int first = 0; first < count; first += 2 * length) {
             const int left = count - first, both = left < 2 * length ? left : 2 * length;
-            broad_phase_merge(from + first, both < length ? both : length, both, to + first);
+            const SweptBounds *run = from + first; /* two neighbouring runs that are sorted, into one */
+            for (int i = 0, left_at = 0, middle = both < length ? both : length, right_at = middle; i < both; i++)
+                to[first + i] = right_at == both || (left_at < middle && run[left_at].low <= run[right_at].low)
+                                    ? run[left_at++]
+                                    : run[right_at++];
         }
         SweptBounds *sorted = to;
         to = from;
@@ -112,20 +110,14 @@ static void merge_sort(SweptBounds *items, SweptBounds *scratch, int count, size
     if (from != items) memcpy(items, from, (size_t)count * sizeof *items);
 }
 
-/* Bodies that are no numbers have no order: how they lie then is that of insertion sort. */
-static bool all_are_numbers(const SweptBounds *items, int count) {
-    for (int i = 0; i < count; i++)
-        if (isnan(items[i].low)) return false;
-    return true;
-}
-
-static bool broad_phase_sort(SortAndSweep *sweep) {
+static bool sort(SortAndSweep *sweep) {
     const int few_moves = 16; /* of each item */
     const size_t count = (size_t)sweep->count;
     sweep->moved = 0;
     if (insertion_sort(sweep->sorted, sweep->count, (size_t)few_moves * count, &sweep->moved)) return true;
-    if (!all_are_numbers(sweep->sorted, sweep->count))
-        return insertion_sort(sweep->sorted, sweep->count, SIZE_MAX, &sweep->moved);
+    /* Bodies that are no numbers have no order: how they lie then is that of insertion sort. */
+    for (int i = 0; i < sweep->count; i++)
+        if (isnan(sweep->sorted[i].low)) return insertion_sort(sweep->sorted, sweep->count, SIZE_MAX, &sweep->moved);
     if (!array_reserve((void **)&sweep->in_strip, &sweep->in_strip_capacity, count, sizeof *sweep->in_strip))
         return false;
     merge_sort(sweep->sorted, sweep->in_strip, sweep->count, &sweep->moved);
@@ -195,17 +187,6 @@ static bool sweep_strip(PairList *found, const SweptBounds *items, int count, in
     return true;
 }
 
-static bool find_overlaps(SortAndSweep *sweep) {
-    sweep->found.count = 0;
-    if (!fill_strips(sweep)) return false;
-    for (int strip = 0; strip < sweep->strip_count; strip++) {
-        int start = sweep->starts[strip], end = sweep->starts[strip + 1];
-        if (!sweep_strip(&sweep->found, sweep->in_strip + start, end - start, strip)) return false;
-    }
-    sweep->too_many = sweep->found.count > BROAD_PHASE_MAX_PAIRS;
-    return !sweep->too_many;
-}
-
 /* Sorts by one of the two bodies; stable. */
 static void order_by(int *starts, int count, bool by_a, const PairList *from, BodyPair *to) {
     memset(starts, 0, ((size_t)count + 1) * sizeof *starts);
@@ -227,7 +208,14 @@ bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *boun
         return false;
     if (other_axis_is_better(sweep, bounds, count)) sweep->along_y = !sweep->along_y;
     refresh(sweep, bounds, fixed, count);
-    if (!broad_phase_sort(sweep) || !find_overlaps(sweep) ||
+    if (!sort(sweep) || !fill_strips(sweep)) return false;
+    sweep->found.count = 0;
+    for (int strip = 0; strip < sweep->strip_count; strip++) {
+        const int start = sweep->starts[strip], end = sweep->starts[strip + 1];
+        if (!sweep_strip(&sweep->found, sweep->in_strip + start, end - start, strip)) return false;
+    }
+    sweep->too_many = sweep->found.count > BROAD_PHASE_MAX_PAIRS;
+    if (sweep->too_many ||
         !array_reserve((void **)&list->pairs, &list->capacity, sweep->found.count, sizeof *list->pairs))
         return false;
     list->count = sweep->found.count;

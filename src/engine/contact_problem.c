@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order of all float operations is fixed: reference trajectories are compared bit by bit. */
 #include "base/base.h"
+#include "engine/contact_set.h"
 #include "engine/engine.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ void contact_set_free(ContactSet *set) {
 }
 
 /* Reserves two points for every candidate pair. */
-static bool contact_problem_reserve(ContactSet *set, size_t pairs) {
+static bool reserve(ContactSet *set, size_t pairs) {
     return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, pairs, sizeof *set->arbiters) &&
            array_reserve((void **)&set->contacts, &set->contact_capacity, 2 * pairs, sizeof *set->contacts) &&
            array_reserve((void **)&set->impulses, &set->impulse_capacity, 2 * pairs, sizeof *set->impulses);
@@ -24,7 +25,7 @@ static bool contact_problem_reserve(ContactSet *set, size_t pairs) {
 
 bool contact_set_copy(ContactSet *to, const ContactSet *from) {
     size_t arbiters = (size_t)from->arbiter_count, contacts = (size_t)from->contact_count;
-    if (!contact_problem_reserve(to, arbiters)) return false;
+    if (!reserve(to, arbiters)) return false;
     to->arbiter_count = from->arbiter_count;
     to->contact_count = from->contact_count;
     if (arbiters == 0) return true;
@@ -101,7 +102,7 @@ static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter 
     return true;
 }
 
-static bool contact_problem_before(int a, int b, int of_a, int of_b) { return a < of_a || (a == of_a && b < of_b); }
+static bool before(int a, int b, int of_a, int of_b) { return a < of_a || (a == of_a && b < of_b); }
 
 /* Ghosts at seams. A box that slides from a tile onto the next overlaps this one along the way by less, at first, than
    it has sunk into both. So separating axes find the side of the tile, which stops the box, although the tile before
@@ -137,16 +138,6 @@ typedef struct Side {
     float depth;     /* m, along them */
 } Side;
 
-/* The box is on the tile more than in it. */
-static bool may_be_covered(Side *side, const ContactSet *set, const Box *boxes) {
-    const Arbiter *arbiter = &set->arbiters[side->arbiter];
-    if (!arbiter->narrow) return false;
-    const Box *a = &boxes[arbiter->a], *b = &boxes[arbiter->b];
-    side->least = smallest_half(a, b);
-    side->depth = -manifold_compute_across(&side->across, a, b, set->contacts[arbiter->first].normal);
-    return side->depth >= 0 && side->depth < side->least;
-}
-
 /* Whether the tile does not stick out of the support, compared where their points are nearest. A box that only just
    touches the tile has no point across. */
 static bool is_flush(const Side *side, const ContactSet *set, const Arbiter *support) {
@@ -177,34 +168,28 @@ static bool is_covered(const Side *side, const ContactSet *set, int body_count) 
     return false;
 }
 
-/* Replaces the points of an arbiter, and moves those behind them. */
-static void contact_problem_replace(ContactSet *set, int arbiter, const Manifold *manifold, const Box *boxes) {
-    Arbiter *old = &set->arbiters[arbiter];
-    const int first = old->first, end = first + old->count, more = manifold->count - old->count;
-    memmove(&set->contacts[end + more], &set->contacts[end],
-            (size_t)(set->contact_count - end) * sizeof *set->contacts);
-    for (int i = arbiter + 1; i < set->arbiter_count; i++) set->arbiters[i].first += more;
-    set->contact_count += more;
-    write_arbiter(set, old, (BodyPair){old->a, old->b}, first, manifold, boxes);
-}
-
-static int body_end(const ContactSet *set) {
-    int end = 0;
-    for (int i = 0; i < set->arbiter_count; i++)
-        if (set->arbiters[i].b >= end) end = set->arbiters[i].b + 1;
-    return end;
-}
-
 static bool mend_seams(ContactSet *set, const Box *boxes) {
     int body_count = 0; /* until partners are listed */
     for (int i = 0; i < set->arbiter_count; i++) {
-        Side side = {.arbiter = i};
-        if (!may_be_covered(&side, set, boxes)) continue;
+        Arbiter *arbiter = &set->arbiters[i];
+        if (!arbiter->narrow) continue;
+        const Box *a = &boxes[arbiter->a], *b = &boxes[arbiter->b];
+        Side side = {.arbiter = i, .least = smallest_half(a, b)};
+        side.depth = -manifold_compute_across(&side.across, a, b, set->contacts[arbiter->first].normal);
+        if (!(side.depth >= 0 && side.depth < side.least)) continue; /* the box is on the tile more than in it */
         if (body_count == 0) {
-            body_count = body_end(set);
+            for (int k = 0; k < set->arbiter_count; k++)
+                if (set->arbiters[k].b >= body_count) body_count = set->arbiters[k].b + 1;
             if (!list_partners(set, body_count)) return false;
         }
-        if (is_covered(&side, set, body_count)) contact_problem_replace(set, i, &side.across, boxes);
+        if (!is_covered(&side, set, body_count)) continue;
+        /* Its points are replaced, and those behind them move. */
+        const int first = arbiter->first, end = first + arbiter->count, more = side.across.count - arbiter->count;
+        memmove(&set->contacts[end + more], &set->contacts[end],
+                (size_t)(set->contact_count - end) * sizeof *set->contacts);
+        for (int k = i + 1; k < set->arbiter_count; k++) set->arbiters[k].first += more;
+        set->contact_count += more;
+        write_arbiter(set, arbiter, (BodyPair){arbiter->a, arbiter->b}, first, &side.across, boxes);
     }
     return true;
 }
@@ -216,30 +201,24 @@ float contact_gap(const Box *box, ContactRules rules) {
     return rules.mend && side < CONTACT_THIN ? gap_share * side : 0;
 }
 
-/* Returns whether the boxes touch along a way that is short beside their sides, as a covered side is touched. */
-static bool find_mended(Manifold *manifold, const Box *a, const Box *b) {
-    const float least = smallest_half(a, b);
-    if (2.0f * least < CONTACT_THIN)
-        manifold_compute_within(manifold, a, b, gap_share * 2.0f * least);
-    else
-        manifold_compute(manifold, a, b);
-    if (manifold->count < 2) return true;
-    const Vec2 way = vec2_sub(manifold->points[1].position, manifold->points[0].position);
-    return vec2_dot(way, way) < least * least;
-}
-
 /* Adds the arbiter of a pair, if it touches. */
 static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool mend) {
+    const Box *a = &boxes[pair.a], *b = &boxes[pair.b];
+    const float least = smallest_half(a, b);
     Manifold manifold;
-    bool narrow = false;
-    if (mend)
-        narrow = find_mended(&manifold, &boxes[pair.a], &boxes[pair.b]);
+    if (mend && 2.0f * least < CONTACT_THIN)
+        manifold_compute_within(&manifold, a, b, gap_share * 2.0f * least);
     else
-        manifold_compute(&manifold, &boxes[pair.a], &boxes[pair.b]);
+        manifold_compute(&manifold, a, b);
     if (manifold.count == 0) return;
     Arbiter *arbiter = &set->arbiters[set->arbiter_count++];
     write_arbiter(set, arbiter, pair, set->contact_count, &manifold, boxes);
-    arbiter->narrow = narrow;
+    /* Whether the way along which they touch is short beside their sides, as a covered side is touched. */
+    arbiter->narrow = mend;
+    if (manifold.count == 2) {
+        const Vec2 way = vec2_sub(manifold.points[1].position, manifold.points[0].position);
+        arbiter->narrow = mend && vec2_dot(way, way) < least * least;
+    }
     set->contact_count += manifold.count;
 }
 
@@ -248,11 +227,10 @@ bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxe
     const Arbiter *old = last->arbiters, *end = old + (rules.keep > 0 ? last->arbiter_count : 0);
     const BodyPair *pair = pairs->pairs, *pairs_end = pair + pairs->count;
     set->arbiter_count = set->contact_count = 0;
-    if (!contact_problem_reserve(set, pairs->count + (size_t)(end - old))) return false;
+    if (!reserve(set, pairs->count + (size_t)(end - old))) return false;
     /* Both lists rise by (a, b). */
     while (pair < pairs_end || old < end) {
-        const bool is_old =
-            old < end && (pair == pairs_end || !contact_problem_before(pair->a, pair->b, old->a, old->b));
+        const bool is_old = old < end && (pair == pairs_end || !before(pair->a, pair->b, old->a, old->b));
         const bool may_touch = !is_old || (pair < pairs_end && pair->a == old->a && pair->b == old->b);
         if (!(is_old && keep_arbiter(set, last, old, boxes, rules.keep)) && may_touch)
             find_arbiter(set, *pair, boxes, rules.mend);
@@ -266,9 +244,9 @@ void contact_set_match(ContactSet *set, const ContactSet *last) {
     const Arbiter *old = last->arbiters, *end = old + last->arbiter_count;
     for (int i = 0; i < set->arbiter_count; i++) {
         const Arbiter *arbiter = &set->arbiters[i];
-        while (old < end && contact_problem_before(old->a, old->b, arbiter->a, arbiter->b)) old++;
+        while (old < end && before(old->a, old->b, arbiter->a, arbiter->b)) old++;
         if (old == end) return;
-        if (contact_problem_before(arbiter->a, arbiter->b, old->a, old->b)) continue;
+        if (before(arbiter->a, arbiter->b, old->a, old->b)) continue;
         for (int k = arbiter->first; k < arbiter->first + arbiter->count; k++) {
             for (int j = old->first; j < old->first + old->count; j++) {
                 if (last->contacts[j].feature != set->contacts[k].feature) continue;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The world: its bodies, and the step from contacts to new states. */
 #include "base/base.h"
+#include "engine/contact_set.h"
 #include "engine/engine.h"
 
 #include <math.h>
@@ -133,76 +134,23 @@ const Body *world_bodies(const World *world) { return world->bodies; }
 const ContactProblem *world_problem(const World *world) { return &world->problem; }
 const ContactSolution *world_solution(const World *world) { return &world->solution; }
 
-static bool same_pose(const Body *x, const Body *y) {
-    return memcmp(&x->position, &y->position, sizeof x->position) == 0 &&
-           memcmp(&x->angle, &y->angle, sizeof x->angle) == 0;
-}
-
-static Bounds bounds_with_gap(const Box *box, float gap) {
-    const Bounds bounds = bounds_of_box(box);
-    const Vec2 wide = vec2(gap, gap);
-    return gap == 0 ? bounds : (Bounds){vec2_sub(bounds.low, wide), vec2_add(bounds.high, wide)};
-}
-
 static bool collide(World *world) {
     for (int i = 0; i < world->body_count; i++) {
-        const Body *body = &world->bodies[i];
-        if (i < world->posed && same_pose(body, &world->moved[i])) continue;
-        world->boxes[i] = box_make(body->position, body->size, body->angle);
-        world->bounds[i] = bounds_with_gap(&world->boxes[i], contact_gap(&world->boxes[i], world->rules));
+        const Body *body = &world->bodies[i], *before = &world->moved[i];
+        if (i < world->posed && memcmp(&body->position, &before->position, sizeof body->position) == 0 &&
+            memcmp(&body->angle, &before->angle, sizeof body->angle) == 0)
+            continue;
+        Box *box = &world->boxes[i];
+        Bounds *bounds = &world->bounds[i];
+        *box = box_make(body->position, body->size, body->angle);
+        *bounds = bounds_of_box(box);
+        const float gap = contact_gap(box, world->rules);
+        if (gap == 0) continue;
+        bounds->low = vec2_sub(bounds->low, vec2(gap, gap));
+        bounds->high = vec2_add(bounds->high, vec2(gap, gap));
     }
     return sort_and_sweep_find(&world->broad_phase, &world->pairs, world->bounds, world->fixed, world->body_count) &&
            contact_set_collide(&world->next, &world->pairs, world->boxes, &world->last, world->rules);
-}
-
-/* The bodies of the contact problem, with gravity in their velocities. */
-static void apply_gravity(World *world, float dt) {
-    for (int i = 0; i < world->body_count; i++) {
-        const Body *body = &world->bodies[i];
-        ProblemBody *out = &world->problem_bodies[i];
-        *out = (ProblemBody){body->position, body->angle,           body->size, body->inv_mass, body->inv_inertia,
-                             body->velocity, body->angular_velocity};
-        if (body->inv_mass == 0.0f) continue;
-        out->velocity = vec2_add(body->velocity, vec2_scale(dt, world->def.gravity));
-        /* No torque, but this turns -0 into 0, as Box2D-Lite does. */
-        out->angular_velocity += 0.0f;
-    }
-}
-
-static bool is_finite_body(const Body *body) {
-    return isfinite(body->position.x) && isfinite(body->position.y) && isfinite(body->angle) &&
-           isfinite(body->velocity.x) && isfinite(body->velocity.y) && isfinite(body->angular_velocity);
-}
-
-/* Moves one body: semi-implicit Euler, with the new velocity. */
-static void move_body(World *world, int i) {
-    float dt = world->problem.dt;
-    Body *body = &world->moved[i];
-    *body = world->bodies[i];
-    body->velocity = world->velocities[i].linear;
-    body->angular_velocity = world->velocities[i].angular;
-    body->position = vec2_add(body->position, vec2_scale(dt, body->velocity));
-    body->angle += dt * body->angular_velocity;
-}
-
-static bool check_finite(const World *world, Error *error) {
-    for (int i = 0; i < world->body_count; i++)
-        if (!is_finite_body(&world->moved[i]))
-            return error_failure(error, FAILURE_NOT_FINITE, "world",
-                                 "the state of body %d is NaN or infinite (its velocity was %g, %g m/s)", i,
-                                 (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
-    return true;
-}
-
-/* After success: swaps the new state with the old one, which the next step overwrites. */
-static void commit(World *world) {
-    Body *bodies = world->bodies;
-    world->bodies = world->moved;
-    world->moved = bodies;
-    world->posed = world->body_count;
-    ContactSet last = world->last;
-    world->last = world->next;
-    world->next = last;
 }
 
 bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error) {
@@ -212,7 +160,16 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
                                  BROAD_PHASE_MAX_PAIRS)
                    : error_memory(error, "world");
     if (world->def.warm_starting) contact_set_match(&world->next, &world->last);
-    apply_gravity(world, dt);
+    for (int i = 0; i < world->body_count; i++) { /* with gravity */
+        const Body *body = &world->bodies[i];
+        ProblemBody *out = &world->problem_bodies[i];
+        *out = (ProblemBody){body->position, body->angle,           body->size, body->inv_mass, body->inv_inertia,
+                             body->velocity, body->angular_velocity};
+        if (body->inv_mass == 0.0f) continue;
+        out->velocity = vec2_add(body->velocity, vec2_scale(dt, world->def.gravity));
+        /* No torque, but this turns -0 into 0, as Box2D-Lite does. */
+        out->angular_velocity += 0.0f;
+    }
     contact_set_prepare(&world->next, world->problem_bodies, world->friction, dt, world->def.position_correction);
     *problem = (ContactProblem){.body_count = world->body_count,
                                 .contact_count = world->next.contact_count,
@@ -228,14 +185,36 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
 }
 
 bool world_end_step_at(World *world, const BodyPose *poses, Error *error) {
+    const float dt = world->problem.dt;
     for (int i = 0; i < world->body_count; i++) {
-        move_body(world, i);
+        Body *body = &world->moved[i];
+        *body = world->bodies[i];
+        /* Semi-implicit Euler: with the new velocity. */
+        body->velocity = world->velocities[i].linear;
+        body->angular_velocity = world->velocities[i].angular;
+        body->position = vec2_add(body->position, vec2_scale(dt, body->velocity));
+        body->angle += dt * body->angular_velocity;
         if (poses == NULL) continue;
-        world->moved[i].position = poses[i].position;
-        world->moved[i].angle = poses[i].angle;
+        body->position = poses[i].position;
+        body->angle = poses[i].angle;
     }
-    if (!check_finite(world, error)) return false;
-    commit(world);
+    for (int i = 0; i < world->body_count; i++) {
+        const Body *body = &world->moved[i];
+        if (isfinite(body->position.x) && isfinite(body->position.y) && isfinite(body->angle) &&
+            isfinite(body->velocity.x) && isfinite(body->velocity.y) && isfinite(body->angular_velocity))
+            continue;
+        return error_failure(error, FAILURE_NOT_FINITE, "world",
+                             "the state of body %d is NaN or infinite (its velocity was %g, %g m/s)", i,
+                             (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
+    }
+    /* The next step overwrites the old state. */
+    Body *bodies = world->bodies;
+    world->bodies = world->moved;
+    world->moved = bodies;
+    world->posed = world->body_count;
+    const ContactSet last = world->last;
+    world->last = world->next;
+    world->next = last;
     return true;
 }
 

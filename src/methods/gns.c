@@ -136,7 +136,7 @@ static bool begin(Gns *gns, const BegunStep *begun) {
     return true;
 }
 
-static void move_particles(Gns *gns, int i, Vec2 gravity, float dt, NetworkFallbacks *fallbacks) {
+static void move_particles(Gns *gns, int i, Vec2 gravity, float dt, Fallbacks *fallbacks) {
     const float most = beyond_strongest * gns->net.scales.strongest / gns->net.scales.acceleration;
     bool learned = gns->uses_net; /* and no acceleration is NaN, infinite or far beyond the training's */
     for (int k = i * BOX_PARTICLES * GNS_OUTPUTS; learned && k < (i + 1) * BOX_PARTICLES * GNS_OUTPUTS; k++)

@@ -209,17 +209,17 @@ void hybrid_answer(const HybridMemory *memory, int entry, const float *key, cons
 
 /* The fallbacks so far are added to those of interior. */
 static bool converge(Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    const NetworkFallbacks before = solution->fallbacks;
-    solution->fallbacks = (NetworkFallbacks){0};
+    const Fallbacks before = solution->fallbacks;
+    solution->fallbacks = (Fallbacks){0};
     if (!solver_interior.solve(hybrid->interior, problem, solution, error)) return false;
-    network_fallbacks_add(&solution->fallbacks, &before);
+    fallbacks_add(&solution->fallbacks, &before);
     return true;
 }
 
 static bool hybrid_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Hybrid *hybrid = state;
     if (hybrid->memory != NULL && !hybrid_fits(hybrid, problem, error)) return false;
-    solution->fallbacks = (NetworkFallbacks){0};
+    solution->fallbacks = (Fallbacks){0};
     const bool asks = hybrid->retrieves && (hybrid->memory != NULL || hybrid->watch.see != NULL);
     if (!asks || !is_impact(hybrid, problem, solution)) return converge(hybrid, problem, solution, error);
     if (!hybrid_reserve(hybrid, problem)) return error_memory(error, "hybrid");
@@ -229,7 +229,7 @@ static bool hybrid_solve(void *state, const ContactProblem *problem, ContactSolu
     if (step.entry >= 0) {
         hybrid_answer(hybrid->memory, step.entry, step.query.key, problem, solution);
         if (!is_bounded(problem, solution)) {
-            solution->fallbacks = (NetworkFallbacks){.not_finite = 1};
+            solution->fallbacks = (Fallbacks){.not_finite = 1};
             step.entry = -1;
         }
     } else {

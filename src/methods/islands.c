@@ -152,5 +152,5 @@ void islands_put(const Islands *s, int k, const ContactProblem *part, const Cont
     for (int i = 0; i < part->body_count; i++)
         if (s->parent[s->bodies[i]] >= 0) solution->velocities[s->bodies[i]] = of_part->velocities[i];
     for (int i = 0; i < part->contact_count; i++) solution->impulses[contacts[i]] = of_part->impulses[i];
-    network_fallbacks_add(&solution->fallbacks, &of_part->fallbacks);
+    fallbacks_add(&solution->fallbacks, &of_part->fallbacks);
 }

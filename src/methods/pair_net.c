@@ -251,7 +251,7 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
     PairNetwork *network = &solver->network;
     contact_solution_begin(problem, solution);
     solution->momentum_error = 0;
-    solution->fallbacks = (NetworkFallbacks){0};
+    solution->fallbacks = (Fallbacks){0};
     /* An impulse: sweeps over the pairs, each predicted from the current velocities. */
     const PairMoment now = {.velocities = solution->velocities};
     for (int sweep = 0; network->target == TARGET_IMPULSE && sweep < solver->sweep_count; sweep++)

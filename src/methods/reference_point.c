@@ -288,9 +288,9 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Reference *reference = state;
     if (!reference_solve(reference, problem, NULL, error)) return false;
     reference_round(reference, problem, solution);
-    solution->fallbacks = (NetworkFallbacks){0};
+    solution->fallbacks = (Fallbacks){0};
     if (!reference_converged(reference))
-        solution->fallbacks = (NetworkFallbacks){.not_converged = 1, .residual = reference->residual};
+        solution->fallbacks = (Fallbacks){.not_converged = 1, .residual = reference->residual};
     return true;
 }
 

@@ -294,7 +294,7 @@ static bool sain_solve(void *state, const ContactProblem *problem, ContactSoluti
         !sain_answer(&solver->answers, solver->network, &solver->view, alone))
         return error_memory(error, "sain");
     solution->momentum_error = 0;
-    solution->fallbacks = (NetworkFallbacks){0};
+    solution->fallbacks = (Fallbacks){0};
     sain_correct(solver, problem, solution);
     return true;
 }

@@ -155,7 +155,7 @@ static bool look_in_range(ScenePrediction *prediction, const SceneNet *network, 
 /* After look_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
    friction cones, and counts those that were outside. NaN or infinite if the network's outputs are. */
 static void predict_scene_net(ScenePrediction *prediction, const SceneNet *network, const ContactProblem *problem,
-                              NetworkFallbacks *fallbacks) {
+                              Fallbacks *fallbacks) {
     const SceneView *view = &prediction->view;
     scene_net_predict(network, prediction->inputs, &view->slots, prediction->first, prediction->second,
                       prediction->outputs);
@@ -339,7 +339,7 @@ static bool run_scene_net(SceneNetSolver *solver, const ContactProblem *problem,
 
 /* After the warm start. */
 static bool choose_route(SceneNetSolver *solver, const ContactProblem *problem, Route *route,
-                         NetworkFallbacks *fallbacks, Error *error) {
+                         Fallbacks *fallbacks, Error *error) {
     const SceneNet *network = solver->network;
     *route = ROUTE_MOMENTUM;
     if (problem->bomb < 0) return true;
@@ -365,7 +365,7 @@ static bool scene_net_solve(void *state, const ContactProblem *problem, ContactS
     if (!scene_net_fits(solver->network, problem, error)) return false;
     if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return error_memory(error, "scene-net");
     Route route;
-    solution->fallbacks = (NetworkFallbacks){0};
+    solution->fallbacks = (Fallbacks){0};
     if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
     if (route == ROUTE_NETWORK && solver->choice.predicts) {
         predict_scene_net(&solver->prediction, solver->network, problem, &solution->fallbacks);

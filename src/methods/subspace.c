@@ -174,7 +174,7 @@ static int pose_bodies(SubspaceStepper *method, const Body *bodies, int body_cou
 }
 
 /* Poses after a step in which the bomb is there. */
-static NetworkFallbacks subspace_predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
+static Fallbacks subspace_predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
                                          const Step *which) {
     Subspace *subspace = &method->subspace;
     float launch[SUBSPACE_LAUNCH];
@@ -186,7 +186,7 @@ static NetworkFallbacks subspace_predict(SubspaceStepper *method, const Body *bo
     subspace_reconstruct(subspace);
     const SceneSpan *mass = &scene->bomb.mass;
     const bool other_mass = mass->value < mass->from || mass->value > mass->to;
-    return (NetworkFallbacks){.not_finite = report.not_finite + pose_bodies(method, bodies, problem->body_count),
+    return (Fallbacks){.not_finite = report.not_finite + pose_bodies(method, bodies, problem->body_count),
                               .beyond_training = report.beyond > 0 || other_mass};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
+#include "engine/contact_set.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "runs/trajectory.h"
@@ -45,7 +46,7 @@ typedef struct RunWatch {
     Recorder *recorder;            /* of this scene and method */
     const StepObserver *observers; /* [observer_count] */
     int observer_count;
-    NetworkFallbacks *fallbacks; /* those of all steps are added */
+    Fallbacks *fallbacks; /* those of all steps are added */
     const Progress *progress;
 } RunWatch;
 

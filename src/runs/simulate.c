@@ -14,7 +14,7 @@ static bool simulate_observe(const Simulation *run, int frame, const RunWatch *w
     if (watch->recorder != NULL && !recorder_record(watch->recorder, frame, run->world, error)) return false;
     for (int i = 0; i < watch->observer_count; i++)
         if (!watch->observers[i].observe(watch->observers[i].context, frame, run->world, error)) return false;
-    if (watch->fallbacks != NULL) network_fallbacks_add(watch->fallbacks, &world_solution(run->world)->fallbacks);
+    if (watch->fallbacks != NULL) fallbacks_add(watch->fallbacks, &world_solution(run->world)->fallbacks);
     if (progress_report(watch->progress, frame, run->scene->frames)) return true;
     return error_interrupted(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
 }

@@ -204,7 +204,7 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
                               .bomb = problem->bomb,
                               .bodies = world_bodies(world),
                               .contacts = problem->contacts};
-    network_fallbacks_add(&((VerdictWatch *)watch)->fallbacks, &world_solution(world)->fallbacks);
+    fallbacks_add(&((VerdictWatch *)watch)->fallbacks, &world_solution(world)->fallbacks);
     return verdict_watch_step(watch, &step, error);
 }
 
@@ -318,7 +318,7 @@ static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const 
     Error failure = {0};
     if (simulate_step(stepper, world, step, &failure)) return verdict_watch_observe(watch, step->frame, world, error);
     if (failure.failure == FAILURE_NONE) return *error = failure, false;
-    network_fallbacks_add(&watch->fallbacks, &world_solution(world)->fallbacks);
+    fallbacks_add(&watch->fallbacks, &world_solution(world)->fallbacks);
     verdict_watch_failed(watch, step->frame, &failure);
     return true;
 }

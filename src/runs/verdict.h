@@ -43,7 +43,7 @@ typedef struct EnergyLog {
     double *energy;        /* [frames + 1] J: as in EnergyBalance */
     EnergyBalance balance; /* after the last frame, or before the first that is unconverged */
     int unconverged; /* the first step whose solution did not converge, from which on the log bounds nothing; 0: none */
-    NetworkFallbacks fallbacks; /* of all steps: how many did not converge, and their largest residual */
+    Fallbacks fallbacks; /* of all steps: how many did not converge, and their largest residual */
     double liveliest; /* J/kg: the most energy of a body in any frame; potential: above the lowest at the start */
     size_t capacity;
 } EnergyLog;
@@ -192,7 +192,7 @@ typedef struct VerdictReading {
     double deepest; /* m: penetration of the deepest contact of all steps */
     double excess;  /* J: most energy above what the start and added bodies brought; >= 0; NaN if not judged */
     int steps;      /* set by verdict_run() only */
-    NetworkFallbacks fallbacks; /* of all steps that were observed */
+    Fallbacks fallbacks; /* of all steps that were observed */
 } VerdictReading;
 
 /* The run to be judged. */
@@ -311,7 +311,7 @@ typedef struct VerdictWatch {
     int peak_steps;   /* of the current fall */
     int rested_count; /* bodies after VERDICT_CREEP_FROM falls; 0 before */
     double deepest, excess; /* as in VerdictReading */
-    NetworkFallbacks fallbacks;
+    Fallbacks fallbacks;
     ContactFinder finder; /* of a run that finds its contacts */
     PassFinder passes;
 } VerdictWatch;

@@ -81,7 +81,7 @@ bool energy_log_begin(EnergyLog *log, Vec2 gravity, int frames, const Body *bodi
         return error_memory(error, "energy log");
     log->frames = frames;
     log->unconverged = 0;
-    log->fallbacks = (NetworkFallbacks){0};
+    log->fallbacks = (Fallbacks){0};
     log->liveliest = 0;
     energy_balance_begin(&log->balance, gravity, bodies, count);
     log->energy[0] = log->balance.energy;
@@ -99,7 +99,7 @@ void energy_log_step(EnergyLog *log, int frame, const Body *bodies, int count) {
 static bool verdict_energy_observe(void *context, int frame, const World *world, Error *error) {
     EnergyLog *log = context;
     (void)error;
-    network_fallbacks_add(&log->fallbacks, &world_solution(world)->fallbacks);
+    fallbacks_add(&log->fallbacks, &world_solution(world)->fallbacks);
     if (log->unconverged == 0 && log->fallbacks.not_converged > 0) log->unconverged = frame;
     if (log->unconverged == 0) energy_log_step(log, frame, world_bodies(world), world_body_count(world));
     return true;

@@ -202,7 +202,7 @@ VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene
 typedef struct Convergence {
     int steps;                  /* of all of them */
     int first;                  /* step that did not converge, in the run by which methods are judged; 0: none */
-    NetworkFallbacks fallbacks; /* of all of them */
+    Fallbacks fallbacks; /* of all of them */
 } Convergence;
 
 /* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses
@@ -313,7 +313,7 @@ typedef struct RunRow {
     int steps;
     int verdict;                                              /* rest.csv */
     double drift, energy;                                     /* rest.csv: VerdictReading's drift and gained, or NAN */
-    int not_finite, outside_cone, beyond_training, by_sweeps; /* fallbacks.csv: as in NetworkFallbacks */
+    int not_finite, outside_cone, beyond_training, by_sweeps; /* fallbacks.csv: as in Fallbacks */
 } RunRow;
 
 /* engines.csv: a program of the method exec, in a study; the table is there if there is such a method. */

@@ -119,7 +119,7 @@ bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Con
         if (ok && (reading.verdict != *truth || !known)) *truth = VERDICT_UNDECIDED;
         if (!ok || seed == 0) continue; /* that run is known */
         convergence->steps += scene->frames;
-        network_fallbacks_add(&convergence->fallbacks, &reading.fallbacks);
+        fallbacks_add(&convergence->fallbacks, &reading.fallbacks);
     }
     scene->warm_starting = warm;
     return ok;
@@ -179,7 +179,7 @@ void converged_runs_free(ConvergedRuns *runs) {
 }
 
 bool unconverged_print(FILE *results, int section, MapCell *row, const Convergence *convergence, Error *error) {
-    const NetworkFallbacks *fallbacks = &convergence->fallbacks;
+    const Fallbacks *fallbacks = &convergence->fallbacks;
     if (fallbacks->not_converged == 0) return true;
     row->steps = convergence->steps;
     row->not_converged = fallbacks->not_converged;

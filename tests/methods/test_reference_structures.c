@@ -90,7 +90,7 @@ TEST(a_step_without_a_solution_adds_no_energy) {
 TEST(a_run_counts_steps_without_a_solution) {
     OWN(Scene) *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
     const Method method = method_named("reference");
-    NetworkFallbacks fallbacks = {0};
+    Fallbacks fallbacks = {0};
     assert_ok(simulate_watched(scene, &method, &(RunWatch){.fallbacks = &fallbacks}, &error), error);
     assert_int_equal(fallbacks.not_converged, run_scene(scene).failed);
     assert_true(fallbacks.residual > tight);

@@ -44,7 +44,7 @@ static bool observe(void *context, int frame, const World *world, Error *error) 
     return true;
 }
 
-static Watch run(const Scene *scene, const Method *method, NetworkFallbacks *fallbacks) {
+static Watch run(const Scene *scene, const Method *method, Fallbacks *fallbacks) {
     Watch watch = {0};
     Error error = {0};
     const StepObserver observer = {observe, &watch};
@@ -61,7 +61,7 @@ TEST_WITH(boxes_go_on_as_they_move, make, destroy) {
     single->bomb.spin.value = 3;
     /* A network by hand is for any launch: the physics do not depend on it. */
     const Method method = method_of(net, single, "subspace");
-    NetworkFallbacks fallbacks = {0};
+    Fallbacks fallbacks = {0};
     const Watch watch = run(single, &method, &fallbacks);
     const BodyDef bomb = scene_bomb_body(single);
     assert_near(watch.bodies[0].position.y, 4, 1e-4);
@@ -144,12 +144,12 @@ TEST_WITH(what_training_did_not_see_is_counted, make, destroy) {
     Launch launch = launch_of(single);
     launch.mass = 80;
     const Scene heavy = launch_scene(single, &launch);
-    NetworkFallbacks fallbacks = {0};
+    Fallbacks fallbacks = {0};
     run(&heavy, &method, &fallbacks);
     assert_int_equal(fallbacks.beyond_training, 10);
     net->low[5] = 14; /* the bomb's height */
     method = method_of(net, single, "subspace");
-    fallbacks = (NetworkFallbacks){0};
+    fallbacks = (Fallbacks){0};
     const Watch watch = run(single, &method, &fallbacks);
     assert_near(watch.bodies[1].position.y, 14, 0);
     assert_in_range(fallbacks.beyond_training, 1, 9);
@@ -163,7 +163,7 @@ TEST_WITH(poses_that_are_not_finite_are_discarded, make, destroy) {
         net->low[k] = net->high[k] = 1000;
     }
     const Method method = method_of(net, single, "subspace");
-    NetworkFallbacks fallbacks = {0};
+    Fallbacks fallbacks = {0};
     const Watch watch = run(single, &method, &fallbacks);
     assert_near(watch.bodies[1].position.y, 15, 0);
     assert_true(fallbacks.not_finite >= 3);

@@ -184,7 +184,7 @@ TEST(momentum_and_fallbacks_are_added) {
         assert_ok(world_begin_step(world, scene.dt, &problem, &solution, &error), error);
         solution->velocities[0] = (BodyVelocity){vec2(1, 0), 0};
         solution->momentum_error = frame == 1 ? 0.5f : 0;
-        solution->fallbacks = (NetworkFallbacks){.beyond_training = frame == 1, .outside_cone = frame == 2};
+        solution->fallbacks = (Fallbacks){.beyond_training = frame == 1, .outside_cone = frame == 2};
         assert_ok(world_end_step(world, &error), error);
         run_log_step(&log, &scene, world, frame, PHASE_REST);
     }
