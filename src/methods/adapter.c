@@ -7,7 +7,6 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/machine.h"
-#include "methods/adapter_internal.h"
 #include "methods/methods.h"
 #include "methods/programs.h"
 
@@ -37,16 +36,6 @@ void programs_allow(const char *methods) {
     /* Without memory the program is not started. */
     if (array_reserve((void **)&allowed, &allowed_capacity, allowed_count + 1, sizeof *allowed))
         allowed[allowed_count++] = methods;
-}
-
-static bool is_allowed(const char *method, const char *program) {
-    char text[ADAPTER_KEY_SIZE];
-    const size_t length = (size_t)snprintf(text, sizeof text, "%s:%s", method, program);
-    for (size_t i = 0; i < allowed_count; i++)
-        for (const char *at = strstr(allowed[i], text); at != NULL; at = strstr(at + 1, text))
-            if ((at == allowed[i] || at[-1] == ',') && (at[length] == '\0' || strchr(",:", at[length]) != NULL))
-                return true;
-    return false;
 }
 
 static char first_failure[TALK_WHY_SIZE];
@@ -88,18 +77,6 @@ bool method_program(const Method *method, ProgramName *name) {
     return note != NULL;
 }
 
-static void keep_note(const char *key, const ProgramName *name) {
-    pthread_mutex_lock(&lock);
-    Note *note = find_note(key);
-    if (note == NULL && (note = calloc(1, sizeof *note)) != NULL) {
-        snprintf(note->key, sizeof note->key, "%s", key);
-        note->next = notes;
-        notes = note;
-    }
-    if (note != NULL) note->name = *name;
-    pthread_mutex_unlock(&lock);
-}
-
 /* Processes. */
 
 void adapter_end(Adapter *adapter) {
@@ -122,18 +99,6 @@ static void end_all(void) {
         notes = note->next;
         free(note);
     }
-}
-
-static Adapter *take_from_pool(const char *key) {
-    pthread_mutex_lock(&lock);
-    if (owner == 0) atexit(end_all);
-    owner = getpid();
-    Adapter **at = &pool;
-    while (*at != NULL && strcmp((*at)->key, key) != 0) at = &(*at)->next;
-    Adapter *adapter = *at;
-    if (adapter != NULL) *at = adapter->next;
-    pthread_mutex_unlock(&lock);
-    return adapter;
 }
 
 void adapter_give(Adapter *adapter) {
@@ -168,16 +133,6 @@ static void print_hello(FILE *out, const void *context) {
     json_end(&json);
 }
 
-/* What programs answer, and the method that takes it. */
-static bool check_answers(Adapter *adapter, const MethodDescription *method, const char *answers) {
-    const bool states = strcmp(answers, "states") == 0;
-    if (!states && strcmp(answers, "impulses") != 0)
-        return adapter_failed(adapter, "answers '%s'; known: states, impulses", answers);
-    if (!states && adapter->binary) return adapter_failed(adapter, "wants the form 'binary'; impulses have: json");
-    return states == method->whole_scenes ||
-           adapter_failed(adapter, "answers %s, which '%s:PROGRAM' takes", answers, states ? "exec" : "exec-solver");
-}
-
 static bool read_hello(Adapter *adapter, const MethodDescription *method, const char *line) {
     char key[32], form[16] = "json", answers[16] = "states", message[200] = "";
     ProgramName program = {"", ""};
@@ -204,8 +159,22 @@ static bool read_hello(Adapter *adapter, const MethodDescription *method, const 
     adapter->binary = strcmp(form, "binary") == 0;
     if (!adapter->binary && strcmp(form, "json") != 0)
         return adapter_failed(adapter, "wants the form '%s'; known: json, binary", form);
-    if (!check_answers(adapter, method, answers)) return false;
-    keep_note(adapter->key, &program);
+    const bool states = strcmp(answers, "states") == 0;
+    if (!states && strcmp(answers, "impulses") != 0)
+        return adapter_failed(adapter, "answers '%s'; known: states, impulses", answers);
+    if (!states && adapter->binary) return adapter_failed(adapter, "wants the form 'binary'; impulses have: json");
+    if (states != method->whole_scenes)
+        return adapter_failed(adapter, "answers %s, which '%s:PROGRAM' takes", answers,
+                              states ? "exec" : "exec-solver");
+    pthread_mutex_lock(&lock);
+    Note *note = find_note(adapter->key);
+    if (note == NULL && (note = calloc(1, sizeof *note)) != NULL) {
+        snprintf(note->key, sizeof note->key, "%s", adapter->key);
+        note->next = notes;
+        notes = note;
+    }
+    if (note != NULL) note->name = program;
+    pthread_mutex_unlock(&lock);
     return true;
 }
 
@@ -220,49 +189,56 @@ static bool greet(Adapter *adapter, const Greeting *greeting, double until) {
                         : adapter_failed(adapter, "%s", adapter->talk.why);
 }
 
-/* argv of the words, which are ended by NUL in *text. */
-static bool adapter_split(char *text, const char *argv[WORDS_MAX + 1]) {
-    int count = 0;
-    char *rest = text;
-    for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL;) {
-        if (count == WORDS_MAX) return false;
-        argv[count++] = word;
+Adapter *adapter_take(const MethodDescription *method, const Settings *settings, double seconds, char why[],
+                      size_t size) {
+    char key[ADAPTER_KEY_SIZE], program[SETTING_VALUE_SIZE], named[ADAPTER_KEY_SIZE];
+    make_key(key, method, settings);
+    snprintf(program, sizeof program, "%s", settings_get(settings, "program"));
+    /* Alone or in a list of an option. */
+    const size_t length = (size_t)snprintf(named, sizeof named, "%s:%s", method->name, program);
+    bool is_allowed = false;
+    for (size_t i = 0; i < allowed_count; i++)
+        for (const char *at = strstr(allowed[i], named); at != NULL; at = strstr(at + 1, named))
+            is_allowed |=
+                (at == allowed[i] || at[-1] == ',') && (at[length] == '\0' || strchr(",:", at[length]) != NULL);
+    if (!is_allowed) {
+        snprintf(why, size, "is not started, as the command line does not name it: only a file does");
+        return NULL;
     }
-    argv[count] = NULL;
-    return count > 0;
-}
-
-static Adapter *adapter_start(const Greeting *greeting, const char *key, double seconds, char why[], size_t size) {
-    char program[SETTING_VALUE_SIZE];
+    /* One that runs already. */
+    for (;;) {
+        pthread_mutex_lock(&lock);
+        if (owner == 0) atexit(end_all);
+        owner = getpid();
+        Adapter **at = &pool;
+        while (*at != NULL && strcmp((*at)->key, key) != 0) at = &(*at)->next;
+        Adapter *adapter = *at;
+        if (adapter != NULL) *at = adapter->next;
+        pthread_mutex_unlock(&lock);
+        if (adapter == NULL) break;
+        if (talk_is_quiet(&adapter->talk)) return adapter;
+        adapter_end(adapter);
+    }
+    /* A new one; argv: its words. */
     const char *argv[WORDS_MAX + 1];
+    int words = 0;
+    char *rest = program;
+    for (char *word; words <= WORDS_MAX && (word = strtok_r(rest, " ", &rest)) != NULL;) argv[words++] = word;
     Adapter *adapter = calloc(1, sizeof *adapter);
-    snprintf(program, sizeof program, "%s", settings_get(greeting->settings, "program"));
-    if (adapter == NULL || !adapter_split(program, argv)) {
+    if (adapter == NULL || words == 0 || words > WORDS_MAX) {
         snprintf(why, size, adapter == NULL ? "out of memory" : "has no words, or more than %d", WORDS_MAX);
         free(adapter);
         return NULL;
     }
+    argv[words] = NULL;
     snprintf(adapter->key, sizeof adapter->key, "%s", key);
     if (!talk_start(&adapter->talk, argv)) {
         snprintf(why, size, "%s", adapter->talk.why);
         free(adapter);
         return NULL;
     }
-    if (greet(adapter, greeting, clock_seconds() + seconds)) return adapter;
+    if (greet(adapter, &(Greeting){method, settings}, clock_seconds() + seconds)) return adapter;
     snprintf(why, size, "%s", adapter->why);
     adapter_end(adapter);
     return NULL;
-}
-
-Adapter *adapter_take(const MethodDescription *method, const Settings *settings, double seconds, char why[],
-                      size_t size) {
-    char key[ADAPTER_KEY_SIZE];
-    make_key(key, method, settings);
-    if (!is_allowed(method->name, settings_get(settings, "program"))) {
-        snprintf(why, size, "is not started, as the command line does not name it: only a file does");
-        return NULL;
-    }
-    for (Adapter *adapter; (adapter = take_from_pool(key)) != NULL; adapter_end(adapter))
-        if (talk_is_quiet(&adapter->talk)) return adapter;
-    return adapter_start(&(Greeting){method, settings}, key, seconds, why, size);
 }

@@ -5,7 +5,6 @@
 
 #include "base/base.h"
 #include "base/machine.h"
-#include "methods/adapter_internal.h"
 
 #include <ctype.h>
 #include <locale.h>
@@ -38,7 +37,7 @@ _Static_assert(sizeof(RequestHead) == 36 && sizeof(FrameHead) == 24, "no padding
 
 static void skip_space(const char **at) { *at += strspn(*at, " \t\r"); }
 
-static bool adapter_protocol_take(const char **at, char c) {
+static bool take(const char **at, char c) {
     skip_space(at);
     if (**at != c) return false;
     ++*at;
@@ -78,7 +77,7 @@ static bool take_escape(const char **at, uint32_t *character) {
 
 bool line_take_text(const char **at, char *text, size_t size) {
     size_t length = 0;
-    if (!adapter_protocol_take(at, '"')) return false;
+    if (!take(at, '"')) return false;
     for (; **at != '"';) {
         char bytes[4] = {**at};
         size_t count = 1;
@@ -108,12 +107,11 @@ bool line_take_number(const char **at, double *number) {
 }
 
 bool line_take_key(const char **at, bool first, char *key, size_t size) {
-    return adapter_protocol_take(at, first ? '{' : ',') && line_take_text(at, key, size) &&
-           adapter_protocol_take(at, ':');
+    return take(at, first ? '{' : ',') && line_take_text(at, key, size) && take(at, ':');
 }
 
 bool line_take_end(const char **at) {
-    const bool end = adapter_protocol_take(at, '}');
+    const bool end = take(at, '}');
     skip_space(at);
     return end && **at == '\0';
 }
@@ -126,18 +124,14 @@ bool adapter_failed(Adapter *adapter, const char *format, ...) {
     return false;
 }
 
-const char *adapter_why(const Adapter *adapter) { return adapter->why; }
-
-int adapter_frames_left(const Adapter *adapter) { return adapter->left; }
-
 bool adapter_not_understood(Adapter *adapter, const char *what, const char *line) {
     return adapter_failed(adapter, "%s is not as it should be: '%.60s%s'", what, line, strlen(line) > 60 ? "..." : "");
 }
 
 /* Requests. */
 
-static bool adapter_protocol_put(Adapter *adapter, const char *format, ...) PRINTF_LIKE(2, 3);
-static bool adapter_protocol_put(Adapter *adapter, const char *format, ...) {
+static bool put(Adapter *adapter, const char *format, ...) PRINTF_LIKE(2, 3);
+static bool put(Adapter *adapter, const char *format, ...) {
     enum { MOST = 256 };
     va_list list;
     if (!array_reserve((void **)&adapter->request, &adapter->request_capacity, adapter->request_size + MOST, 1))
@@ -167,25 +161,23 @@ static void list_numbers(const BodyDef *body, float numbers[BODY_NUMBERS]) {
 /* The numbers of an item of an array, behind its "[" and perhaps others. */
 static bool put_numbers(Adapter *adapter, const float *numbers, int count, bool first) {
     for (int i = 0; i < count; i++)
-        if (!adapter_protocol_put(adapter, "%s%.9g", i > 0 || !first ? ", " : "", (double)numbers[i])) return false;
-    return adapter_protocol_put(adapter, "]");
-}
-
-static bool put_text_body(Adapter *adapter, const BodyDef *body, bool first) {
-    float numbers[BODY_NUMBERS];
-    list_numbers(body, numbers);
-    return adapter_protocol_put(adapter, first ? "[" : ", [") && put_numbers(adapter, numbers, BODY_NUMBERS, true);
+        if (!put(adapter, "%s%.9g", i > 0 || !first ? ", " : "", (double)numbers[i])) return false;
+    return put(adapter, "]");
 }
 
 static bool put_text(Adapter *adapter, const AdapterRequest *request) {
-    bool done = adapter_protocol_put(adapter, "{\"scene\": %u, \"frame\": %d, ", adapter->scene, request->frame);
+    bool done = put(adapter, "{\"scene\": %u, \"frame\": %d, ", adapter->scene, request->frame);
     if (request->frame == 0)
-        done = done && adapter_protocol_put(adapter, "\"gravity\": [%.9g, %.9g], \"dt\": %.9g, \"iterations\": %d, ",
-                                            (double)request->gravity.x, (double)request->gravity.y, (double)request->dt,
-                                            request->iterations);
-    done = done && adapter_protocol_put(adapter, "\"remove\": %d, \"add\": [", request->removed);
-    for (int i = 0; done && i < request->added; i++) done = put_text_body(adapter, &request->add[i], i == 0);
-    return done && adapter_protocol_put(adapter, "], \"steps\": %d}\n", request->steps);
+        done = done &&
+               put(adapter, "\"gravity\": [%.9g, %.9g], \"dt\": %.9g, \"iterations\": %d, ", (double)request->gravity.x,
+                   (double)request->gravity.y, (double)request->dt, request->iterations);
+    done = done && put(adapter, "\"remove\": %d, \"add\": [", request->removed);
+    for (int i = 0; done && i < request->added; i++) {
+        float numbers[BODY_NUMBERS];
+        list_numbers(&request->add[i], numbers);
+        done = put(adapter, i == 0 ? "[" : ", [") && put_numbers(adapter, numbers, BODY_NUMBERS, true);
+    }
+    return done && put(adapter, "], \"steps\": %d}\n", request->steps);
 }
 
 static bool put_binary(Adapter *adapter, const AdapterRequest *request) {
@@ -207,32 +199,44 @@ static bool put_binary(Adapter *adapter, const AdapterRequest *request) {
 }
 
 static bool put_problem(Adapter *adapter, const ContactProblem *problem) {
-    bool done = adapter_protocol_put(adapter, "{\"problem\": %u, \"dt\": %.9g, \"bodies\": [", adapter->scene,
-                                     (double)problem->dt);
+    bool done = put(adapter, "{\"problem\": %u, \"dt\": %.9g, \"bodies\": [", adapter->scene, (double)problem->dt);
     for (int i = 0; done && i < problem->body_count; i++) {
         const ProblemBody *b = &problem->bodies[i];
         const float numbers[PROBLEM_BODY_NUMBERS] = {b->inv_mass,   b->inv_inertia,     b->size.x, b->size.y,
                                                      b->position.x, b->position.y,      b->angle,  b->velocity.x,
                                                      b->velocity.y, b->angular_velocity};
-        done = adapter_protocol_put(adapter, i > 0 ? ", [" : "[") &&
-               put_numbers(adapter, numbers, PROBLEM_BODY_NUMBERS, true);
+        done = put(adapter, i > 0 ? ", [" : "[") && put_numbers(adapter, numbers, PROBLEM_BODY_NUMBERS, true);
     }
-    done = done && adapter_protocol_put(adapter, "], \"contacts\": [");
+    done = done && put(adapter, "], \"contacts\": [");
     for (int i = 0; done && i < problem->contact_count; i++) {
         const ContactPoint *c = &problem->contacts[i];
         const float numbers[CONTACT_NUMBERS] = {c->normal.x, c->normal.y,    c->arm_a.x,     c->arm_a.y,
                                                 c->arm_b.x,  c->arm_b.y,     c->separation,  c->friction,
                                                 c->bias,     c->warm_normal, c->warm_tangent};
-        done = adapter_protocol_put(adapter, "%s[%d, %d", i > 0 ? ", " : "", c->a, c->b) &&
+        done = put(adapter, "%s[%d, %d", i > 0 ? ", " : "", c->a, c->b) &&
                put_numbers(adapter, numbers, CONTACT_NUMBERS, false);
     }
-    return done && adapter_protocol_put(adapter, "]}\n");
+    return done && put(adapter, "]}\n");
 }
 
-/* With the C locale's decimal point; one of the two. */
-static bool put_request(Adapter *adapter, const AdapterRequest *request, const ContactProblem *problem) {
-    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (c == (locale_t)0) return adapter_failed(adapter, "cannot be asked: out of memory");
+bool adapter_ask(Adapter *adapter, const AdapterRequest *request, double until) {
+    const ContactProblem *problem = request->problem;
+    if (problem != NULL || request->frame == 0) {
+        adapter->scene++;
+        adapter->bodies = 0;
+    }
+    adapter->contacts = problem != NULL ? problem->contact_count : -1;
+    adapter->bodies += request->added - request->removed;
+    adapter->frame = request->frame;
+    adapter->left = problem != NULL ? 1 : request->steps;
+    const size_t answers =
+        problem != NULL ? 2 * (size_t)problem->contact_count : (size_t)adapter->bodies * ADAPTER_NUMBERS;
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0); /* with its decimal point */
+    if (c == (locale_t)0 ||
+        !array_reserve((void **)&adapter->numbers, &adapter->number_capacity, answers + 1, sizeof *adapter->numbers)) {
+        if (c != (locale_t)0) freelocale(c);
+        return adapter_failed(adapter, "cannot be asked: out of memory");
+    }
     locale_t before = uselocale(c);
     adapter->request_size = 0;
     const bool done = problem != NULL   ? put_problem(adapter, problem)
@@ -240,33 +244,11 @@ static bool put_request(Adapter *adapter, const AdapterRequest *request, const C
                                         : put_text(adapter, request);
     uselocale(before);
     freelocale(c);
-    return done;
-}
-
-/* Room for an answer. */
-static bool reserve_numbers(Adapter *adapter, size_t count) {
-    return array_reserve((void **)&adapter->numbers, &adapter->number_capacity, count + 1, sizeof *adapter->numbers) ||
-           adapter_failed(adapter, "cannot be asked: out of memory");
-}
-
-static bool send_request(Adapter *adapter, const AdapterRequest *request, const ContactProblem *problem, double until) {
+    if (!done) return false;
     if (adapter->talk.begin < adapter->talk.end)
         return adapter_failed(adapter, "has written more than it was asked for");
-    return put_request(adapter, request, problem) &&
-           (talk_send(&adapter->talk, adapter->request, adapter->request_size, until) ||
-            adapter_failed(adapter, "%s", adapter->talk.why));
-}
-
-bool adapter_ask(Adapter *adapter, const AdapterRequest *request, double until) {
-    if (request->frame == 0) {
-        adapter->scene++;
-        adapter->bodies = 0;
-    }
-    adapter->bodies += request->added - request->removed;
-    adapter->frame = request->frame;
-    adapter->left = request->steps;
-    return reserve_numbers(adapter, (size_t)adapter->bodies * ADAPTER_NUMBERS) &&
-           send_request(adapter, request, NULL, until);
+    return talk_send(&adapter->talk, adapter->request, adapter->request_size, until) ||
+           adapter_failed(adapter, "%s", adapter->talk.why);
 }
 
 /* Answers. */
@@ -291,9 +273,8 @@ typedef struct Answer {
 static bool take_numbers(Adapter *adapter, const AnswerForm *form, int items, const char **at) {
     const int wanted = items * form->each;
     int count = 0;
-    if (!adapter_protocol_take(at, '['))
-        return adapter_failed(adapter, "has not answered with an array of %s", form->key);
-    for (bool more = !adapter_protocol_take(at, ']'); more; count++) {
+    if (!take(at, '[')) return adapter_failed(adapter, "has not answered with an array of %s", form->key);
+    for (bool more = !take(at, ']'); more; count++) {
         const char *name = form->names[count % form->each];
         double number;
         skip_space(at);
@@ -302,8 +283,8 @@ static bool take_numbers(Adapter *adapter, const AnswerForm *form, int items, co
             return adapter_failed(adapter, "%s %d: its %s is no finite number: '%.*s'", form->item, count / form->each,
                                   name, (int)strcspn(text, ",] "), text);
         if (count < wanted) adapter->numbers[count] = (float)number;
-        more = adapter_protocol_take(at, ',');
-        if (!more && !adapter_protocol_take(at, ']'))
+        more = take(at, ',');
+        if (!more && !take(at, ']'))
             return adapter_failed(adapter, "%s %d: no ',' or ']' behind its %s", form->item, count / form->each, name);
     }
     if (count == wanted) return true;
@@ -340,26 +321,25 @@ static bool take_line(Adapter *adapter, const AnswerForm *form, int items, const
     return (line_take_end(&at) && found) || adapter_not_understood(adapter, "its answer", line);
 }
 
-static bool read_line(Adapter *adapter, const AnswerForm *form, int items, Answer *answer, double until) {
-    *answer = (Answer){-1, -1, -1, -1};
+/* An answer as a line of JSON. */
+static bool read_text(Adapter *adapter, int64_t *ns, double until) {
+    const bool solves = adapter->contacts >= 0;
+    const AnswerForm *form = solves ? &impulses : &states;
+    const int items = solves ? adapter->contacts : adapter->bodies;
+    Answer answer = {-1, -1, -1, -1};
     const char *line = talk_line(&adapter->talk, 256 + NUMBER_MAX * (size_t)(form->each * items), until);
     if (line == NULL) return adapter_failed(adapter, "%s", adapter->talk.why);
     locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (c == (locale_t)0) return adapter_failed(adapter, "cannot be read: out of memory");
     locale_t before = uselocale(c);
-    const bool done = take_line(adapter, form, items, line, answer);
+    const bool done = take_line(adapter, form, items, line, &answer);
     uselocale(before);
     freelocale(c);
-    return done;
-}
-
-static int64_t whole_ns(double ns) { return ns > 0 && ns < 1e18 ? (int64_t)ns : 0; }
-
-static bool read_text(Adapter *adapter, int64_t *ns, double until) {
-    Answer answer;
-    if (!read_line(adapter, &states, adapter->bodies, &answer, until)) return false;
-    *ns = whole_ns(answer.ns);
-    return check_place(adapter, answer.scene, answer.frame);
+    if (!done) return false;
+    *ns = answer.ns > 0 && answer.ns < 1e18 ? (int64_t)answer.ns : 0;
+    if (!solves) return check_place(adapter, answer.scene, answer.frame);
+    return answer.problem == adapter->scene ||
+           adapter_failed(adapter, "has answered problem %.9g; problem %u was asked", answer.problem, adapter->scene);
 }
 
 static bool read_binary(Adapter *adapter, int64_t *ns, double until) {
@@ -384,23 +364,8 @@ static bool read_binary(Adapter *adapter, int64_t *ns, double until) {
 
 bool adapter_read(Adapter *adapter, AdapterFrame *frame, double until) {
     adapter->frame++;
-    *frame = (AdapterFrame){.states = adapter->numbers};
+    *frame = (AdapterFrame){.numbers = adapter->numbers};
     if (!(adapter->binary ? read_binary : read_text)(adapter, &frame->ns, until)) return false;
     adapter->left--;
-    return true;
-}
-
-bool adapter_solve(Adapter *adapter, const ContactProblem *problem, ContactImpulse *solved, int64_t *ns, double until) {
-    const int count = problem->contact_count;
-    Answer answer;
-    adapter->scene++;
-    if (!reserve_numbers(adapter, 2 * (size_t)count) || !send_request(adapter, NULL, problem, until) ||
-        !read_line(adapter, &impulses, count, &answer, until))
-        return false;
-    if (answer.problem != adapter->scene)
-        return adapter_failed(adapter, "has answered problem %.9g; problem %u was asked", answer.problem,
-                              adapter->scene);
-    for (int i = 0; i < count; i++) solved[i] = (ContactImpulse){adapter->numbers[2 * i], adapter->numbers[2 * i + 1]};
-    *ns = whole_ns(answer.ns);
     return true;
 }
