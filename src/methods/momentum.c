@@ -7,8 +7,7 @@
    is where sweep s + 1 begins; the sweep projects the impulses back into their cones. Source: Nesterov, "A Method of
    Solving a Convex Programming Problem with Convergence Rate O(1/k^2)" (1983); for contacts Mazhar, Heyn, Negrut,
    Tasora, "Using Nesterov's Method to Accelerate Multibody Dynamics with Friction and Contact" (2015), with full
-   gradient steps in place of sweeps. Sweeps visit contacts in the order of colours: as accurate, and faster
-   (tests/bench/colours).
+   gradient steps in place of sweeps. Sweeps visit contacts in the order of colours: as accurate, and faster.
 
    Extrapolation can carry impulses past the solution for ever. It even makes errors grow where boxes slide: there
    friction follows the normal impulse and acts on the normal velocity, too, so a visit overshoots, by a share e of the

@@ -100,34 +100,6 @@ static void expect_refused(const Example *example, int frame, const char *scene,
         expect_refused(&example, 1, "stack", reason); \
     } while (0)
 
-TEST(bad_heads_are_refused) {
-    REFUSE(problem.dt, 0, "dt must be finite and greater than 0 (got 0)");
-    REFUSE(problem.dt, -1, "dt must be");
-    REFUSE(problem.dt, NAN, "dt must be");
-    REFUSE(problem.fall, -1, "fall must be finite and not negative (got -1)");
-    REFUSE(problem.fall, INFINITY, "fall must be");
-    REFUSE(problem.bomb, 3, "the bomb is body 3 of 3");
-    REFUSE(problem.bomb, -2, "the bomb is body -2 of 3");
-    REFUSE(problem.body_count, 0, "0 bodies");
-    Example example;
-    make_example(&example);
-    expect_refused(&example, 0, "stack", "frame must be at least 1 (got 0)");
-    expect_refused(&example, 1, "st\033[2Jack", "control character U+001B");
-}
-
-TEST(bad_bodies_are_refused) {
-    REFUSE(bodies[1].position.y, INFINITY, "position[1] is not finite");
-    REFUSE(bodies[2].angle, NAN, "angle[2] is not finite");
-    REFUSE(bodies[2].velocity.x, NAN, "velocity[2] is not finite");
-    REFUSE(bodies[2].angular_velocity, -INFINITY, "angular_velocity[2] is not finite");
-    REFUSE(bodies[0].size.x, 0, "body 0: its size must be greater than 0 (got 0 x 20)");
-    REFUSE(bodies[1].size.y, -1, "body 1: its size");
-    REFUSE(bodies[1].inv_mass, -1, "body 1: inverse mass and inertia");
-    REFUSE(bodies[1].inv_mass, 0, "body 1: inverse mass and inertia");
-    REFUSE(bodies[1].inv_inertia, 0, "body 1: inverse mass and inertia");
-    REFUSE(bodies[1].inv_inertia, -1, "body 1: inverse mass and inertia");
-}
-
 TEST(bad_contacts_are_refused) {
     REFUSE(contacts[0].a, -1, "contact 0: bodies -1 and 1 are not a valid pair");
     REFUSE(contacts[0].a, 1, "contact 0: bodies 1 and 1 are not a valid pair");

@@ -3,7 +3,6 @@
    graphs of up to 128 nodes and larger ones. */
 #include "owned.h"
 
-#include "base/hash.h"
 #include "methods/block_lu.h"
 
 enum { NODES_MAX = 20000, EDGES_MAX = 3 * NODES_MAX };
@@ -92,18 +91,6 @@ TEST(walls_fill_in_little) {
         int log2_of_side = 0;
         while (1 << log2_of_side < side) log2_of_side++;
         assert_true(lu.below < 8 * side * side * log2_of_side);
-    }
-}
-
-/* Bits of solutions depend on the order. */
-TEST(the_order_of_a_wall_is_the_same_everywhere) {
-    static const struct {
-        int side;
-        uint64_t hash;
-    } walls[] = {{10, UINT64_C(0x5aa126d689aabc27)}, {40, UINT64_C(0xb2cd2974447f7ab2)}};
-    for (size_t i = 0; i < 2; i++) {
-        OWN(BlockLu) lu = analysed(walls[i].side * walls[i].side, make_wall(walls[i].side));
-        assert_int_equal(hash_xxh3(lu.position, (size_t)lu.count * sizeof *lu.position), walls[i].hash);
     }
 }
 

@@ -5,7 +5,6 @@
 #include "random_problem.h"
 #include "reference_worlds.h"
 
-#include "base/hash.h"
 #include "methods/interior_point_internal.h"
 #include "methods/reference.h"
 #include "methods/sweeps.h"
@@ -172,20 +171,6 @@ TEST(momentum_is_exact) {
     for (int k = 0; k < 2; k++) assert_near(after[k], before[k], rounding);
 }
 
-static uint64_t bits_of_a_run(int steps) {
-    OWN(World) *world = make_struck_pyramid(0);
-    OWN(ContactSolver) solver = make_solver(&solver_interior, "");
-    run(world, &solver, steps);
-    const uint64_t hash = hash_xxh3(world_bodies(world), (size_t)world_body_count(world) * sizeof *world_bodies(world));
-    return hash;
-}
-
-/* Made by this test; any processor and compiler must give it. */
-TEST(a_run_has_these_bits) {
-    const uint64_t expected = UINT64_C(0xc3f2278f4da29488), found = bits_of_a_run(60);
-    if (found != expected) fail_msg("%016llx", (unsigned long long)found);
-}
-
 static const InteriorAttempt quick = {&interior_quick, 1e-3, 1e6, 100}, gentle = {&interior_gentle, 1e-7, 1e6, 100};
 
 static void kernels_agree(const ContactProblem *problem) {
@@ -271,23 +256,6 @@ TEST(without_contacts_bodies_keep_their_velocities) {
     solve_with(&solver_interior, "", &problem, &found);
     const BodyVelocity expected = {{1, 2}, 3};
     assert_memory_equal(&found.velocities[0], &expected, sizeof expected);
-    assert_int_equal(found.fallbacks.by_sweeps, 0);
-}
-
-/* No impulse could change anything between static bodies: they are left out of the matrix and of the residual. */
-TEST(two_static_bodies_are_no_obstacle) {
-    const ProblemBody bodies[] = {
-        {.velocity = {0, 0}}, {.velocity = {0, -1}}, {.inv_mass = 1, .inv_inertia = 6, .velocity = {0, -1}}};
-    ContactPoint contacts[] = {
-        {.a = 0, .b = 1, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1},
-        {.a = 0, .b = 2, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1, .friction = 0.5f}};
-    const ContactProblem problem = {
-        .body_count = 3, .contact_count = 2, .bomb = -1, .dt = world_dt, .bodies = bodies, .contacts = contacts};
-    OWN(ContactSolution) found = make_solution(&problem);
-    solve_with(&solver_interior, "near=1e-6", &problem, &found);
-    assert_near(found.velocities[1].linear.y, -1, 0);
-    assert_near(found.velocities[2].linear.y, 0, 1e-5);
-    assert_near(found.impulses[1].normal, 1, 1e-5);
     assert_int_equal(found.fallbacks.by_sweeps, 0);
 }
 

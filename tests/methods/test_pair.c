@@ -154,21 +154,4 @@ TEST(net_changes_are_those_of_the_bodies) {
     for (int i = 0; i < PAIR_CHANGES; i++) assert_near(changes[i], turned[i], 1e-6);
 }
 
-/* As many names as numbers, and none where a view and a target do not go together. */
-TEST(outputs_have_names) {
-    assert_string_equal(pair_output_names(PAIR_RELATIVE, TARGET_NET, 2), "dvx dvy");
-    assert_string_equal(pair_output_names(PAIR_CONTACT, TARGET_IMPULSE, 2), "dvn dvt");
-    assert_string_equal(pair_output_names(PAIR_RAW, TARGET_PAIR, 6), "dvxa dvya dwa dvxb dvyb dwb");
-    assert_string_equal(pair_output_names(PAIR_NEIGHBOURS, TARGET_PAIR, 6), "dvna dvta dwa dvnb dvtb dwb");
-    assert_string_equal(pair_output_names(PAIR_NEIGHBOURS, TARGET_POINTS, 4), "dpn1 dpt1 dpn2 dpt2");
-    assert_null(pair_output_names(PAIR_RELATIVE, TARGET_POINTS, 4));
-    assert_null(pair_output_names(PAIR_CONTACT, TARGET_POINTS, 6));
-    assert_null(pair_output_names(PAIR_CONTACT, TARGET_PAIR, 4));
-    for (PairView v = 0; v < PAIR_VIEWS; v++) {
-        int names = 1;
-        for (const char *c = pair_views[v].inputs; *c != '\0'; c++) names += *c == ' ';
-        assert_int_equal(names, pair_views[v].count);
-    }
-}
-
 RUN_TESTS(NULL, NULL)

@@ -208,22 +208,4 @@ TEST(a_settled_stack_steps_without_allocating) {
     }
 }
 
-/* Two seconds of the stack and its bomb. What these files gave when they were written, on x86-64 by gcc 12 at -O0 and
-   -O3: a compiler that contracts or reorders an operation gives other bits. */
-TEST(bits_are_the_same_everywhere) {
-    const uint64_t expected[METHOD_COUNT] = {UINT64_C(0xbf8ab3dd7e02be9c), UINT64_C(0xeb38030727d78ebe),
-                                             UINT64_C(0x24b6d9b9840c8bc3), UINT64_C(0x59f679881e32cf76),
-                                             UINT64_C(0x51893c3f308effff)};
-    bool same = true;
-    Scene *scene = scene_named("stack");
-    for (int m = 0; m < METHOD_COUNT; m++) {
-        OWN(World) *world = run(scene, methods[m], 120);
-        uint64_t hash = state_hash(world);
-        same &= hash == expected[m];
-        if (hash != expected[m]) print_error("%s: hash of the state: %016llx\n", methods[m], (unsigned long long)hash);
-    }
-    scene_destroy(scene);
-    assert_true(same);
-}
-
 RUN_TESTS(NULL, NULL)

@@ -73,42 +73,6 @@ static NetArrays two_slots(void) {
     return read_arrays(path);
 }
 
-TEST(every_array_is_needed_and_checked) {
-    SceneNet *network = example();
-    const char *path = temporary_path("net.npz");
-    assert_ok(scene_net_write(network, path, &error), error);
-    scene_net_destroy(network);
-    size_t size;
-    FREED char *bytes = read_whole(path, &size);
-    assert_file_is_checked(is_read, path, "scene-net", SCENE_NET_NETWORK_VERSION);
-    bytes[size / 2] ^= 1; /* inside a matrix */
-    refuse_file(is_read, write_bytes(temporary_path("flipped.npz"), bytes, size), "damaged");
-}
-
-TEST(numbers_out_of_range_are_refused) {
-    OWN(SceneNet) *network = example();
-    const char *path = temporary_path("bad.npz");
-    struct {
-        float *number, bad;
-        const char *text;
-    } cases[] = {{&network->bomb_state.centre[1], INFINITY, "bomb_state_centre: number 1 is inf"},
-                 {&network->state.rows[0], -INFINITY, "state_rows: number 0 is -inf"},
-                 {&network->scale[0], -1e-30f, "scale: number 0 is -1e-30; it must be finite and not negative"},
-                 {&network->cap[5], -1, "cap: number 5 is -1"},
-                 {&network->cap[5], INFINITY, "cap: number 5 is inf"},
-                 {&network->bomb_inv_mass, -1, "bomb_inv_mass: number 0 is -1"},
-                 {&network->gate, -0.5f, "gate: number 0 is -0.5"},
-                 {&network->factors[1], -0.1f, "factors: number 1 is -0.1; it must be from 0 to 2"},
-                 {&network->factors[2], 2.1f, "factors: number 2 is 2.1"}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const float kept = *cases[i].number;
-        *cases[i].number = cases[i].bad;
-        assert_ok(scene_net_write(network, path, &error), error);
-        *cases[i].number = kept;
-        refuse_file(is_read, path, cases[i].text);
-    }
-}
-
 TEST(sizes_and_slots_out_of_bounds_are_refused) {
     static const int32_t itself[2] = {1, 1}, beyond[2] = {1, 2}, falls[2] = {0, -1};
     static const uint32_t twice[2] = {4, 4};
@@ -163,27 +127,6 @@ static void refuse_shapes(const Change *changes, size_t count, const char *text)
     assert_ok(npz_write(path, arrays.items, arrays.count, &error), error);
     refuse_file(is_read, path, text);
     free_arrays(&arrays);
-}
-
-/* Sizes that agree with each other and are refused all the same, before room is made for what they would need. */
-TEST(absurd_sizes_are_refused) {
-    const int64_t many = SLOTS_MAX + 1, wide = SCENE_NET_WIDTH_MAX + ROW_LANES;
-    const Change no_slots[] = {{"slot_a", {0}},        {"slot_b", {0}},           {"slot_feature", {0}},
-                               {"last_rows", {0, 32}}, {"present_rows", {0, 16}}, {"warm_rows", {0, 16}}},
-                 endless[] = {{"slot_a", {0}}, {"present_rows", {0, INT64_C(1) << 31}}};
-    const struct {
-        Change change;
-        const char *text;
-    } cases[] = {{{"slot_a", {many}}, "20001 slots"},
-                 {{"slot_a", {SLOTS_MAX}}, "array 'present_rows' has shape (2, 16); expected (20000, up to 1024)"},
-                 {{"state_rows", {6, wide}}, "array 'state_rows' has shape (6, 1040)"},
-                 {{"last_rows", {4, wide}}, "array 'last_rows'"},
-                 {{"present_rows", {2, 1 << 20}}, "array 'present_rows'"},
-                 {{"warm_rows", {4, 0}}, "a width"},
-                 {{"warm_rows", {4, 24}}, "a width"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) refuse_shapes(&cases[i].change, 1, cases[i].text);
-    refuse_shapes(no_slots, 6, "0 slots");
-    refuse_shapes(endless, 2, "present_rows");
 }
 
 RUN_TESTS(NULL, NULL)
