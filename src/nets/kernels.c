@@ -29,20 +29,17 @@ PackedRows packed_rows_in(void *block, int count, int width) {
     return (PackedRows){count, width, block != NULL ? (int8_t *)((float *)block + count) : NULL, block};
 }
 
-static float largest(const float *row, int width) {
-    float most = 0;
-    for (int i = 0; i < width; i++) most = fabsf(row[i]) > most ? fabsf(row[i]) : most;
-    return most;
-}
-
-static int8_t nearest(float number) { return (int8_t)(number + (number < 0 ? -0.5f : 0.5f)); }
-
 void packed_rows_fill(PackedRows *packed, const float *rows) {
     for (int64_t i = 0; i < packed->count; i++) {
         const float *row = rows + i * packed->width;
         int8_t *numbers = packed->numbers + i * packed->width;
-        const float most = largest(row, packed->width), steps = most > nothing ? STEPS / most : 0;
+        float most = 0;
+        for (int k = 0; k < packed->width; k++) most = fabsf(row[k]) > most ? fabsf(row[k]) : most;
+        const float steps = most > nothing ? STEPS / most : 0;
         packed->units[i] = most > nothing ? most / STEPS : 0;
-        for (int k = 0; k < packed->width; k++) numbers[k] = nearest(row[k] * steps);
+        for (int k = 0; k < packed->width; k++) {
+            const float number = row[k] * steps;
+            numbers[k] = (int8_t)(number + (number < 0 ? -0.5f : 0.5f)); /* the nearest */
+        }
     }
 }

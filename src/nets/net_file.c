@@ -67,20 +67,17 @@ bool net_fields_read(NpzFile *file, const NetField *fields, int count, Error *er
     return true;
 }
 
-static bool read_net(const NetFileKind *kind, void *net, NpzFile *file, Error *error) {
-    NetField fields[NET_FIELDS_MAX];
-    if (!npz_check_kind(file, kind->name, kind->version, error) ||
-        (kind->read_sizes != NULL && !kind->read_sizes(net, file, error)) ||
-        !expect(file, fields, kind->list(net, fields), error) || (kind->create != NULL && !kind->create(net, error)))
-        return false;
-    return net_fields_read(file, fields, kind->list(net, fields), error) &&
-           (kind->check == NULL || kind->check(net, npz_path(file), error));
-}
-
 bool net_file_read(const NetFileKind *kind, void *net, const char *path, Error *error) {
     NpzFile *file = npz_open(path, error);
     if (file == NULL) return false;
-    const bool ok = read_net(kind, net, file, error);
+    NetField fields[NET_FIELDS_MAX];
+    bool ok = npz_check_kind(file, kind->name, kind->version, error) &&
+              (kind->read_sizes == NULL || kind->read_sizes(net, file, error)) &&
+              expect(file, fields, kind->list(net, fields), error) &&
+              (kind->create == NULL || kind->create(net, error));
+    /* Where the arrays are. */
+    ok = ok && net_fields_read(file, fields, kind->list(net, fields), error) &&
+         (kind->check == NULL || kind->check(net, npz_path(file), error));
     npz_close(file);
     return ok;
 }

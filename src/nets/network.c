@@ -50,16 +50,6 @@ double network_block_dot(const double *a, const double *b) { return kernels_best
 
 /* Networks in memory, and inference with a fixed order of summation. */
 
-static bool check_widths(int layers, const int *widths, Error *error) {
-    if (layers < 1 || layers > NETWORK_MAX_LAYERS)
-        return error_input(error, "network", "%d layers of weights; expected 1 to %d", layers, NETWORK_MAX_LAYERS);
-    for (int l = 0; l <= layers; l++)
-        if (widths[l] < 1 || widths[l] > NETWORK_MAX_WIDTH)
-            return error_input(error, "network", "width %d of layer %d; expected 1 to %d", widths[l], l,
-                               NETWORK_MAX_WIDTH);
-    return true;
-}
-
 /* Parameters, normalisations, and the mean of the outputs. */
 static size_t number_count(const Network *network) {
     return (size_t)network_parameter_count(network) + 2 * (size_t)network->widths[0] +
@@ -91,7 +81,14 @@ static bool network_allocate(Network *network, Error *error) {
 }
 
 Network *network_create(int layers, const int *widths, Error *error) {
-    if (!check_widths(layers, widths, error)) return NULL;
+    if (layers < 1 || layers > NETWORK_MAX_LAYERS)
+        return error_input(error, "network", "%d layers of weights; expected 1 to %d", layers, NETWORK_MAX_LAYERS),
+               NULL;
+    for (int l = 0; l <= layers; l++)
+        if (widths[l] < 1 || widths[l] > NETWORK_MAX_WIDTH)
+            return error_input(error, "network", "width %d of layer %d; expected 1 to %d", widths[l], l,
+                               NETWORK_MAX_WIDTH),
+                   NULL;
     Network *network = calloc(1, sizeof *network);
     if (network == NULL) return error_memory(error, "network"), NULL;
     network->layers = layers;
@@ -139,22 +136,17 @@ static float activate(Activation activation, float x) {
     return x;
 }
 
-/* out[widths[l + 1]] = activation(biases + weights in[widths[l]]) */
-static void predict_layer(const Network *network, int l, const float *in, float *out) {
-    const float *weight = network->weights[l];
-    for (int j = 0; j < network->widths[l + 1]; j++) {
-        float sum = network->biases[l][j];
-        for (int i = 0; i < network->widths[l]; i++) sum += *weight++ * in[i];
-        out[j] = activate(network->activations[l], sum);
-    }
-}
-
 void network_predict(const Network *network, const float *input, float *scratch, float *output) {
     float *in = scratch, *out = scratch + network_scratch_width(network);
     for (int i = 0; i < network->widths[0]; i++)
         in[i] = (input[i] - network->input.offset[i]) * network->input.scale[i];
     for (int l = 0; l < network->layers; l++) {
-        predict_layer(network, l, in, out);
+        const float *weight = network->weights[l];
+        for (int j = 0; j < network->widths[l + 1]; j++) {
+            float sum = network->biases[l][j];
+            for (int i = 0; i < network->widths[l]; i++) sum += *weight++ * in[i];
+            out[j] = activate(network->activations[l], sum);
+        }
         float *swap = in;
         in = out;
         out = swap;
@@ -238,15 +230,6 @@ static bool read_widths(void *of, NpzFile *file, Error *error) {
 
 static bool create_network(void *of, Error *error) { return network_allocate(((NetworkFile *)of)->network, error); }
 
-static bool parse_activation(const char *word, Activation *activation) {
-    for (int a = 0; a < ACTIVATION_COUNT; a++) {
-        if (strcmp(word, activation_names[a]) != 0) continue;
-        *activation = (Activation)a;
-        return true;
-    }
-    return false;
-}
-
 static bool parse_activations(void *of, const char *path, Error *error) {
     NetworkFile *file = of;
     Network *network = file->network;
@@ -254,7 +237,10 @@ static bool parse_activations(void *of, const char *path, Error *error) {
     int count = 0;
     for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL; count++) {
         if (count == network->layers) return error_input(error, path, "more activations than its %d layers", count);
-        if (!parse_activation(word, &network->activations[count]))
+        int a = 0;
+        while (a < ACTIVATION_COUNT && strcmp(word, activation_names[a]) != 0) a++;
+        network->activations[count] = (Activation)a;
+        if (a == ACTIVATION_COUNT)
             return error_input(error, path, "activation %d is unknown; known: linear, sigmoid, tanh, relu", count);
     }
     return count == network->layers || error_input(error, path, "%d activations for %d layers", count, network->layers);

@@ -34,20 +34,20 @@ static bool scene_net_shape_check(const SceneNetShape *shape, const Slot *slots,
 }
 
 /* Takes an array from the block, from a line of the cache on; before there is a block, only counts the bytes. */
-static void *scene_net_layers_take(const SceneNet *network, size_t *used, size_t bytes) {
+static void *take(const SceneNet *network, size_t *used, size_t bytes) {
     char *at = network->block != NULL ? (char *)network->block + *used : NULL;
     *used += (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
     return at;
 }
 
 static PackedRows take_packed(const SceneNet *network, size_t *used, int count, int width) {
-    return packed_rows_in(scene_net_layers_take(network, used, packed_rows_bytes(count, width)), count, width);
+    return packed_rows_in(take(network, used, packed_rows_bytes(count, width)), count, width);
 }
 
 static void take_projection(const SceneNet *network, size_t *used, Projection *projection) {
     const size_t from = (size_t)projection->from, to = (size_t)projection->to;
-    projection->rows = scene_net_layers_take(network, used, from * to * sizeof(float));
-    projection->centre = scene_net_layers_take(network, used, to * sizeof(float));
+    projection->rows = take(network, used, from * to * sizeof(float));
+    projection->centre = take(network, used, to * sizeof(float));
     projection->packed = take_packed(network, used, projection->from, projection->to);
 }
 
@@ -64,7 +64,7 @@ static size_t lay_out(SceneNet *network) {
     size_t used = 0;
     network->parameter_count =
         (size_t)(inputs + 1) * (size_t)hidden + (size_t)(hidden + 1) * (size_t)(hidden + outputs);
-    network->parameters = scene_net_layers_take(network, &used, network->parameter_count * sizeof(float));
+    network->parameters = take(network, &used, network->parameter_count * sizeof(float));
     network->rows = place_layer(&network->second, place_layer(&network->first, network->parameters));
     network->biases = network->rows != NULL ? network->rows + outputs * hidden : NULL;
     network->first.packed = take_packed(network, &used, inputs, hidden);
@@ -74,12 +74,12 @@ static size_t lay_out(SceneNet *network) {
     take_projection(network, &used, &network->state);
     take_projection(network, &used, &network->present);
     take_projection(network, &used, &network->warm);
-    network->low = scene_net_layers_take(network, &used, (size_t)inputs * sizeof(float));
-    network->high = scene_net_layers_take(network, &used, (size_t)inputs * sizeof(float));
-    network->scale = scene_net_layers_take(network, &used, slots * sizeof(float));
-    network->cap = scene_net_layers_take(network, &used, slots * sizeof(float));
-    network->slots = scene_net_layers_take(network, &used, slots * sizeof(Slot));
-    network->pair_slots = scene_net_layers_take(network, &used, (bodies * bodies + 1) * sizeof(int32_t));
+    network->low = take(network, &used, (size_t)inputs * sizeof(float));
+    network->high = take(network, &used, (size_t)inputs * sizeof(float));
+    network->scale = take(network, &used, slots * sizeof(float));
+    network->cap = take(network, &used, slots * sizeof(float));
+    network->slots = take(network, &used, slots * sizeof(Slot));
+    network->pair_slots = take(network, &used, (bodies * bodies + 1) * sizeof(int32_t));
     return used;
 }
 
@@ -109,7 +109,7 @@ static SceneNet sizes_of(const SceneNetShape *shape) {
                       .kernels = &kernels_best()->rows};
 }
 
-static bool scene_net_layers_allocate(SceneNet *network, const Slot *slots, Error *error) {
+static bool allocate(SceneNet *network, const Slot *slots, Error *error) {
     network->block = calloc(1, lay_out(network));
     if (network->block == NULL) return error_memory(error, "scene-net");
     lay_out(network);
@@ -123,7 +123,7 @@ SceneNet *scene_net_create(const SceneNetShape *shape, const Slot *slots, Error 
     SceneNet *network = malloc(sizeof *network);
     if (network == NULL) return error_memory(error, "scene-net"), NULL;
     *network = sizes_of(shape);
-    if (!scene_net_layers_allocate(network, slots, error)) return free(network), NULL;
+    if (!allocate(network, slots, error)) return free(network), NULL;
     return network;
 }
 
@@ -152,22 +152,18 @@ void scene_net_pack(SceneNet *network) {
     scene_net_pack_layers(network);
 }
 
-static float *scene_net_layers_project(const RowKernels *kernels, const Projection *projection, const int32_t *index,
-                                       const float *numbers, int count, float *out) {
+static float *project(const RowKernels *kernels, const Projection *projection, const int32_t *index,
+                      const float *numbers, int count, float *out) {
     for (int i = 0; i < projection->to; i++) out[i] = -projection->centre[i];
     kernels->add(out, &projection->packed, index, numbers, count);
     return out + projection->to;
 }
 
 void scene_net_look(const SceneNet *network, const SceneNetView *view, float *inputs) {
-    inputs =
-        scene_net_layers_project(network->kernels, &network->bomb_state, NULL, view->bomb, SLOT_BODY_NUMBERS, inputs);
-    inputs =
-        scene_net_layers_project(network->kernels, &network->state, NULL, view->state, network->state.from, inputs);
-    inputs = scene_net_layers_project(network->kernels, &network->present, view->slots, view->ones, view->slot_count,
-                                      inputs);
-    scene_net_layers_project(network->kernels, &network->warm, view->impulses, view->warm, 2 * view->slot_count,
-                             inputs);
+    inputs = project(network->kernels, &network->bomb_state, NULL, view->bomb, SLOT_BODY_NUMBERS, inputs);
+    inputs = project(network->kernels, &network->state, NULL, view->state, network->state.from, inputs);
+    inputs = project(network->kernels, &network->present, view->slots, view->ones, view->slot_count, inputs);
+    project(network->kernels, &network->warm, view->impulses, view->warm, 2 * view->slot_count, inputs);
 }
 
 static void run_layer(const RowKernels *kernels, const SceneNetLayer *layer, const float *in, float *out) {
@@ -292,19 +288,18 @@ static bool read_sizes(void *of, NpzFile *file, Error *error) {
     return true;
 }
 
-static bool scene_net_layers_create(void *of, Error *error) {
+static bool create(void *of, Error *error) {
     const SceneNetFile *file = of;
-    return scene_net_layers_allocate(file->network, file->slots, error);
+    return allocate(file->network, file->slots, error);
 }
 
-static bool scene_net_layers_pack(void *of, const char *path, Error *error) {
+static bool pack(void *of, const char *path, Error *error) {
     (void)path, (void)error;
     scene_net_pack(((SceneNetFile *)of)->network);
     return true;
 }
 
-static const NetFileKind kind = {"scene-net", SCENE_NET_NETWORK_VERSION, list_fields,
-                                 read_sizes,  scene_net_layers_create,   scene_net_layers_pack};
+static const NetFileKind kind = {"scene-net", SCENE_NET_NETWORK_VERSION, list_fields, read_sizes, create, pack};
 
 bool scene_net_write(const SceneNet *network, const char *path, Error *error) {
     const size_t count = (size_t)network->slot_count;
