@@ -7,89 +7,45 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORD = 64, EXACT_MAX = 128 }; /* EXACT_MAX: nodes that are ordered by exact degrees */
+enum { EXACT_MAX = 128 }; /* nodes that are ordered by exact degrees */
 
 void block_order_free(BlockOrder *order) {
-    free(order->words);
+    free(order->adjacent);
     free(order->list);
     free(order->arrays.memory);
     *order = (BlockOrder){0};
 }
 
-/* Exact degrees. */
-
-static void set_bit(uint64_t *row, int bit) { row[bit / WORD] |= (uint64_t)1 << (bit % WORD); }
-static void clear_bit(uint64_t *row, int bit) { row[bit / WORD] &= ~((uint64_t)1 << (bit % WORD)); }
-
-/* Inline: not every CPU has an instruction for it, and a call of the compiler's library takes longer. */
-static int bits_in(uint64_t word) {
-    word -= word >> 1 & UINT64_C(0x5555555555555555);
-    word = (word & UINT64_C(0x3333333333333333)) + (word >> 2 & UINT64_C(0x3333333333333333));
-    word = (word + (word >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
-    return (int)(word * UINT64_C(0x0101010101010101) >> 56);
-}
-
-/* The nodes that are left: a row of bits per node, for its neighbours, and one per degree, for the nodes that have
-   it. */
-typedef struct Rows {
-    int count, lowest;           /* no degree is below `lowest` */
-    size_t words;                /* of a row */
-    uint64_t *adjacent, *having; /* [count, words] */
-    int degree[EXACT_MAX];
-} Rows;
-
-static bool load_rows(BlockOrder *order, const BlockNeighbours *graph, Rows *rows) {
-    const size_t count = (size_t)graph->count, words = (count + WORD - 1) / WORD, size = count * words;
-    if (!array_reserve((void **)&order->words, &order->word_capacity, 2 * size + 1, sizeof *order->words)) return false;
-    memset(order->words, 0, 2 * size * sizeof *order->words);
-    rows->count = rows->lowest = graph->count;
-    rows->words = words;
-    rows->adjacent = order->words;
-    rows->having = order->words + size;
-    for (int i = 0; i < graph->count; i++) {
-        const int from = graph->start[i], to = graph->start[i + 1];
-        for (int x = from; x < to; x++) set_bit(rows->adjacent + (size_t)i * words, graph->neighbour[x]);
-        set_bit(rows->having + (size_t)(to - from) * words, i);
-        rows->degree[i] = to - from;
-        if (to - from < rows->lowest) rows->lowest = to - from;
-    }
-    return true;
-}
-
-/* Joins the neighbours of the node with each other. */
-static void eliminate(Rows *rows, int node) {
-    const size_t words = rows->words;
-    const uint64_t *mine = rows->adjacent + (size_t)node * words;
-    for (size_t w = 0; w < words; w++)
-        for (uint64_t bits = mine[w]; bits != 0; bits &= bits - 1) {
-            const int other = (int)w * WORD + __builtin_ctzll(bits);
-            uint64_t *row = rows->adjacent + (size_t)other * words;
-            for (size_t x = 0; x < words; x++) row[x] |= mine[x];
-            clear_bit(row, other);
-            clear_bit(row, node);
-            clear_bit(rows->having + (size_t)rows->degree[other] * words, other);
-            int degree = 0;
-            for (size_t x = 0; x < words; x++) degree += bits_in(row[x]);
-            rows->degree[other] = degree;
-            set_bit(rows->having + (size_t)degree * words, other);
-            if (degree < rows->lowest) rows->lowest = degree;
-        }
-}
-
+/* A byte for each two nodes: whether they are neighbours. */
 static bool by_exact_degrees(BlockOrder *order, const BlockNeighbours *graph, int32_t *nodes) {
-    Rows rows;
-    if (!load_rows(order, graph, &rows)) return false;
-    for (int k = 0; k < graph->count; k++) {
-        /* The node of the smallest degree; the first of several. */
-        uint64_t *having = rows.having + (size_t)rows.lowest * rows.words, *end = having + rows.words;
-        for (; *having == 0; having++) {
-            if (having + 1 < end) continue;
-            end += rows.words; /* the row of the next degree */
-            rows.lowest++;
+    const int count = graph->count;
+    int degree[EXACT_MAX]; /* -1: eliminated */
+    const size_t size = (size_t)(count * count);
+    if (!array_reserve((void **)&order->adjacent, &order->adjacent_capacity, size + 1, sizeof *order->adjacent))
+        return false;
+    memset(order->adjacent, 0, size);
+    for (int i = 0; i < count; i++) {
+        degree[i] = graph->start[i + 1] - graph->start[i];
+        for (int x = graph->start[i]; x < graph->start[i + 1]; x++)
+            order->adjacent[i * count + graph->neighbour[x]] = 1;
+    }
+    for (int k = 0; k < count; k++) {
+        int node = -1; /* of the smallest degree; the first of several */
+        for (int i = 0; i < count; i++)
+            if (degree[i] >= 0 && (node < 0 || degree[i] < degree[node])) node = i;
+        nodes[k] = node;
+        degree[node] = -1;
+        /* Its neighbours become each other's. */
+        const uint8_t *mine = order->adjacent + node * count;
+        for (int other = 0; other < count; other++) {
+            if (!mine[other]) continue;
+            uint8_t *row = order->adjacent + other * count;
+            int sum = 0;
+            for (int x = 0; x < count; x++) row[x] |= mine[x];
+            row[other] = row[node] = 0;
+            for (int x = 0; x < count; x++) sum += row[x];
+            degree[other] = sum;
         }
-        nodes[k] = ((int)(having - end) + (int)rows.words) * WORD + __builtin_ctzll(*having);
-        *having &= *having - 1;
-        eliminate(&rows, nodes[k]);
     }
     return true;
 }

@@ -19,7 +19,6 @@
    all methods, is to find which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "methods/interior.h"
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
@@ -39,7 +38,7 @@ enum {
     LEAST_OF_MANY = 11     /* iterations: fewer are rarely as good as sweeps; with 12 a pyramid of 20 rows creeps */
 };
 
-/* Work is counted, not timed, in sweeps over the island's contacts; its bound is in methods/interior.h. */
+/* Work is counted, not timed, in sweeps over the island's contacts; its bound is INTERIOR_MOST_WORK. */
 static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and
    walls, 1.4 in piles. */

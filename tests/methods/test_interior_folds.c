@@ -6,7 +6,7 @@
 #include "kernels.h"
 #include "reference_worlds.h"
 
-#include "methods/interior.h"
+#include "methods/interior_point_internal.h"
 
 #include <limits.h>
 
