@@ -105,28 +105,4 @@ TEST(sizes_and_slots_out_of_bounds_are_refused) {
     free_arrays(&arrays);
 }
 
-/* An array of another shape, all zeros. */
-typedef struct Change {
-    const char *name;
-    int64_t shape[2];
-} Change;
-
-static void refuse_shapes(const Change *changes, size_t count, const char *text) {
-    Error error = {0};
-    NetArrays arrays = two_slots();
-    for (size_t i = 0; i < arrays.count; i++)
-        for (size_t c = 0; c < count; c++) {
-            NpzArray *array = &arrays.items[i];
-            if (strcmp(array->name, changes[c].name) != 0) continue;
-            memcpy(array->shape, changes[c].shape, sizeof changes[c].shape);
-            free((void *)array->data);
-            array->data = calloc(items_of(array) + 1, sizeof(float));
-            assert_non_null(array->data);
-        }
-    const char *path = temporary_path("shapes.npz");
-    assert_ok(npz_write(path, arrays.items, arrays.count, &error), error);
-    refuse_file(is_read, path, text);
-    free_arrays(&arrays);
-}
-
 RUN_TESTS(NULL, NULL)
