@@ -17,22 +17,18 @@ static const double stiffest = 1e12;
 
 static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger4(smaller4(x, limit), -limit); }
 
-/* The targets of the products. */
-static inline void aim(InteriorGroup *g, double tau2) {
-    const Vec4 softest = all4(1 / stiffest), bound = g->friction * g->l;
-    g->aim_normal = larger4(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
-    g->aim_tangent =
-        larger4(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
-}
-
 /* x += J^T impulses, those of the right-hand side. */
 static inline void push_right_side(const InteriorGroup *g, const BlockPair pairs[BLOCK_PAIRS], Vec4 *x) {
     block_push(pairs, g->l + g->rn, g->t + g->rt + g->s * g->rn, x);
 }
 
-/* The impulses that are eliminated: D_n, D_t, s, r_n, r_t. One division for all quotients: with the distances u and w
+/* The targets of the products, and the impulses that are eliminated: D_n, D_t, s, r_n, r_t. One division for all quotients: with the distances u and w
    of t to its bounds, D_t = u w / (p w + q u). */
-static inline void linearise(InteriorGroup *g) {
+static inline void linearise(InteriorGroup *g, double target) {
+    const Vec4 softest = all4(1 / stiffest), held = g->friction * g->l;
+    g->aim_normal = larger4(target * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
+    g->aim_tangent =
+        larger4(slip_aim * target * g->mass_tangent * g->friction, softest * held * held * g->inverse_tangent);
     const Vec4 bound = g->friction * g->l, u = bound - g->t, w = bound + g->t;
     const Vec4 p = g->p * w, q = g->q * u, both = u * w, sum = p + q, all = both * sum;
     const Vec4 over = 1 / (g->z * all), over_both = over * (g->z * sum), over_sum = over * (g->z * both);
@@ -64,54 +60,13 @@ static inline Changes changes_of(const InteriorGroup *g, Relative dv, Vec4 secon
     return by;
 }
 
-/* The products of second order that the first solve predicts, limited to the size of the terms themselves. */
-static inline void correct(InteriorGroup *g, Relative dv) {
-    const Changes by = changes_of(g, dv, all4(0), all4(0));
-    const Vec4 bound = g->friction * g->l;
-    g->rn -= clamp4(by.l * by.z, larger4(g->aim_normal, g->l * g->z)) * g->over_z;
-    g->second_p = -clamp4(by.p * by.upper, larger4(g->aim_tangent, g->p * (bound - g->t)));
-    g->second_q = -clamp4(by.q * by.lower, larger4(g->aim_tangent, g->q * (bound + g->t)));
-    g->rt -= g->dt * (g->second_p * g->upper - g->second_q * g->lower);
-}
+static inline Vec4 square(Vec4 x) { return x * x; }
 
-static inline Vec4 missing_normal(const InteriorGroup *g) {
-    return smaller4(g->answer_normal * g->inverse_normal, g->normal - g->bias);
-}
-
-static inline Vec4 missing_tangent(const InteriorGroup *g) {
+static inline Vec4 squared_residual(const InteriorGroup *g) {
     const Vec4 bound = g->friction * g->answer_normal;
     const Vec4 wanted = clamp4(g->answer_tangent - g->mass_tangent * g->tangent, bound);
-    return (g->answer_tangent - wanted) * g->inverse_tangent;
-}
-
-static inline Vec4 square(Vec4 x) { return x * x; }
-static inline Vec4 squared_residual(const InteriorGroup *g) {
-    return square(missing_normal(g)) + square(missing_tangent(g));
-}
-
-/* The iterate stays inside all bounds. */
-static inline void limit(InteriorGroup *g, const Changes *by) {
-    const Vec4 l = larger4(g->l + by->l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
-    const Vec4 share = 1 - kept_distance * (1 - larger4(g->t, -g->t) / before);
-    g->t = clamp4(g->t + by->t, smaller4(share, all4(1 - 1e-13)) * bound);
-    g->l = l;
-    g->z = larger4(g->z + by->z, kept * g->z);
-    g->p = larger4(g->p + by->p, kept_slip * g->p);
-    g->q = larger4(g->q + by->q, kept_slip * g->q);
-}
-
-/* The next iterate, and the answer: the full step, inside the cone. Returns the answer's squared residual at the
-   velocities of the full step, and the squared changes by the projection. */
-static inline Vec4 advance(InteriorGroup *g, Relative dv) {
-    const Changes by = changes_of(g, dv, g->second_p, g->second_q);
-    const Vec4 l = g->l + by.l, t = g->t + by.t;
-    g->answer_normal = larger4(l, all4(0));
-    g->answer_tangent = clamp4(t, g->friction * g->answer_normal);
-    limit(g, &by);
-    g->normal += dv.normal;
-    g->tangent += dv.tangent;
-    return squared_residual(g) + square((l - g->answer_normal) * g->inverse_normal) +
-           square((t - g->answer_tangent) * g->inverse_tangent);
+    return square(smaller4(g->answer_normal * g->inverse_normal, g->normal - g->bias)) +
+           square((g->answer_tangent - wanted) * g->inverse_tangent);
 }
 
 /* x = M (v' - v) */
@@ -143,8 +98,7 @@ static void assemble(Interior *s, double target, Vec4 *right) {
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         const BlockPair *pairs = &s->pairs[BLOCK_PAIRS * i];
-        aim(g, target);
-        linearise(g);
+        linearise(g, target);
         push_right_side(g, pairs, right);
         for (int half = 0; half < BLOCK_PAIRS; half++) {
             Vec4 columns[4];
@@ -154,12 +108,18 @@ static void assemble(Interior *s, double target, Vec4 *right) {
     }
 }
 
-static void correct_all(Interior *s, const Vec4 *x, Vec4 *right) {
+/* The products of second order that the first solve predicts, limited to the size of the terms themselves. */
+static void correct(Interior *s, const Vec4 *x, Vec4 *right) {
     momentum_left(s, right);
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         const BlockPair *pairs = &s->pairs[BLOCK_PAIRS * i];
-        correct(g, relative(&g->rows, pairs, x));
+        const Changes by = changes_of(g, relative(&g->rows, pairs, x), all4(0), all4(0));
+        const Vec4 bound = g->friction * g->l;
+        g->rn -= clamp4(by.l * by.z, larger4(g->aim_normal, g->l * g->z)) * g->over_z;
+        g->second_p = -clamp4(by.p * by.upper, larger4(g->aim_tangent, g->p * (bound - g->t)));
+        g->second_q = -clamp4(by.q * by.lower, larger4(g->aim_tangent, g->q * (bound + g->t)));
+        g->rt -= g->dt * (g->second_p * g->upper - g->second_q * g->lower);
         push_right_side(g, pairs, right);
     }
 }
@@ -168,12 +128,30 @@ static double mean_root(const Interior *s, Vec4 sum) {
     return s->contact_count > 0 ? sqrt(sum4(sum) / s->contact_count) : 0;
 }
 
-static double advance_all(Interior *s, const Vec4 *x) {
+/* The next iterate, and the answer: the full step, inside the cone. Returns the answer's residual at the velocities of
+   the full step, with the changes by the projection. */
+static double advance(Interior *s, const Vec4 *x) {
     Vec4 sum = all4(0);
     for (int k = 0; k < s->graph.lu.count; k++) s->velocities[k] += x[k];
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
-        sum += advance(g, relative(&g->rows, &s->pairs[BLOCK_PAIRS * i], x));
+        const Relative dv = relative(&g->rows, &s->pairs[BLOCK_PAIRS * i], x);
+        const Changes by = changes_of(g, dv, g->second_p, g->second_q);
+        const Vec4 full_l = g->l + by.l, full_t = g->t + by.t;
+        g->answer_normal = larger4(full_l, all4(0));
+        g->answer_tangent = clamp4(full_t, g->friction * g->answer_normal);
+        /* The iterate stays inside all bounds. */
+        const Vec4 l = larger4(full_l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
+        const Vec4 share = 1 - kept_distance * (1 - larger4(g->t, -g->t) / before);
+        g->t = clamp4(full_t, smaller4(share, all4(1 - 1e-13)) * bound);
+        g->l = l;
+        g->z = larger4(g->z + by.z, kept * g->z);
+        g->p = larger4(g->p + by.p, kept_slip * g->p);
+        g->q = larger4(g->q + by.q, kept_slip * g->q);
+        g->normal += dv.normal;
+        g->tangent += dv.tangent;
+        sum += squared_residual(g) + square((full_l - g->answer_normal) * g->inverse_normal) +
+               square((full_t - g->answer_tangent) * g->inverse_tangent);
     }
     return mean_root(s, sum);
 }
@@ -187,9 +165,9 @@ static double iterate(Interior *s, double target) {
     assemble(s, target, s->changes);
     block_lu_factor(&s->graph.lu);
     solve_changes(s, s->changes);
-    correct_all(s, s->changes, s->corrected);
+    correct(s, s->changes, s->corrected);
     solve_changes(s, s->corrected);
-    return advance_all(s, s->corrected);
+    return advance(s, s->corrected);
 }
 
 static double answer(Interior *s) {

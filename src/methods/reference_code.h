@@ -86,13 +86,6 @@ static const struct {
                 {300, 1e13, 400, true}, {3, 1e14, 400, true},   {10, 1e11, 400, true},   {1000, 1e12, 400, true}};
 static const double look_ahead[] = {1e3, 1e6, 1e9, 1e11, 1e13};
 
-static void keep_start(Reference *r) {
-    for (int i = 0; i < r->group_count; i++) {
-        r->groups[i].start_normal = r->groups[i].normal;
-        r->groups[i].start_tangent = r->groups[i].tangent;
-    }
-}
-
 static void take_best(Reference *r) {
     for (int i = 0; i < r->group_count; i++) {
         r->groups[i].normal = r->groups[i].best_normal;
@@ -122,7 +115,10 @@ static bool finish(Reference *r) {
 static void sweep_start(Reference *r, int sweeps) {
     for (int i = 0; i < sweeps; i++) sweep(r);
     apply(r);
-    keep_start(r);
+    for (int i = 0; i < r->group_count; i++) {
+        r->groups[i].start_normal = r->groups[i].normal;
+        r->groups[i].start_tangent = r->groups[i].tangent;
+    }
     keep_best(r, missed(r, NULL));
     keep_best(r, polish(r, r->aim, 1));
 }
@@ -140,30 +136,23 @@ static bool try_all(Reference *r) {
     return solved;
 }
 
-static void begin_from(Reference *r, bool nothing) {
-    take_best(r);
-    for (int i = 0; nothing && i < r->group_count; i++) r->groups[i].normal = r->groups[i].tangent = all4(0);
-    apply(r);
-}
-
 static void run(Reference *r) {
     const int count = sizeof starts / sizeof *starts;
+    apply(r);
     r->best = INFINITY;
     weigh(r, starts[0].by_heaviest);
     sweep_start(r, starts[0].sweeps);
     bool solved = try_all(r);
     for (int i = 1; r->persist && !solved && i < count; i++) {
         weigh(r, starts[i].by_heaviest);
-        begin_from(r, starts[i].from_nothing);
+        take_best(r);
+        for (int k = 0; starts[i].from_nothing && k < r->group_count; k++)
+            r->groups[k].normal = r->groups[k].tangent = all4(0);
+        apply(r);
         sweep_start(r, starts[i].sweeps);
         solved = try_all(r);
     }
     take_best(r);
-}
-
-static void run_from(Reference *r) {
-    apply(r);
-    run(r);
 }
 
 static double residual_of(Reference *r) {
@@ -171,4 +160,4 @@ static double residual_of(Reference *r) {
     return sweep(r);
 }
 
-const ReferenceKernels KERNELS = {run_from, residual_of};
+const ReferenceKernels KERNELS = {run, residual_of};

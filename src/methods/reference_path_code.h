@@ -125,13 +125,7 @@ static double room_for(Vec4 most) {
     return 1 / worst;
 }
 
-static double step_room(const Reference *r) {
-    Vec4 most = all4(0);
-    for (int i = 0; i < r->group_count; i++) most = larger4(nearest_bound(&r->groups[i].now, &r->groups[i].step), most);
-    return room_for(most);
-}
-
-/* A Newton step towards products of the target, into `step`: the first solve with a matrix, which factorizes it, */
+/* A Newton step towards products of the target, into `step`, is begun, with a matrix that is factorized, and ended, */
 static void begin_step(Reference *r, double target) {
     const Vec4 soft = all4(1 / r->stiffest);
     momentum_left(r);
@@ -144,7 +138,7 @@ static void begin_step(Reference *r, double target) {
     r->left--;
 }
 
-/* the right-hand side of another one, */
+/* or another one is begun with the same matrix; */
 static void begin_next_step(Reference *r, double target, double second) {
     momentum_left(r);
     for (int i = 0; i < r->group_count; i++) {
@@ -153,7 +147,7 @@ static void begin_next_step(Reference *r, double target, double second) {
     }
 }
 
-/* and the solve. Returns the share of the step that leads to the nearest bound. */
+/* the solve. Returns the share of the step that leads to the nearest bound. */
 static double end_step(Reference *r) {
     const Vec4 soft = all4(1 / r->stiffest);
     Vec4 most = all4(0);
@@ -295,39 +289,18 @@ static double find_directions(Reference *r, double target) {
     return squared;
 }
 
-/* Back to the last point on the path, for shorter steps. */
-static void go_back(Tracker *tracker) {
-    tracker->target = return_to(tracker->r, KEPT_ON_PATH);
-    tracker->length *= 0.25;
-    tracker->corrections = 0;
-    tracker->off_before = INFINITY;
-}
-
-/* The target after its logarithm has changed; NaN after a change that only a lost path makes. */
-static double grown(double target, double by) { return fabs(by) <= 700 ? target * exponential(by) : NAN; }
-
 /* Newton's step plus `by` times the derivative. Returns the share of it that the bounds allow. */
 static double advance(Tracker *tracker, double by) {
     Reference *r = tracker->r;
     for (int i = 0; i < r->group_count; i++) r->groups[i].step = combine(&r->groups[i].along, by, &r->groups[i].step);
     for (int k = 0; k < r->graph.lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
-    const double limit = arc_share * step_room(r), share = limit < 1 ? limit : 1;
+    Vec4 most = all4(0);
+    for (int i = 0; i < r->group_count; i++) most = larger4(nearest_bound(&r->groups[i].now, &r->groups[i].step), most);
+    const double limit = arc_share * room_for(most), share = limit < 1 ? limit : 1;
     move(r, share);
-    tracker->target = grown(tracker->target, share * by);
+    /* After a change of its logarithm; NaN after one that only a lost path makes. */
+    tracker->target = fabs(share * by) <= 700 ? tracker->target * exponential(share * by) : NAN;
     return share;
-}
-
-static void choose_length(Tracker *tracker, double share, double off) {
-    if (share >= 1 && off < 0.3)
-        tracker->length = 2 * tracker->length < length_most ? 2 * tracker->length : length_most;
-    else if (share < 0.7)
-        tracker->length *= 0.5;
-}
-
-static bool is_lost(Tracker *tracker, double off) {
-    const bool away = off > lost || off > tracker->off_before;
-    tracker->off_before = off;
-    return ++tracker->corrections > (tracker->found ? CORRECTIONS : CORRECTIONS_FIRST) || (tracker->found && away);
 }
 
 static void track(Tracker *tracker) {
@@ -341,13 +314,25 @@ static void track(Tracker *tracker) {
         tracker->found = true;
         tracker->corrections = 0;
         tracker->off_before = INFINITY;
-    } else if (is_lost(tracker, off)) {
-        go_back(tracker);
-        return;
+    } else {
+        const bool away = off > lost || off > tracker->off_before;
+        const int most = tracker->found ? CORRECTIONS : CORRECTIONS_FIRST;
+        tracker->off_before = off;
+        if (++tracker->corrections > most || (tracker->found && away)) {
+            /* Back to the last point on the path, for shorter steps. */
+            tracker->target = return_to(r, KEPT_ON_PATH);
+            tracker->length *= 0.25;
+            tracker->corrections = 0;
+            tracker->off_before = INFINITY;
+            return;
+        }
     }
     const double ahead = on_path ? tracker->length / sqrt(norm) : 0;
     const double by = (forward ? -ahead : ahead) - along / norm, share = advance(tracker, by);
-    if (on_path) choose_length(tracker, share, off);
+    if (on_path && share >= 1 && off < 0.3)
+        tracker->length = 2 * tracker->length < length_most ? 2 * tracker->length : length_most;
+    else if (on_path && share < 0.7)
+        tracker->length *= 0.5;
     if (!forward || tracker->length < 0.25)
         tracker->good = 0;
     else if (on_path && by < -0.3)
