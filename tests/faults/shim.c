@@ -49,17 +49,31 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* In the order of the numbers in the file of counts; with the errno of a failure. */
-#define CALLS(X)                                                                                                   \
-    X(malloc, ENOMEM)                                                                                              \
-    X(libmalloc, ENOMEM) X(open, EMFILE) X(read, EIO) X(write, ENOSPC) X(fsync, EIO) X(rename, EIO) X(unlink, EIO) \
-        X(readdir, EIO) X(close, EIO) X(stat, EIO) X(mkdir, ENOSPC) X(process, EAGAIN) X(wait, EINTR)
-#define CALL_VALUE(name, error) CALL_##name,
-#define CALL_NAME(name, error) #name,
-#define CALL_ERROR(name, error) error,
-typedef enum Call { CALLS(CALL_VALUE) CALL_COUNT } Call;
-static const char *const call_names[] = {CALLS(CALL_NAME)};
-static const int call_errors[] = {CALLS(CALL_ERROR)};
+/* In the order of the numbers in the file of counts; beside them the errno of a failure. */
+typedef enum Call {
+    CALL_malloc,
+    CALL_libmalloc,
+    CALL_open,
+    CALL_read,
+    CALL_write,
+    CALL_fsync,
+    CALL_rename,
+    CALL_unlink,
+    CALL_readdir,
+    CALL_close,
+    CALL_stat,
+    CALL_mkdir,
+    CALL_process,
+    CALL_wait,
+    CALL_COUNT
+} Call;
+static const struct {
+    const char *name;
+    int error;
+} calls[CALL_COUNT] = {{"malloc", ENOMEM},  {"libmalloc", ENOMEM}, {"open", EMFILE}, {"read", EIO},
+                       {"write", ENOSPC},   {"fsync", EIO},        {"rename", EIO},  {"unlink", EIO},
+                       {"readdir", EIO},    {"close", EIO},        {"stat", EIO},    {"mkdir", ENOSPC},
+                       {"process", EAGAIN}, {"wait", EINTR}};
 
 typedef enum Mode { MODE_NONE, MODE_FAIL, MODE_REST, MODE_EINTR, MODE_SHORT, MODE_KILL, MODE_TERM, MODE_COUNT } Mode;
 static const char *const mode_names[MODE_COUNT] = {"none", "fail", "rest", "eintr", "short", "kill", "term"};
@@ -150,20 +164,15 @@ static void give_up(const char *what) {
     _exit(99);
 }
 
-static int find(const char *const *names, int count, const char *name, size_t length) {
-    for (int i = 0; i < count; i++)
-        if (strlen(names[i]) == length && strncmp(names[i], name, length) == 0) return i;
-    give_up("TWINBOX_FAULT is not CALL:N:MODE");
-    return 0;
-}
-
 static void parse(const char *text) {
-    const size_t length = strcspn(text, ":");
-    char *end = "";
-    shim.call = (Call)find(call_names, CALL_COUNT, text, length);
-    if (text[length] == ':') shim.n = strtoull(text + length + 1, &end, 10);
-    if (*end == ':') end++;
-    shim.mode = (Mode)find(mode_names, MODE_COUNT, end, strlen(end));
+    char call[16], mode[16];
+    int i = 0, j = 0;
+    if (sscanf(text, "%15[a-z]:%llu:%15[a-z]", call, &shim.n, mode) != 3) give_up("TWINBOX_FAULT is not CALL:N:MODE");
+    while (i < CALL_COUNT && strcmp(calls[i].name, call) != 0) i++;
+    while (j < MODE_COUNT && strcmp(mode_names[j], mode) != 0) j++;
+    if (i == CALL_COUNT || j == MODE_COUNT) give_up("TWINBOX_FAULT has an unknown call or mode");
+    shim.call = (Call)i;
+    shim.mode = (Mode)j;
 }
 
 static void *map(const char *path, size_t size) {
@@ -230,7 +239,7 @@ static void note_site(Call call, unsigned long long n, const char *caller) {
         if (old == hash) return;
     }
     char line[128];
-    const int length = snprintf(line, sizeof line, "%s %llu\n", call_names[call], n);
+    const int length = snprintf(line, sizeof line, "%s %llu\n", calls[call].name, n);
     if (write(shim.sites_file, line, (size_t)length) != length) give_up("cannot write TWINBOX_FAULT_SITES");
 }
 
@@ -261,7 +270,7 @@ static Mode strikes(Call call, const void *caller) {
     const bool before = enter();
     const Mode mode = strike(call, caller);
     leave(before);
-    errno = mode == MODE_FAIL ? call_errors[call] : mode == MODE_EINTR ? EINTR : cause;
+    errno = mode == MODE_FAIL ? calls[call].error : mode == MODE_EINTR ? EINTR : cause;
     return mode;
 }
 
