@@ -2,11 +2,20 @@
 /* Which steps of a scene's launches are recorded, and with what solution; the poses of launches. */
 #include "impacts.h"
 #include "owned.h"
-#include "equal_problems.h"
 
 #include <omp.h>
 
 enum { LAUNCHES = 6 };
+
+/* Two contact problems that are equal to the bit. */
+static void assert_equal_problems(const ContactProblem *one, const ContactProblem *two) {
+    assert_int_equal(one->body_count, two->body_count);
+    assert_int_equal(one->contact_count, two->contact_count);
+    assert_int_equal(one->bomb, two->bomb);
+    assert_true(one->dt == two->dt);
+    assert_memory_equal(one->bodies, two->bodies, (size_t)one->body_count * sizeof *one->bodies);
+    assert_memory_equal(one->contacts, two->contacts, (size_t)one->contact_count * sizeof *one->contacts);
+}
 
 /* In the order of launch and step, for any number of threads. */
 TEST(steps_are_appended_in_order_with_the_solution_of_the_reference) {
