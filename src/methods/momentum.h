@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sweeps with momentum, which visit contacts in the order of colours (methods/sweeps.h). The solvers choose the
-   factors. Their scalar reference implementation is that of the tests (tests/momentum_scalar.h). */
+   factors. Their scalar reference implementation is that of the tests (tests/methods/momentum_scalar.h). */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
