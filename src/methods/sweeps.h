@@ -191,8 +191,8 @@ bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProb
 bool sweeps_run(Sweeps *sweeps, int count);
 
 /* The same with momentum extrapolation before each sweep but the first, with the bits of the scalar reference
-   implementation in tests/methods/momentum_scalar.h: velocities and sums advance by factors[sweep, group] times the change by
-   the previous sweep, including its extrapolation. */
+   implementation in tests/methods/momentum_scalar.h: velocities and sums advance by factors[sweep, group] times the
+   change by the previous sweep, including its extrapolation. */
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
 
 /* Continues after sweeps_run_momentum() or itself, as if in one run: here the first sweep's factors count. Both counts
