@@ -17,11 +17,7 @@ typedef uint8_t Bytes __attribute__((vector_size(16)));
 
 enum { NONE, SUB, UP, AVERAGE, PAETH };
 
-static void add_up(const uint8_t *restrict from, const uint8_t *restrict above, size_t bytes, uint8_t *restrict row) {
-    for (size_t i = 0; i < bytes; i++) row[i] = (uint8_t)(from[i] + above[i]);
-}
-
-/* The functions below are compiled once for each step, as a constant. */
+/* Compiled once for each step, as a constant. */
 static inline void add_left(const uint8_t *restrict from, size_t bytes, size_t step, uint8_t *restrict row) {
     uint8_t left[4] = {0};
     for (size_t i = 0; i + step <= bytes; i += step)
@@ -54,13 +50,6 @@ static inline void add_average(const uint8_t *restrict from, const uint8_t *rest
         for (size_t c = 0; c < step; c++) row[i + c] = left[c] = (uint8_t)(from[i + c] + (left[c] + above[i + c]) / 2);
 }
 
-/* The neighbour nearest to left + up - corner; the first of these where they tie. */
-static inline int png_fast_predict(int left, int up, int corner) {
-    int to_left = abs(up - corner), to_up = abs(left - corner), to_corner = abs(left + up - 2 * corner);
-    int nearest = to_up <= to_corner ? up : corner, distance = to_up <= to_corner ? to_up : to_corner;
-    return to_left <= distance ? left : nearest;
-}
-
 #ifdef __SSE2__
 /* A pixel of at most four bytes at once; beyond a row, up to three bytes are read and written. */
 static inline __m128i load_pixel(const uint8_t *p) {
@@ -71,7 +60,7 @@ static inline __m128i load_pixel(const uint8_t *p) {
 
 static inline __m128i absolute(__m128i x) { return _mm_max_epi16(x, _mm_sub_epi16(_mm_setzero_si128(), x)); }
 
-static inline __m128i png_fast_choose(__m128i mask, __m128i yes, __m128i no) {
+static inline __m128i choose(__m128i mask, __m128i yes, __m128i no) {
     return _mm_or_si128(_mm_and_si128(mask, yes), _mm_andnot_si128(mask, no));
 }
 
@@ -84,8 +73,8 @@ static inline void add_paeth_sse2(const uint8_t *from, const uint8_t *above, siz
         const __m128i to_left = absolute(by_left), to_up = absolute(by_up),
                       to_corner = absolute(_mm_add_epi16(by_left, by_up));
         const __m128i least = _mm_min_epi16(to_left, _mm_min_epi16(to_up, to_corner));
-        const __m128i nearest = png_fast_choose(_mm_cmpeq_epi16(least, to_left), left,
-                                                png_fast_choose(_mm_cmpeq_epi16(least, to_up), up, corner));
+        const __m128i nearest =
+            choose(_mm_cmpeq_epi16(least, to_left), left, choose(_mm_cmpeq_epi16(least, to_up), up, corner));
         left = _mm_and_si128(_mm_add_epi16(load_pixel(from + i), nearest), low);
         corner = up;
         const int pixel = _mm_cvtsi128_si32(_mm_packus_epi16(left, left));
@@ -100,7 +89,11 @@ static inline void add_paeth(const uint8_t *restrict from, const uint8_t *restri
     for (size_t i = 0; i + step <= bytes; i += step)
         for (size_t c = 0; c < step; c++) {
             int up = above[i + c];
-            row[i + c] = (uint8_t)(from[i + c] + png_fast_predict(left[c], up, corner[c]));
+            /* The neighbour nearest to left + up - corner; the first of these where they tie. */
+            const int to_left = abs(up - corner[c]), to_up = abs(left[c] - corner[c]),
+                      to_corner = abs(left[c] + up - 2 * corner[c]);
+            const int nearest = to_up <= to_corner ? up : corner[c], distance = to_up <= to_corner ? to_up : to_corner;
+            row[i + c] = (uint8_t)(from[i + c] + (to_left <= distance ? left[c] : nearest));
             left[c] = row[i + c], corner[c] = up;
         }
 }
@@ -125,13 +118,14 @@ static inline bool unfilter_step(int filter, const uint8_t *from, const uint8_t 
 
 /* row[bytes] = the row that `filtered`, a filter's number and `bytes` bytes, stands for. above[bytes]: the row above,
    zeros for the first. step: 1 to 4, bytes per pixel. No two of the arrays overlap. False for an unknown filter. */
-static bool unfilter_row(const uint8_t *filtered, const uint8_t *above, size_t bytes, int step, uint8_t *row) {
+static bool unfilter_row(const uint8_t *filtered, const uint8_t *restrict above, size_t bytes, int step,
+                         uint8_t *restrict row) {
     int filter = filtered[0];
-    const uint8_t *from = filtered + 1;
+    const uint8_t *restrict from = filtered + 1;
     if (filter == NONE)
         memcpy(row, from, bytes);
     else if (filter == UP)
-        add_up(from, above, bytes, row);
+        for (size_t i = 0; i < bytes; i++) row[i] = (uint8_t)(from[i] + above[i]);
     else if (filter == SUB && step == 4)
         add_left_rgba(from, bytes, row);
     else
@@ -147,11 +141,11 @@ static bool unfilter_row(const uint8_t *filtered, const uint8_t *above, size_t b
 enum { OPAQUE = 255 };
 
 /* Compilers make one load of it, and one store of the next. */
-static uint32_t png_fast_load(const uint8_t *p) {
+static uint32_t load(const uint8_t *p) {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-static void png_fast_store(uint32_t pixel, uint8_t *rgba) {
+static void store(uint32_t pixel, uint8_t *rgba) {
     pixel |= (uint32_t)OPAQUE << 24;
     rgba[0] = (uint8_t)pixel, rgba[1] = (uint8_t)(pixel >> 8);
     rgba[2] = (uint8_t)(pixel >> 16), rgba[3] = (uint8_t)(pixel >> 24);
@@ -182,61 +176,55 @@ static void expand_rgb(const uint8_t *restrict row, size_t width, uint8_t *restr
     row += 3 * x, rgba += 4 * x;
 #endif
     for (; x + 4 <= width; x += 4, row += 12, rgba += 16) {
-        uint32_t a = png_fast_load(row), b = png_fast_load(row + 4), c = png_fast_load(row + 8);
-        png_fast_store(a, rgba);
-        png_fast_store(a >> 24 | b << 8, rgba + 4);
-        png_fast_store(b >> 16 | c << 16, rgba + 8);
-        png_fast_store(c >> 8, rgba + 12);
+        uint32_t a = load(row), b = load(row + 4), c = load(row + 8);
+        store(a, rgba);
+        store(a >> 24 | b << 8, rgba + 4);
+        store(b >> 16 | c << 16, rgba + 8);
+        store(c >> 8, rgba + 12);
     }
     for (; x < width; x++, row += 3, rgba += 4)
-        png_fast_store((uint32_t)row[0] | (uint32_t)row[1] << 8 | (uint32_t)row[2] << 16, rgba);
-}
-
-static void clear_rgb(const PngLayout *layout, uint8_t *rgba) {
-    for (size_t x = 0; x < layout->width; x++)
-        if (memcmp(rgba + 4 * x, layout->clear, 3) == 0) rgba[4 * x + 3] = 0;
-}
-
-static void expand_grey_alpha(const uint8_t *restrict row, size_t width, uint8_t *restrict rgba) {
-    for (size_t x = 0; x < width; x++) {
-        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = row[2 * x];
-        rgba[4 * x + 3] = row[2 * x + 1];
-    }
+        store((uint32_t)row[0] | (uint32_t)row[1] << 8 | (uint32_t)row[2] << 16, rgba);
 }
 
 /* Sample x of one channel; the first is in the highest bits of a byte. */
-static unsigned png_fast_sample(const uint8_t *row, size_t x, unsigned depth) {
+static unsigned sample(const uint8_t *row, size_t x, unsigned depth) {
     size_t bit = x * depth;
     return (unsigned)row[bit / 8] >> (8 - depth - bit % 8) & ((1u << depth) - 1);
 }
 
-static void expand_grey(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
-    unsigned depth = (unsigned)layout->depth, scale = 255 / ((1u << depth) - 1);
-    for (size_t x = 0; x < layout->width; x++) {
-        unsigned value = png_fast_sample(row, x, depth);
-        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = (uint8_t)(value * scale);
-        rgba[4 * x + 3] = layout->has_clear && value == layout->clear[0] ? 0 : OPAQUE;
-    }
-}
-
-static bool expand_palette(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
-    unsigned depth = (unsigned)layout->depth, most = 0;
-    for (size_t x = 0; x < layout->width; x++) {
-        unsigned index = png_fast_sample(row, x, depth);
-        memcpy(rgba + 4 * x, layout->palette[index], 4);
-        if (index > most) most = index;
-    }
-    return most < (unsigned)layout->colors;
-}
-
 /* rgba[4 * width] for a row. False if a colour is not in the palette. */
-static bool expand_row(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
-    if (layout->color == PNG_PALETTE) return expand_palette(layout, row, rgba);
-    if (layout->color == PNG_GREY) expand_grey(layout, row, rgba);
-    if (layout->color == PNG_GREY_ALPHA) expand_grey_alpha(row, layout->width, rgba);
-    if (layout->color == PNG_RGB) expand_rgb(row, layout->width, rgba);
-    if (layout->color == PNG_RGB && layout->has_clear) clear_rgb(layout, rgba);
-    if (layout->color == PNG_RGB_ALPHA) memcpy(rgba, row, 4 * (size_t)layout->width);
+static bool expand_row(const PngLayout *layout, const uint8_t *restrict row, uint8_t *restrict rgba) {
+    const size_t width = layout->width;
+    const unsigned depth = (unsigned)layout->depth, scale = 255 / ((1u << depth) - 1);
+    unsigned most = 0;
+    switch (layout->color) {
+    case PNG_PALETTE:
+        for (size_t x = 0; x < width; x++) {
+            const unsigned index = sample(row, x, depth);
+            memcpy(rgba + 4 * x, layout->palette[index], 4);
+            if (index > most) most = index;
+        }
+        return most < (unsigned)layout->colors;
+    case PNG_GREY:
+        for (size_t x = 0; x < width; x++) {
+            const unsigned value = sample(row, x, depth);
+            rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = (uint8_t)(value * scale);
+            rgba[4 * x + 3] = layout->has_clear && value == layout->clear[0] ? 0 : OPAQUE;
+        }
+        break;
+    case PNG_GREY_ALPHA:
+        for (size_t x = 0; x < width; x++) {
+            rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = row[2 * x];
+            rgba[4 * x + 3] = row[2 * x + 1];
+        }
+        break;
+    case PNG_RGB:
+        expand_rgb(row, width, rgba);
+        for (size_t x = 0; layout->has_clear && x < width; x++)
+            if (memcmp(rgba + 4 * x, layout->clear, 3) == 0) rgba[4 * x + 3] = 0;
+        break;
+    default: memcpy(rgba, row, 4 * width); break;
+    }
     return true;
 }
 
@@ -277,18 +265,6 @@ typedef struct Scan {
 
 enum { FAR_AWAY = ROWS_ALL - 1 }; /* from a row that differs */
 
-static bool side_start(Side *side, int band, int kept, bool second) {
-    const size_t bytes = side->rows->bytes, stored = (size_t)band * (bytes + 1) + SLACK,
-                 all = (size_t)(band + kept) * bytes;
-    side->memory = calloc((second ? 2 : 1) * stored + all + SLACK, 1);
-    if (side->memory == NULL) return false;
-    side->above = side->memory;
-    side->band = side->above + (size_t)kept * bytes;
-    side->filtered[0] = side->memory + all + SLACK;
-    side->filtered[1] = side->filtered[0] + (second ? stored : 0);
-    return png_rows_start(side->rows);
-}
-
 static void decompress(Side *side, int slot, int count) {
     PngRows *rows = side->rows;
     rows->damaged = rows->damaged || !png_rows_read(rows, side->filtered[slot], (size_t)count * (rows->bytes + 1));
@@ -324,7 +300,7 @@ static void give(Scan *scan, int slot, int count) {
         (void)do_task(scan, &scan->task, &ignored);
 }
 
-static void png_fast_finish(const Scan *scan) {
+static void finish(const Scan *scan) {
     Error ignored = {0};
     if (scan->background != NULL) (void)background_wait(scan->background, &ignored);
 }
@@ -388,7 +364,7 @@ static bool decompress_band(Scan *scan, int slot, bool *same) {
     Side *first = &scan->sides[0], *second = &scan->sides[1];
     const size_t size = (size_t)scan->count * (first->rows->bytes + 1);
     if (!scan->joined) decompress(first, 0, scan->count);
-    png_fast_finish(scan);
+    finish(scan);
     if (scan->joined && second->rows->twin == NULL) {
         first->rows->damaged = !png_rows_read_parted(first->rows, second->filtered[slot], first->filtered[0], size);
         scan->joined = false;
@@ -408,7 +384,7 @@ static bool scan_band(Scan *scan, int slot) {
     if (!same) give(scan, slot, 0);
     if (same) give_next(scan, 1 - slot);
     unfilter(first, scan->joined ? second->filtered[slot] : first->filtered[0], scan->count);
-    if (!same) png_fast_finish(scan);
+    if (!same) finish(scan);
     if (first->rows->damaged || (!same && second->rows->damaged)) return false;
     if (!same) give_next(scan, 1 - slot);
     if (!deliver(scan, same)) return false;
@@ -428,27 +404,33 @@ static bool scan_bands(Scan *scan) {
     return !first->damaged && png_rows_end(first) && ok;
 }
 
-static bool same_layout(const PngLayout *a, const PngLayout *b) {
-    return a->width == b->width && a->height == b->height && a->color == b->color && a->depth == b->depth &&
-           a->colors == b->colors && memcmp(a->palette, b->palette, sizeof a->palette) == 0 &&
-           a->has_clear == b->has_clear && memcmp(a->clear, b->clear, sizeof a->clear) == 0;
-}
-
-static bool png_fast_start(Scan *scan, size_t band, bool threads) {
+static bool start(Scan *scan, size_t band, bool threads) {
     Error ignored = {0};
     Side *sides = scan->sides;
-    const PngLayout *layout = &sides[0].rows->layout, *other = &sides[1].rows->layout; /* of one file: itself */
+    const PngLayout *a = &sides[0].rows->layout, *b = &sides[1].rows->layout; /* of one file: itself */
     const size_t fit = band / (sides[0].rows->bytes + 1);
-    if (scan->files > 1 && (layout->width != other->width || layout->height != other->height)) return false;
-    scan->alike = scan->files == 1 || same_layout(layout, other);
-    scan->band = fit < 1 ? 1 : fit < layout->height ? (int)fit : (int)layout->height;
-    for (int i = 0; i < scan->files; i++)
-        if (!side_start(&sides[i], scan->band, scan->kept, i > 0)) return false;
+    if (scan->files > 1 && (a->width != b->width || a->height != b->height)) return false;
+    scan->alike = a->color == b->color && a->depth == b->depth && a->colors == b->colors &&
+                  memcmp(a->palette, b->palette, sizeof a->palette) == 0 && a->has_clear == b->has_clear &&
+                  memcmp(a->clear, b->clear, sizeof a->clear) == 0;
+    scan->band = fit < 1 ? 1 : fit < a->height ? (int)fit : (int)a->height;
+    for (int i = 0; i < scan->files; i++) {
+        Side *side = &sides[i];
+        const size_t bytes = side->rows->bytes, stored = (size_t)scan->band * (bytes + 1) + SLACK,
+                     all = (size_t)(scan->band + scan->kept) * bytes;
+        side->memory = calloc((i > 0 ? 2 : 1) * stored + all + SLACK, 1);
+        if (side->memory == NULL) return false;
+        side->above = side->memory;
+        side->band = side->above + (size_t)scan->kept * bytes;
+        side->filtered[0] = side->memory + all + SLACK;
+        side->filtered[1] = side->filtered[0] + (i > 0 ? stored : 0);
+        if (!png_rows_start(side->rows)) return false;
+    }
     scan->joined = scan->files > 1 && scan->alike;
     if (scan->joined) sides[1].rows->twin = sides[0].rows;
-    if (threads && scan->files > 1 && scan->band < (int)layout->height)
+    if (threads && scan->files > 1 && scan->band < (int)a->height)
         scan->background = background_start(do_task, scan, &ignored); /* without it, one thread does all */
-    return scan->sink->begin(scan->sink->context, (int)layout->width, (int)layout->height);
+    return scan->sink->begin(scan->sink->context, (int)a->width, (int)a->height);
 }
 
 bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool threads, const RowSink *sink) {
@@ -456,7 +438,7 @@ bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool thre
     Scan scan = {.files = files, .equal = true, .sink = sink, .since = FAR_AWAY};
     scan.kept = around > 1 && around < ROWS_ALL ? around : 1; /* none is left out of all */
     for (int i = 0; i < 2; i++) scan.sides[i].rows = rows[i < files ? i : 0];
-    const bool ok = png_fast_start(&scan, band, threads) && scan_bands(&scan);
+    const bool ok = start(&scan, band, threads) && scan_bands(&scan);
     background_stop(scan.background);
     for (int i = 0; i < files; i++) {
         rows[i]->damaged = rows[i]->damaged || scan.sides[i].failed;
@@ -482,7 +464,7 @@ bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files,
 
 static uint8_t *pixels_of(const Image *image, int y) { return image->pixels + (size_t)y * (size_t)image->width * 4; }
 
-static Image *png_fast_create(int width, int height) {
+static Image *create(int width, int height) {
     Error ignored = {0};
     Image *image = image_create_unset(width, height, &ignored);
     if (image != NULL) image_provide(image);
@@ -491,13 +473,13 @@ static Image *png_fast_create(int width, int height) {
 
 static bool begin_images(void *context, int width, int height) {
     Image **images = context;
-    return (images[0] = png_fast_create(width, height)) != NULL;
+    return (images[0] = create(width, height)) != NULL;
 }
 
 static uint8_t *place_in_image(void *context, int side, int y) {
     Image **images = context;
     if (images[side] == NULL) {
-        if ((images[1] = png_fast_create(images[0]->width, images[0]->height)) == NULL) return NULL;
+        if ((images[1] = create(images[0]->width, images[0]->height)) == NULL) return NULL;
         memcpy(images[1]->pixels, images[0]->pixels, (size_t)y * (size_t)images[0]->width * 4);
     }
     return pixels_of(images[side], y);

@@ -10,8 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Longer chunks are not held, but for those that say how a picture displays. */
-enum { MAX_CHUNK = 1 << 16, CHUNK_HEAD = 8, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2 };
+enum { CHUNK_HEAD = 8, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2 };
 
 static bool is_pixels(const uint8_t head[CHUNK_HEAD]) { return memcmp(head + 4, "IDAT", 4) == 0; }
 
@@ -41,9 +40,17 @@ static bool read_palette(const PngChunk *chunk, PngLayout *layout) {
     return true;
 }
 
-/* Samples of 16 bits, here of at most 8. */
-static bool read_clear_colour(const PngChunk *chunk, PngLayout *layout, size_t samples) {
-    if (chunk->length != 2 * samples) return false;
+static bool read_transparency(const PngChunk *chunk, PngLayout *layout) {
+    if (layout->has_clear) return false;
+    layout->has_clear = true;
+    if (layout->color == PNG_PALETTE) {
+        if (chunk->length == 0 || chunk->length > (size_t)layout->colors) return false;
+        for (size_t i = 0; i < chunk->length; i++) layout->palette[i][3] = chunk->data[i];
+        return true;
+    }
+    /* Samples of 16 bits, here of at most 8. */
+    const size_t samples = layout->color == PNG_GREY ? 1 : layout->color == PNG_RGB ? 3 : 0;
+    if (samples == 0 || chunk->length != 2 * samples) return false;
     for (size_t i = 0; i < samples; i++) {
         layout->clear[i] = chunk->data[2 * i + 1];
         if (chunk->data[2 * i] != 0 || layout->clear[i] >> layout->depth != 0) return false;
@@ -51,33 +58,17 @@ static bool read_clear_colour(const PngChunk *chunk, PngLayout *layout, size_t s
     return true;
 }
 
-static bool read_transparency(const PngChunk *chunk, PngLayout *layout) {
-    if (layout->has_clear) return false;
-    layout->has_clear = true;
-    if (layout->color == PNG_GREY) return read_clear_colour(chunk, layout, 1);
-    if (layout->color == PNG_RGB) return read_clear_colour(chunk, layout, 3);
-    if (layout->color != PNG_PALETTE || chunk->length == 0 || chunk->length > (size_t)layout->colors) return false;
-    for (size_t i = 0; i < chunk->length; i++) layout->palette[i][3] = chunk->data[i];
-    return true;
-}
-
-/* What has been seen of a file. */
-typedef struct Scan {
-    bool pixels, pixels_ended, ended;
-} Scan;
-
-/* The checksum of a chunk that is not held, of which the head is read. */
-static bool check_chunk(PngRows *rows, const uint8_t head[CHUNK_HEAD]) {
-    const bool pixels = is_pixels(head);
+/* The checksum of a chunk of pixels, of which the head is read. */
+static bool check_pixels(PngRows *rows, const uint8_t head[CHUNK_HEAD]) {
     const uint8_t *bytes;
     uint8_t wanted[4];
     uint32_t checksum = libdeflate_crc32(0, head + 4, 4);
     for (size_t count, left = png_number(head); left > 0; left -= count, rows->source.at += count) {
         if ((count = png_source_peek(&rows->source, left, &bytes)) == 0) return false;
         checksum = libdeflate_crc32(checksum, bytes, count);
-        for (size_t i = 0; pixels && i < count && rows->compressed + i < HEADER_SIZE; i++)
+        for (size_t i = 0; i < count && rows->compressed + i < HEADER_SIZE; i++)
             rows->zlib[rows->compressed + i] = bytes[i];
-        rows->compressed += pixels ? count : 0;
+        rows->compressed += count;
     }
     return png_source_take(&rows->source, wanted, sizeof wanted) && checksum == png_number(wanted);
 }
@@ -88,34 +79,6 @@ static uint8_t *add_room(PngRows *rows, size_t size) {
     if (!array_reserve((void **)&rows->rest, &rows->rest_capacity, all, 1)) return NULL;
     rows->rest_size = all;
     return rows->rest + at;
-}
-
-static bool scan_pixels(PngRows *rows, Scan *scan, const uint8_t head[CHUNK_HEAD]) {
-    const PngLayout *layout = &rows->layout;
-    if (scan->pixels_ended || (layout->color == PNG_PALETTE && layout->colors == 0)) return false;
-    if (!scan->pixels) {
-        uint8_t *room = add_room(rows, sizeof png_no_pixels);
-        if (room == NULL) return false;
-        memcpy(room, png_no_pixels, sizeof png_no_pixels);
-    }
-    scan->pixels = true;
-    return check_chunk(rows, head);
-}
-
-static bool scan_chunk(PngRows *rows, Scan *scan, const PngChunk *chunk) {
-    scan->pixels_ended = scan->pixels;
-    scan->ended = png_chunk_is(chunk, "IEND");
-    if (scan->ended) return scan->pixels && chunk->length == 0;
-    if (png_chunk_is(chunk, "PLTE")) return !scan->pixels && read_palette(chunk, &rows->layout);
-    if (png_chunk_is(chunk, "tRNS")) return !scan->pixels && read_transparency(chunk, &rows->layout);
-    bool critical = (chunk->type[0] & 0x20) == 0, animated = png_chunk_is(chunk, "acTL") && !scan->pixels;
-    return !critical && !animated;
-}
-
-static void size_rows(PngRows *rows) {
-    int bits = png_channels[rows->layout.color] * rows->layout.depth;
-    rows->bytes = ((size_t)rows->layout.width * (size_t)bits + 7) / 8;
-    rows->step = (bits + 7) / 8;
 }
 
 /* The next chunk, which is kept, with its checksum checked. */
@@ -130,55 +93,54 @@ static bool keep_chunk(PngRows *rows, const uint8_t head[CHUNK_HEAD], PngChunk *
            png_chunk_next(rows->rest, rows->rest_size, &at, chunk) && png_chunk_is_sound(chunk);
 }
 
-/* A long text, a provenance, a thumbnail: nothing that matters here. */
-static bool is_ballast(const uint8_t head[CHUNK_HEAD]) {
-    const PngChunk chunk = {.type = head + 4};
-    return png_number(head) > MAX_CHUNK && png_chunk_has_name(&chunk) && (head[4] & 0x20) != 0 &&
-           !png_chunk_is(&chunk, "iCCP") && !png_chunk_is(&chunk, "eXIf") && !png_chunk_is(&chunk, "tRNS") &&
-           !png_chunk_is(&chunk, "acTL");
-}
-
-static bool scan_next(PngRows *rows, Scan *scan) {
-    PngChunk chunk;
-    uint8_t head[CHUNK_HEAD];
-    if (!png_source_take(&rows->source, head, sizeof head)) return false;
-    if (is_pixels(head)) return scan_pixels(rows, scan, head);
-    if (is_ballast(head)) {
-        scan->pixels_ended = scan->pixels;
-        return check_chunk(rows, head);
-    }
-    return keep_chunk(rows, head, &chunk) && scan_chunk(rows, scan, &chunk);
-}
-
-static bool scan_start(PngRows *rows, int64_t max_pixels) {
+bool png_rows_open(PngRows *rows, int64_t max_pixels) {
+    PngLayout *layout = &rows->layout;
     PngChunk chunk;
     uint8_t head[CHUNK_HEAD], *room = add_room(rows, PNG_SIGNATURE);
     if (room == NULL || !png_source_take(&rows->source, room, PNG_SIGNATURE) ||
         !png_has_signature(room, PNG_SIGNATURE) || !png_source_take(&rows->source, head, sizeof head) ||
-        !keep_chunk(rows, head, &chunk) || !read_header(&chunk, &rows->layout, max_pixels))
+        !keep_chunk(rows, head, &chunk) || !read_header(&chunk, layout, max_pixels))
         return false;
-    size_rows(rows);
-    return true;
-}
+    const int bits = png_channels[layout->color] * layout->depth;
+    rows->bytes = ((size_t)layout->width * (size_t)bits + 7) / 8;
+    rows->step = (bits + 7) / 8;
 
-/* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the
-   stream is cut into calls. */
-static bool check_compression(const PngRows *rows) {
-    const uint8_t *header = rows->zlib;
-    int window_bits = (header[0] >> 4) + 8;
-    return (header[0] & 0x0F) == Z_DEFLATED && (header[0] << 8 | header[1]) % 31 == 0 && (header[1] & 0x20) == 0 &&
+    bool pixels = false, pixels_ended = false, ended = false;
+    while (!ended) {
+        if (!png_source_take(&rows->source, head, sizeof head)) return false;
+        if (is_pixels(head)) {
+            if (pixels_ended || (layout->color == PNG_PALETTE && layout->colors == 0)) return false;
+            if (!pixels) {
+                if ((room = add_room(rows, sizeof png_no_pixels)) == NULL) return false;
+                memcpy(room, png_no_pixels, sizeof png_no_pixels);
+            }
+            pixels = true;
+            if (!check_pixels(rows, head)) return false;
+            continue;
+        }
+        if (!keep_chunk(rows, head, &chunk)) return false;
+        pixels_ended = pixels;
+        ended = png_chunk_is(&chunk, "IEND");
+        if (ended) {
+            if (!pixels || chunk.length > 0) return false;
+        } else if (png_chunk_is(&chunk, "PLTE")) {
+            if (pixels || !read_palette(&chunk, layout)) return false;
+        } else if (png_chunk_is(&chunk, "tRNS")) {
+            if (pixels || !read_transparency(&chunk, layout)) return false;
+        } else if ((chunk.type[0] & 0x20) == 0 || (png_chunk_is(&chunk, "acTL") && !pixels))
+            return false;
+    }
+    if (!png_source_end(&rows->source)) return false;
+
+    /* Before memory is allocated for pixels that the file cannot hold. */
+    if (rows->bytes >= UINT32_MAX / 2 || !png_can_hold(rows->compressed, (double)png_rows_size(rows))) return false;
+    /* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the
+       stream is cut into calls. */
+    const uint8_t *zlib = rows->zlib;
+    const int window_bits = (zlib[0] >> 4) + 8;
+    return (zlib[0] & 0x0F) == Z_DEFLATED && (zlib[0] << 8 | zlib[1]) % 31 == 0 && (zlib[1] & 0x20) == 0 &&
            window_bits <= MAX_WINDOW_BITS &&
            (window_bits == MAX_WINDOW_BITS || png_rows_size(rows) >> window_bits == 0);
-}
-
-bool png_rows_open(PngRows *rows, int64_t max_pixels) {
-    Scan scan = {false, false, false};
-    if (!scan_start(rows, max_pixels)) return false;
-    while (!scan.ended)
-        if (!scan_next(rows, &scan)) return false;
-    /* Before memory is allocated for pixels that the file cannot hold. */
-    return png_source_end(&rows->source) && rows->bytes < UINT32_MAX / 2 &&
-           png_can_hold(rows->compressed, (double)png_rows_size(rows)) && check_compression(rows);
 }
 
 size_t png_rows_size(const PngRows *rows) { return (rows->bytes + 1) * rows->layout.height; }
@@ -264,34 +226,25 @@ static void pass_pixels(PngRows *rows, size_t count) {
     rows->pixels -= count;
 }
 
-/* How many bytes are the same. */
-static size_t common(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size) {
-    const size_t most = a_size < b_size ? a_size : b_size;
-    size_t count = 0;
-    if (most > 0 && memcmp(a, b, most) == 0) return most;
-    while (count < most && a[count] == b[count]) count++;
-    return count;
-}
-
-/* From here on the twin, whose next bytes are others, decompresses for itself. */
-static void part(PngRows *rows) {
-    PngRows *twin = rows->twin;
-    rows->twin = NULL;
-    twin->started = stream_copy(twin->stream, rows->stream);
-    twin->ended = rows->ended;
-}
-
-/* Gives the stream the next compressed bytes, with a twin those that both have. */
-static bool png_rows_feed(PngRows *rows) {
+/* Gives the stream the next compressed bytes, with a twin those that both have. From where the twin's are others, it
+   decompresses for itself. */
+static bool feed(PngRows *rows) {
     const uint8_t *bytes = NULL, *other = NULL;
     if (rows->stream->z.avail_in > 0) return true;
     size_t count = peek_pixels(rows, &bytes);
     if (rows->twin != NULL) {
-        const size_t others = peek_pixels(rows->twin, &other), same = common(bytes, count, other, others);
+        PngRows *twin = rows->twin;
+        const size_t others = peek_pixels(twin, &other), most = count < others ? count : others;
+        size_t same = most > 0 && memcmp(bytes, other, most) == 0 ? most : 0;
+        if (same == 0)
+            while (same < most && bytes[same] == other[same]) same++;
         if (same > 0)
-            pass_pixels(rows->twin, count = same);
-        else
-            part(rows);
+            pass_pixels(twin, count = same);
+        else {
+            rows->twin = NULL;
+            twin->started = stream_copy(twin->stream, rows->stream);
+            twin->ended = rows->ended;
+        }
     }
     rows->stream->z.next_in = (uint8_t *)bytes; /* not changed */
     rows->stream->z.avail_in = (uint32_t)count;
@@ -316,7 +269,7 @@ bool png_rows_read(PngRows *rows, uint8_t *to, size_t size) {
     while (rows->stream->z.avail_out > 0) {
         const uint32_t room = rows->stream->z.avail_out;
         if (rows->ended) return false;
-        const bool more = png_rows_feed(rows);
+        const bool more = feed(rows);
         if ((!more && !has_left(rows->stream)) || !stream_run(rows->stream, &rows->ended)) return false;
         if (!more && rows->stream->z.avail_out == room) return false; /* it waits for bytes that are missing */
     }
@@ -334,7 +287,7 @@ bool png_rows_end(PngRows *rows) {
     const bool more = png_rows_read(rows, &extra, 1);
     while (rows->twin != NULL && !more) { /* the padding behind the stream, until the files part */
         rows->stream->z.avail_in = 0;
-        (void)png_rows_feed(rows);
+        (void)feed(rows);
     }
     rows->damaged = more || !rows->ended || !png_source_end(&rows->source);
     return !rows->damaged;

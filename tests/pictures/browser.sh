@@ -17,12 +17,6 @@ browse() {
     run "$@"
 }
 
-# browse_firefox SCRIPT ...: the same in Firefox.
-browse_firefox() {
-    command -v firefox-esr firefox >/dev/null || skip "firefox-esr is not installed; tests/setup --all does that"
-    run "$@"
-}
-
 need_live() {
     "$twinbox" page --live "$sources/scenes/single.yaml" -o /dev/null 2>&1 | grep -q "no module" &&
         skip "the build has no module for live pages"

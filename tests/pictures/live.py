@@ -5,14 +5,12 @@ import os
 import random
 import re
 import subprocess
-import sys
 import urllib.parse
 from concurrent.futures import ThreadPoolExecutor
 
 from access import check_tab, check_text, check_tree
 from checks import Checks
 from chromium import Chromium
-from firefox import Firefox
 from page import ScriptError
 
 METHODS = "engine", "interior"
@@ -403,26 +401,20 @@ def check_memory(checks, browser):
 
 
 def main():
-    with Checks() as checks:
-        if sys.argv[3:] == ["--browser", "firefox"]:
-            with Firefox() as browser:
-                check_launches(checks, browser)
-                check_drag(checks, open_scene(checks, browser, "stack", *METHODS))
-            return
-        with Chromium("!!window.player?.data") as browser:
-            browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
-            check_launches(checks, browser)
-            check_beginning(checks, browser)
-            check_controls(checks, browser)
-            check_shell(checks, browser)
-            check_framing(checks, browser)
-            check_access(checks, browser)
-            check_keyboard(checks, browser)
-            check_prediction(checks, browser)
-            check_colours(checks, browser)
-            check_rubbish(checks, browser)
-            check_bad_scenes(checks, browser)
-            check_memory(checks, browser)
+    with Checks() as checks, Chromium("!!window.player?.data") as browser:
+        browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
+        check_launches(checks, browser)
+        check_beginning(checks, browser)
+        check_controls(checks, browser)
+        check_shell(checks, browser)
+        check_framing(checks, browser)
+        check_access(checks, browser)
+        check_keyboard(checks, browser)
+        check_prediction(checks, browser)
+        check_colours(checks, browser)
+        check_rubbish(checks, browser)
+        check_bad_scenes(checks, browser)
+        check_memory(checks, browser)
 
 
 main()

@@ -135,27 +135,134 @@ static void refuse(const char *path, const char *text) {
     assert_error(error, ERROR_INPUT, text);
 }
 
-TEST(truncated_files_are_refused) {
-    size_t size;
-    FREED char *data = small_file(&size);
-    const char *path = temporary_path("truncated.png");
-    for (size_t length = 0; length < size; length++) {
-        write_bytes(path, data, length);
-        refuse(path, "not a PNG file, or damaged");
-    }
+static bool check(const void *data, size_t size, Error *error) {
+    int width, height;
+    *error = (Error){0};
+    return png_check(data, size, "x.png", &width, &height, error);
+}
+
+/* By the check and by the decoder. */
+static void refuse_both(const void *data, size_t size, const char *why) {
+    Error error;
+    assert_refused(check(data, size, &error), why);
+    assert_null(image_decode_png(data, size, "x.png", IMAGE_MAX_PIXELS, &(Error){0}));
 }
 
 /* Checksums cover every byte of a PNG after its signature. */
-TEST(every_flipped_bit_is_noticed) {
+TEST(cut_and_changed_files_are_refused) {
     size_t size;
     FREED char *data = small_file(&size);
-    const char *path = temporary_path("flipped.png");
+    for (size_t length = 0; length < size; length++) refuse_both(data, length, "not a PNG file, or damaged");
     for (size_t bit = 0; bit < size * 8; bit++) {
         data[bit / 8] = (char)(data[bit / 8] ^ 1 << bit % 8);
-        write_bytes(path, data, size);
-        refuse(path, "damaged");
+        refuse_both(data, size, "damaged");
         data[bit / 8] = (char)(data[bit / 8] ^ 1 << bit % 8);
     }
+    assert_ok(check(data, size, &error), error);
+}
+
+TEST(what_is_no_picture_is_named) {
+    static const char pointer[] =
+        "version https://git-lfs.github.com/spec/v1\n"
+        "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
+    refuse_both("", 0, "x.png: error: not a PNG file, or damaged: it is empty");
+    refuse_both(pointer, sizeof pointer - 1, "x.png: error: a Git LFS pointer, not the file itself; run: git lfs pull");
+    refuse_both("\x89PNG\r\n\x1a\n", 8, "unexpected end of file");
+}
+
+/* Headers of 4 x 4 pixels with these values. */
+TEST(headers_are_checked) {
+    static const struct {
+        uint32_t width, height;
+        int depth, color;
+    } cases[] = {{0, 4, 8, 2},  {4, 0, 8, 2}, {0x80000000, 4, 8, 2}, {4, 4, 3, 0}, {4, 4, 4, 2},
+                 {4, 4, 16, 3}, {4, 4, 0, 0}, {4, 4, 8, 1},          {4, 4, 8, 5}, {4, 4, 8, 7}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        PngParts png;
+        uint8_t pixels[64];
+        size_t size = compress_zeros(pixels, sizeof pixels, 4 * 13);
+        put_header(&png, cases[i].width, cases[i].height, cases[i].depth, cases[i].color);
+        put_chunk(&png, "IDAT", pixels, size);
+        put_chunk(&png, "IEND", NULL, 0);
+        refuse_both(png.data, png.size, "the header is invalid");
+    }
+}
+
+/* Files of 4 x 4 black pixels (RGB: rows of 13 bytes) with these chunks behind the header; IDAT is the whole stream,
+   IDA1 and IDA2 are its parts. */
+TEST(chunks_out_of_order_are_refused) {
+    static const struct {
+        const char *chunks[5], *why;
+    } cases[] = {{{"IEND"}, "it has no pixels"},
+                 {{"IDAT"}, "unexpected end of file"},
+                 {{"IDA1", "teXt", "IDA2", "IEND"}, "not consecutive"},
+                 {{"NEWS", "IDAT", "IEND"}, "an unknown critical chunk"},
+                 {{"acTL", "IDAT", "IEND"}, "an animated PNG (chunk acTL at byte 33)"},
+                 {{"xxXx", "IDA1", "IDA2", "xxXx", "IEND"}, NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        PngParts png;
+        uint8_t pixels[64];
+        const size_t size = compress_zeros(pixels, sizeof pixels, 4 * 13);
+        put_header(&png, 4, 4, 8, 2);
+        for (int k = 0; k < 5 && cases[i].chunks[k] != NULL; k++) {
+            const char *type = cases[i].chunks[k];
+            const bool first = strcmp(type, "IDA1") == 0, second = strcmp(type, "IDA2") == 0;
+            if (memcmp(type, "IDA", 3) == 0)
+                put_chunk(&png, "IDAT", pixels + (second ? 10 : 0), first ? 10 : second ? size - 10 : size);
+            else
+                put_chunk(&png, type, "\0\0\0\1\0\0\0\0", strcmp(type, "acTL") == 0 ? 8 : 0);
+        }
+        if (cases[i].why != NULL)
+            refuse_both(png.data, png.size, cases[i].why);
+        else
+            assert_ok(check(png.data, png.size, &error), error);
+    }
+    PngParts png;
+    uint8_t pixels[64] = {0x79}; /* no deflate */
+    put_header(&png, 4, 4, 8, 2);
+    put_chunk(&png, "IDAT", pixels, sizeof pixels);
+    put_chunk(&png, "IEND", NULL, 0);
+    refuse_both(png.data, png.size, "the pixels are not a zlib stream");
+}
+
+/* Deflate gives at most 1032 bytes for one: the best that zlib does lies above the limit, half of it below. */
+TEST(pixels_that_cannot_be_complete_are_refused) {
+    for (int rows = 2; rows <= 1000; rows += 998) {
+        PngParts png;
+        uint8_t pixels[4096];
+        const size_t size = compress_zeros(pixels, sizeof pixels, (size_t)rows * 3001);
+        put_header(&png, 1000, 1000, 8, 2);
+        put_chunk(&png, "IDAT", pixels, size);
+        put_chunk(&png, "IEND", NULL, 0);
+        if (rows < 1000)
+            refuse_both(png.data, png.size, "too few bytes for its pixels");
+        else
+            assert_ok(check(png.data, png.size, &error), error);
+    }
+}
+
+/* One red pixel, its stream with some padding cut into chunks behind `cut` bytes; each file is read by both decoders:
+   libpng's is forced by Adam7, which of one pixel is the plain order. */
+TEST(checksums_count_however_they_are_split) {
+    for (int i = 0; i < 2 * 12; i++)
+        for (int damaged = 0; damaged <= 4; damaged++) {
+            static PngParts file;
+            uint8_t stream[64] = {0};
+            uLongf size = sizeof stream;
+            assert_int_equal(compress(stream, &size, (const uint8_t[]){0, 255, 0, 0}, 4), Z_OK);
+            const size_t cut = (size_t)i / 2 % size;
+            if (damaged > 0) stream[size - (size_t)damaged] ^= 0x55;
+            put_header_of(&file, 1, 1, 8, PNG_COLOR_TYPE_RGB, i % 2);
+            put_chunk(&file, "IDAT", stream, cut);
+            for (size_t at = cut; at + 1 < size; at++) put_chunk(&file, "IDAT", stream + at, 1);
+            put_chunk(&file, "IDAT", stream + size - 1, 1 + 7);
+            put_chunk(&file, "IEND", NULL, 0);
+            error = (Error){0};
+            OWN(Image) *image = image_decode_png(file.data, file.size, "file.png", IMAGE_MAX_PIXELS, &error);
+            assert_int_equal(image != NULL, damaged == 0);
+            assert_int_equal(is_sound(&file, IMAGE_MAX_PIXELS, &(Error){0}), damaged == 0);
+            if (image != NULL) assert_memory_equal(image->pixels, ((const uint8_t[]){255, 0, 0, 255}), 4);
+        }
 }
 
 TEST(large_claims_are_refused_before_they_cost) {

@@ -108,13 +108,6 @@ static void make_file(PngParts *file, const Kind *kind, bool sound) {
     put_chunk(file, "IEND", NULL, 0);
 }
 
-static Image *by_libpng(const PngParts *file) {
-    Error error = {0};
-    Image *image = png_libpng_decode(file->data, file->size, "file", 1 << 20, &error);
-    if (image == NULL) assert_error(error, ERROR_INPUT, "file");
-    return image;
-}
-
 static void assert_same(const Image *a, const Image *b) {
     assert_true(a->width == b->width && a->height == b->height);
     assert_memory_equal(a->pixels, b->pixels, (size_t)a->width * (size_t)a->height * 4);
@@ -259,31 +252,6 @@ TEST(damaged_files_are_decoded_only_if_libpng_does) {
     assert_true(accepted > 1000 && accepted < 20000); /* else the damage tests nothing */
 }
 
-/* The pixels of both, and one picture only if all are equal. */
-TEST(pairs_are_as_two_pictures) {
-    int same = 0, pairs = 0;
-    for (int i = 0; i < 6000; i++) {
-        uint32_t start = seed;
-        make_file(&good, &kinds[i % SHALLOW], true);
-        if (i % 8 > 0) seed = start; /* the same picture, but for: */
-        changes.bytes = i % 8 < 3 ? 0 : i % 8 - 3, changes.otherwise = i % 8 == 2;
-        make_file(&bad, &kinds[i % SHALLOW], true);
-        changes.bytes = 0, changes.otherwise = false;
-        Image *images[2], *wanted[2] = {by_libpng(&good), by_libpng(&bad)};
-        if (png_fast_decode_pair((const uint8_t *const[]){good.data, bad.data}, (const size_t[]){good.size, bad.size},
-                                 1 << 20, images)) {
-            for (int k = 0; k < 2; k++) assert_same(images[k], wanted[k]);
-            ImageDifference difference;
-            image_compare_masked(wanted[0], wanted[1], NULL, 0, &difference);
-            assert_true(difference.equal || images[0] != images[1]);
-            same += images[0] == images[1], pairs++;
-            image_destroy_pair(images);
-        }
-        for (int k = 0; k < 2; k++) image_destroy(wanted[k]);
-    }
-    assert_true(same > 1000 && pairs - same > 1000);
-}
-
 /* Rows as the bands give them, in pictures; rows that are not given stay as they are. */
 typedef struct Given {
     Image *images[2];
@@ -320,8 +288,7 @@ static bool is_near_difference(const Image *a, const Image *b, int y, int around
     bool near = around == ROWS_ALL;
     const size_t bytes = 4 * (size_t)a->width;
     for (int i = 0; !near && i < a->height; i++)
-        near = abs(i - y) <= around &&
-               memcmp(a->pixels + bytes * (size_t)i, b->pixels + bytes * (size_t)i, bytes) != 0;
+        near = abs(i - y) <= around && memcmp(a->pixels + bytes * (size_t)i, b->pixels + bytes * (size_t)i, bytes) != 0;
     return near;
 }
 
