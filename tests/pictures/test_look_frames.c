@@ -73,6 +73,7 @@ TEST_WITH(hostile_runs_do_no_harm, make, destroy) {
             *run_position(runs[run], 20, FIRST_BOX) = vec2(bad[i], 1);
             *run_position(runs[run], 21, BOMB_BODY) = vec2(bad[i], bad[i]);
             *run_angle(runs[run], 20, SECOND_BOX) = bad[i];
+            *run_angle(runs[run], 20, GROUND_BODY) = 0.1F; /* the static layer */
             runs[run]->velocity[20 * RUN_BODIES + BOMB_BODY] = vec2(bad[i], 1);
             for (int64_t k = runs[run]->contact_start[20]; k < runs[run]->contact_start[22]; k++) {
                 runs[run]->contacts[k].point.x = bad[i];

@@ -119,6 +119,8 @@ TEST(a_manifest_tells_of_every_picture) {
     if (manifest == NULL) fail_msg("manifest.json:%d:%d: %s", failure.line, failure.column, failure.text);
     const json_t *pictures = json_object_get(manifest, "pictures");
     assert_int_equal(json_array_size(pictures), PICTURES);
+    FREED char *text = text_of(manifest_of(whole));
+    assert_null(strstr(text, temporary_folder)); /* no place is named */
     for (int i = 0; i < PICTURES; i++) check_picture(json_array_get(pictures, (size_t)i), i);
     json_decref(manifest);
 }
@@ -202,11 +204,6 @@ TEST(the_view_names_the_files_of_the_runs) {
     assert_string_equal(json_string_value(json_array_get(names, 0)), "two_boxes-pair-net_network=small.npz.npz");
     assert_string_equal(json_string_value(json_array_get(names, 1)), "two_boxes-engine.npz");
     json_decref(manifest);
-}
-
-TEST(a_manifest_names_no_place) {
-    FREED char *text = text_of(manifest_of(whole));
-    assert_null(strstr(text, temporary_folder));
 }
 
 TEST(nothing_is_drawn_twice) {

@@ -158,18 +158,6 @@ TEST(a_range_of_frames_is_a_complete_sequence) {
         }
 }
 
-TEST(time_steps_without_a_film_are_refused) {
-    const Trajectory *panels[] = {run};
-    MomentPlan plan;
-    run->dt = 1e-9F;
-    assert_refused(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.hold = 60}, &error),
-                   "too many pictures for one sequence");
-    run->dt = 10;
-    assert_true(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.slow = 2, .title_card = true}, &error));
-    assert_true(plan.title == 1 && plan.slow_first == IMPACT - 1 && plan.slow_last == IMPACT + 1);
-    run->dt = 1.0F / 60;
-}
-
 /* Films of other rates, and of given lengths. */
 
 static const double run_rates[] = {20, 59.94, 60, 75.5, 120, 1000}; /* Hz */
@@ -243,27 +231,6 @@ TEST(slow_motion_is_as_slow_at_every_rate) {
         }
 }
 
-/* Twice as slow at half the rate shows every frame: no pose is interpolated, although it is slow motion. */
-TEST(slow_motion_interpolates_only_where_it_must) {
-    MomentPlan plan = plan_at(120, (RenderOptions){.fps = 60, .slow = 2});
-    for (int p = 0; p < moments_last(&plan); p++) {
-        Moment moment = moments_at(&plan, p);
-        assert_true(moment.kind == MOMENT_STORED && moment.parts == 1);
-    }
-    plan = plan_at(120, (RenderOptions){.fps = 60, .slow = 4});
-    assert_int_equal(moments_at(&plan, moments_last(&plan) / 2).parts, 2);
-}
-
-TEST(cards_and_hold_last_as_long_at_every_rate) {
-    for (int f = 0; f < FILM_RATES; f++) {
-        const double fps = film_rates[f];
-        MomentPlan plan = plan_at(60, (RenderOptions){.fps = fps, .hold = 3, .title_card = true, .end_card = true});
-        assert_near(plan.title / fps, 2, 0.5 / fps + 1e-9);
-        assert_near(plan.end / fps, 2, 0.5 / fps + 1e-9);
-        assert_near(plan.hold / fps, 3, 0.5 / fps + 1e-9);
-    }
-}
-
 TEST(a_duration_is_that_of_the_whole_film) {
     static const double durations[] = {0.5, 1, 2, 7.5, 30};
     for (int d = 0; d < 5; d++)
@@ -289,17 +256,6 @@ TEST(a_duration_is_that_of_the_whole_film) {
     MomentPlan same = plan_at(60, (RenderOptions){.duration = FRAMES / 60.0});
     assert_near(same.speed, 1, 1e-6);
     for (int p = 0; p < FRAMES; p++) assert_int_equal(moments_at(&same, p).frame, p);
-}
-
-/* File names begin with the first frame. */
-TEST(a_range_plays_in_real_time) {
-    MomentPlan plan;
-    assert_ok(plan_range(&plan, 60, 30, 41, (RenderOptions){.fps = 30}, &error), error);
-    assert_int_equal(moments_last(&plan), 30 + 6);
-    for (int p = 0; p < 6; p++) assert_int_equal(moments_at(&plan, 30 + p).frame, 30 + 2 * p);
-    assert_int_equal(moments_at(&plan, 36).frame, 41);
-    assert_ok(plan_range(&plan, 60, 50, 50, (RenderOptions){.fps = 30}, &error), error);
-    assert_int_equal(moments_last(&plan), 50);
 }
 
 TEST(what_makes_no_sense_is_refused) {

@@ -96,38 +96,6 @@ TEST_WITH(the_largest_distance_of_any_panel_counts, make, destroy) {
     assert_true(isnan(picture_distance(&picture, moment_stored(4))));
 }
 
-/* The header shows the distance, and nothing else changes. */
-TEST_WITH(the_distance_is_written_down, make, destroy) {
-    uint64_t before = hash_of(2, 640, 360, 4);
-    *run_position(runs[1], 4, FIRST_BOX) = vec2(-500, 500); /* out of view */
-    *run_position(runs[0], 4, FIRST_BOX) = vec2(-500, 500);
-    uint64_t same = hash_of(2, 640, 360, 4);
-    assert_true(before != same);
-    run_position(runs[1], 4, FIRST_BOX)->x = -550;
-    assert_true(hash_of(2, 640, 360, 4) != same);
-    run_position(runs[1], 4, FIRST_BOX)->x = 3e38F;
-    uint64_t far = hash_of(2, 640, 360, 4);
-    run_position(runs[1], 4, FIRST_BOX)->x = 3e37F;
-    assert_true(hash_of(2, 640, 360, 4) == far); /* both are "> 1000 m" */
-}
-
-TEST_WITH(hostile_poses_do_no_harm, make, destroy) {
-    static const float bad[] = {NAN, INFINITY, -INFINITY, 3e38F, -1e20F, 1e9F, 1e-40F};
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        *run_position(runs[1], 5, FIRST_BOX) = vec2(bad[i], 1);
-        *run_position(runs[1], 5, SECOND_BOX) = vec2(1, bad[i]);
-        *run_angle(runs[1], 5, BOMB_BODY) = bad[i];
-        runs[0]->size[FIRST_BOX] = vec2(fabsf(bad[i]), 1);
-        *run_angle(runs[0], 5, SECOND_BOX) = bad[i];
-        runs[0]->camera_size = vec2(0, 0);
-        hash_of(2, 640, 360, 5);
-        runs[0]->camera_size = vec2(fabsf(bad[i]), 1);
-        runs[0]->camera_center = vec2(bad[i], -bad[i]);
-        hash_of(2, 64, 64, 5);
-        hash_of(2, 640, 360, 5);
-    }
-}
-
 TEST_WITH(bodies_out_of_view_are_counted, make, destroy) {
     Picture picture;
     *run_position(runs[1], 5, FIRST_BOX) = vec2(-1000, 3);
