@@ -28,79 +28,6 @@ static void end_entry(Row *row, const char *text) {
     row->x += row->font->pixels * 2;
 }
 
-static void add_outline(Row *row) {
-    char text[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
-    row->x = body_draw_swatch(row->picture, 0, true, row->x, row->baseline, row->font->pixels, row->drawing);
-    row->x += row->font->pixels / 2;
-    caption_method(row->picture, 0, text, note);
-    end_entry(row, text);
-}
-
-/* Each number stands between the colours of its two decades, of one rectangle per pixel column. */
-static void add_colors(Row *row) {
-    const Scales *scales = &row->picture->scales;
-    const int decades = scales->last_decade - SCALE_FIRST_DECADE, width = (int)rint(LEGEND_DECADE * row->font->pixels),
-              top = row->baseline - row->font->pixels * 3 / 4;
-    add_text(row, "distance  0.001 ");
-    double power = pow(10, SCALE_FIRST_DECADE);
-    for (int decade = 0; decade < decades; decade++) {
-        char text[32];
-        power *= 10;
-        for (int x = 0; x < width; x++)
-            drawing_add_rect(row->drawing, (Rect){row->x + x, top, row->x + x + 1, row->baseline},
-                             theme_ramp(row->picture->theme, (decade + (x + 0.5) / width) / decades));
-        row->x += width;
-        snprintf(text, sizeof text, " %g%s", power,
-                 decade + 1 < decades ? " "
-                 : scales->exceeded   ? " m or more"
-                                      : " m");
-        add_text(row, text);
-    }
-    end_entry(row, "");
-}
-
-static void add_labels(Row *row) {
-    static const char *const words[] = {
-        [LOOK_NUMBERS] = "number of the body", [LOOK_MASSES] = "mass, kg", [LOOK_NAMES] = "name"};
-    add_text(row, "in boxes that are large enough: ");
-    end_entry(row, words[row->picture->look.labels]);
-}
-
-static void add_trail(Row *row) {
-    const Picture *picture = row->picture;
-    char text[64];
-    int width = row->font->pixels * 2;
-    const double parts = LEGEND_TRAIL_PARTS;
-    for (int i = 0; i < LEGEND_TRAIL_PARTS; i++) {
-        Point from = {row->x + width * i / parts, row->middle}, to = {row->x + width * (i + 1) / parts, row->middle};
-        stroke_line(row->drawing, from, to, marks_line_thickness(picture),
-                    theme_mix(picture->theme->page, picture->theme->ink_soft, (i + 2) / (parts + 1)), &row->clip);
-    }
-    row->x += width + row->font->pixels / 2;
-    snprintf(text, sizeof text, "path of the last %g s", TRAIL_DURATION);
-    end_entry(row, text);
-}
-
-static void add_approach(Row *row) {
-    const Trajectory *run = row->picture->runs[0];
-    DashedLine line = approach_line(row->picture);
-    char text[64];
-    const int width = row->font->pixels * 2;
-    stroke_dashed(row->drawing, (Point){row->x, row->middle}, (Point){row->x + width, row->middle}, &line, &row->clip);
-    row->x += width + row->font->pixels / 2;
-    snprintf(text, sizeof text, "path of the bomb, from %.3g s until it strikes",
-             bomb_first_frame(run) * (double)run->dt);
-    end_entry(row, text);
-}
-
-static void add_dot(Row *row) {
-    double radius = fmax(marks_dot_radius(row->picture), LEGEND_DOT * row->font->pixels);
-    stroke_dot(row->drawing, (Point){row->x + radius, row->middle}, radius, row->picture->theme->panel,
-               row->picture->theme->impulse, &row->clip);
-    row->x += (int)ceil(2 * radius) + row->font->pixels / 2;
-    end_entry(row, "contact");
-}
-
 static void add_arrow(Row *row, double pixels, uint32_t color, double value, const char *unit) {
     ArrowStyle style = marks_arrow_style(row->picture, color);
     char text[64];
@@ -113,19 +40,95 @@ static void add_arrow(Row *row, double pixels, uint32_t color, double value, con
     end_entry(row, text);
 }
 
-static void add_impulse(Row *row) {
-    const Scales *scales = &row->picture->scales;
-    add_arrow(row, scales->legend_impulse * scales->impulse, row->picture->theme->impulse, scales->legend_impulse,
-              "N s");
-}
+typedef enum Entry {
+    ENTRY_OUTLINE,
+    ENTRY_COLOURS,
+    ENTRY_LABELS,
+    ENTRY_TRAIL,
+    ENTRY_APPROACH,
+    ENTRY_CONTACT,
+    ENTRY_IMPULSE,
+    ENTRY_VELOCITY,
+    ENTRY_HEADS
+} Entry;
 
-static void add_velocity(Row *row) {
-    const Scales *scales = &row->picture->scales;
-    add_arrow(row, scales->legend_velocity * scales->velocity, row->picture->theme->velocity, scales->legend_velocity,
-              "m/s");
+/* A sample, unless the entry is text alone, and what it means. */
+static void add(Row *row, Entry entry) {
+    static const char *const labels[] = {
+        [LOOK_NUMBERS] = "number of the body", [LOOK_MASSES] = "mass, kg", [LOOK_NAMES] = "name"};
+    const Picture *picture = row->picture;
+    const Theme *theme = picture->theme;
+    const Scales *scales = &picture->scales;
+    Drawing *drawing = row->drawing;
+    const int em = row->font->pixels;
+    char text[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
+    switch (entry) {
+    case ENTRY_OUTLINE:
+        row->x = body_draw_swatch(picture, 0, true, row->x, row->baseline, em, drawing) + em / 2;
+        caption_method(picture, 0, text, note);
+        end_entry(row, text);
+        break;
+    case ENTRY_COLOURS: { /* a number stands between the colours of its two decades, of one rectangle per pixel column */
+        const int decades = scales->last_decade - SCALE_FIRST_DECADE, width = (int)rint(LEGEND_DECADE * em),
+                  top = row->baseline - em * 3 / 4;
+        add_text(row, "distance  0.001 ");
+        double power = pow(10, SCALE_FIRST_DECADE);
+        for (int decade = 0; decade < decades; decade++) {
+            power *= 10;
+            for (int x = 0; x < width; x++)
+                drawing_add_rect(drawing, (Rect){row->x + x, top, row->x + x + 1, row->baseline},
+                                 theme_ramp(theme, (decade + (x + 0.5) / width) / decades));
+            row->x += width;
+            snprintf(text, sizeof text, " %g%s", power,
+                     decade + 1 < decades ? " "
+                     : scales->exceeded   ? " m or more"
+                                          : " m");
+            add_text(row, text);
+        }
+        end_entry(row, "");
+        break;
+    }
+    case ENTRY_LABELS:
+        add_text(row, "in boxes that are large enough: ");
+        end_entry(row, labels[picture->look.labels]);
+        break;
+    case ENTRY_TRAIL: {
+        const double parts = LEGEND_TRAIL_PARTS, width = em * 2;
+        for (int i = 0; i < LEGEND_TRAIL_PARTS; i++)
+            stroke_line(drawing, (Point){row->x + width * i / parts, row->middle},
+                        (Point){row->x + width * (i + 1) / parts, row->middle}, marks_line_thickness(picture),
+                        theme_mix(theme->page, theme->ink_soft, (i + 2) / (parts + 1)), &row->clip);
+        row->x += em * 2 + em / 2;
+        snprintf(text, sizeof text, "path of the last %g s", TRAIL_DURATION);
+        end_entry(row, text);
+        break;
+    }
+    case ENTRY_APPROACH: {
+        const Trajectory *run = picture->runs[0];
+        DashedLine line = approach_line(picture);
+        stroke_dashed(drawing, (Point){row->x, row->middle}, (Point){row->x + em * 2, row->middle}, &line, &row->clip);
+        row->x += em * 2 + em / 2;
+        snprintf(text, sizeof text, "path of the bomb, from %.3g s until it strikes",
+                 bomb_first_frame(run) * (double)run->dt);
+        end_entry(row, text);
+        break;
+    }
+    case ENTRY_CONTACT: {
+        const double radius = fmax(marks_dot_radius(picture), LEGEND_DOT * em);
+        stroke_dot(drawing, (Point){row->x + radius, row->middle}, radius, theme->panel, theme->impulse, &row->clip);
+        row->x += (int)ceil(2 * radius) + em / 2;
+        end_entry(row, "contact");
+        break;
+    }
+    case ENTRY_IMPULSE:
+        add_arrow(row, scales->legend_impulse * scales->impulse, theme->impulse, scales->legend_impulse, "N s");
+        break;
+    case ENTRY_VELOCITY:
+        add_arrow(row, scales->legend_velocity * scales->velocity, theme->velocity, scales->legend_velocity, "m/s");
+        break;
+    case ENTRY_HEADS: end_entry(row, ARROW_NOTE); break;
+    }
 }
-
-static void add_heads(Row *row) { end_entry(row, ARROW_NOTE); }
 
 static void begin_row(Row *row) {
     const Layout *layout = &row->picture->layout;
@@ -136,18 +139,18 @@ static void begin_row(Row *row) {
 }
 
 /* An entry that reaches too far right is removed and added again at the start of the next row. */
-static void place(Row *row, void (*add)(Row *row)) {
+static void place(Row *row, Entry entry) {
     if (row->rows == 0) begin_row(row);
     const Row before = *row;
     Drawing *drawing = row->drawing;
     const size_t rects = drawing->rect_count, shapes = drawing->shape_count, glyphs = drawing->glyph_count;
-    add(row);
+    add(row, entry);
     const bool first = before.x == row->picture->layout.area.left;
     if (first || row->x - row->font->pixels * 2 <= row->picture->layout.right) return;
     drawing->rect_count = rects, drawing->shape_count = shapes, drawing->glyph_count = glyphs;
     *row = before;
     begin_row(row);
-    add(row);
+    add(row, entry);
 }
 
 static int place_entries(const Picture *picture, Drawing *drawing) {
@@ -156,15 +159,15 @@ static int place_entries(const Picture *picture, Drawing *drawing) {
     Row row = {.picture = picture, .drawing = drawing, .font = &layout->axis};
     row.clip = (Rect){0, 0, layout->width, layout->height};
     bool difference = look->compare == LOOK_DIFFERENCE;
-    if (difference || (look->show & SHOW_GHOSTS && look->compare == LOOK_SPLIT)) place(&row, add_outline);
-    if (difference || look->show & SHOW_DISTANCE) place(&row, add_colors);
-    if (look->labels != LOOK_NO_LABELS) place(&row, add_labels);
-    if (look->show & SHOW_TRAILS) place(&row, add_trail);
-    if (look->approach && picture->runs[0]->bomb >= 0) place(&row, add_approach);
-    if (look->show & SHOW_CONTACTS) place(&row, add_dot);
-    if (look->show & SHOW_IMPULSES) place(&row, add_impulse);
-    if (look->show & SHOW_VELOCITIES) place(&row, add_velocity);
-    if (look->show & (SHOW_IMPULSES | SHOW_VELOCITIES)) place(&row, add_heads);
+    if (difference || (look->show & SHOW_GHOSTS && look->compare == LOOK_SPLIT)) place(&row, ENTRY_OUTLINE);
+    if (difference || look->show & SHOW_DISTANCE) place(&row, ENTRY_COLOURS);
+    if (look->labels != LOOK_NO_LABELS) place(&row, ENTRY_LABELS);
+    if (look->show & SHOW_TRAILS) place(&row, ENTRY_TRAIL);
+    if (look->approach && picture->runs[0]->bomb >= 0) place(&row, ENTRY_APPROACH);
+    if (look->show & SHOW_CONTACTS) place(&row, ENTRY_CONTACT);
+    if (look->show & SHOW_IMPULSES) place(&row, ENTRY_IMPULSE);
+    if (look->show & SHOW_VELOCITIES) place(&row, ENTRY_VELOCITY);
+    if (look->show & (SHOW_IMPULSES | SHOW_VELOCITIES)) place(&row, ENTRY_HEADS);
     return row.rows;
 }
 

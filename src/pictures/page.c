@@ -10,25 +10,19 @@
 #include <stdint.h>
 #include <string.h>
 
-/* XML 1.0, section 2.2. */
-static bool is_xml(uint32_t character) {
-    return character == '\t' || character == '\n' || character == '\r' ||
-           (character >= 0x20 && character != 0xFFFE && character != 0xFFFF);
-}
-
 void html_put(FILE *file, const char *text) {
     while (*text != '\0') {
         const char *begin = text;
-        uint32_t character = utf8_next(&text);
+        const uint32_t character = utf8_next(&text);
         switch (character) {
         case '&': fputs("&amp;", file); break;
         case '<': fputs("&lt;", file); break;
         case '>': fputs("&gt;", file); break;
         case '"': fputs("&quot;", file); break;
         case '\'': fputs("&#39;", file); break;
-        case 0xFFFD: fputs("\xef\xbf\xbd", file); break; /* also a byte that is not UTF-8 */
-        default:
-            if (is_xml(character))
+        default: /* U+FFFD is also a byte that is not UTF-8; XML 1.0, section 2.2 */
+            if (character == '\t' || character == '\n' || character == '\r' ||
+                (character >= 0x20 && character < 0xFFFD) || character > 0xFFFF)
                 fwrite(begin, 1, (size_t)(text - begin), file);
             else
                 fputs("\xef\xbf\xbd", file);
@@ -65,27 +59,23 @@ void house_page_begin(FILE *out, const char *title, const char *style) {
 
 void house_page_end(FILE *out) { fputs("</main>\n</body>\n</html>\n", out); }
 
-static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-static void put_group(const uint8_t *bytes, size_t left, char *to) {
-    uint32_t group = (uint32_t)bytes[0] << 16;
-    if (left > 1) group |= (uint32_t)bytes[1] << 8;
-    if (left > 2) group |= bytes[2];
-    to[0] = digits[group >> 18];
-    to[1] = digits[group >> 12 & 63];
-    to[2] = left > 1 ? digits[group >> 6 & 63] : '=';
-    to[3] = left > 2 ? digits[group & 63] : '=';
-}
-
 void base64_put(FILE *file, const void *data, size_t size) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const uint8_t *bytes = data;
     char text[4096];
     size_t used = 0;
-    for (size_t i = 0; i < size; i += 3, used += 4) {
+    for (size_t i = 0; i < size; i += 3) {
+        const size_t left = size - i;
+        const uint32_t group =
+            (uint32_t)bytes[i] << 16 | (left > 1 ? (uint32_t)bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0u);
         if (used == sizeof text) {
             fwrite(text, 1, used, file); /* an error stays in the file, for the caller */
             used = 0;
         }
-        put_group((const uint8_t *)data + i, size - i, text + used);
+        text[used++] = digits[group >> 18];
+        text[used++] = digits[group >> 12 & 63];
+        text[used++] = left > 1 ? digits[group >> 6 & 63] : '=';
+        text[used++] = left > 2 ? digits[group & 63] : '=';
     }
     fwrite(text, 1, used, file);
 }

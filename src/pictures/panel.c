@@ -25,69 +25,52 @@ static double nth_step(int n) {
     return cycle[n % 3] * pow(10, n / 3);
 }
 
-/* Between two places in pixels, which are counted like metres: upwards. Steps of 1 m if they fit, otherwise the nearest
-   that do. */
-static Lines lines_between(const Picture *picture, double origin, double low, double high) {
+/* Pixels are counted like metres, upwards. Steps of 1 m if they fit, otherwise the nearest that do. */
+static Lines lines_across(const Picture *picture, bool vertical) {
     static const int strong[] = {5, 5, 2};
+    const Camera *camera = &picture->camera;
     const Rect *panel = &picture->layout.panels[0];
-    const double height = panel->bottom - panel->top, scale = picture->grid_scale;
+    const double width = panel->right - panel->left, height = panel->bottom - panel->top, scale = picture->grid_scale;
     int n = 3;
     double step = nth_step(n);
     while (step * scale < fmax(MIN_SPACING * height, MIN_PIXELS)) n++, step = nth_step(n);
     while (n <= 3 && n > 0 && step * strong[n % 3] * scale > MAX_SPACING * height) n--, step = nth_step(n);
-    const double spacing = step * picture->camera.scale;
+    const double spacing = step * camera->scale, origin = vertical ? camera->left : -camera->top,
+                 low = vertical ? 0 : -(height - 1), high = vertical ? width - 1 : 0;
     const double first = ceil((low - origin) / spacing), last = floor((high - origin) / spacing);
     return (Lines){step, first, spacing, origin, strong[n % 3], (int)(last - first) + 1};
 }
 
-static Lines vertical_lines(const Picture *picture) {
-    const Rect *panel = &picture->layout.panels[0];
-    return lines_between(picture, picture->camera.left, 0, panel->right - panel->left - 1);
-}
-
-static Lines horizontal_lines(const Picture *picture) {
-    const Rect *panel = &picture->layout.panels[0];
-    return lines_between(picture, -picture->camera.top, -(panel->bottom - panel->top - 1), 0);
-}
-
 static double line_place(const Lines *lines, int i) { return lines->origin + (lines->first + i) * lines->spacing; }
-
 static int line_pixel(const Lines *lines, int i) { return (int)rint(line_place(lines, i)); }
 
 static bool is_strong(const Lines *lines, int i) { return fmod(lines->first + i, lines->strong) == 0; }
 
-/* Lines at whole pixels are crisp, but with a moving camera they would jitter: `off` restores the fraction lost by
+/* Lines at whole pixels are crisp, but with a moving camera they would jitter: they keep the fraction lost by
    rounding. */
-static void draw_line(const Picture *picture, int panel, Rect line, Point off, uint32_t color, Drawing *drawing) {
-    if (picture->path == NULL) {
-        drawing_add_rect(drawing, line, color);
-        return;
-    }
-    Shape shape = {.x = (line.left + line.right) / 2.0 + off.x,
-                   .y = (line.top + line.bottom) / 2.0 + off.y,
-                   .half_width = (line.right - line.left) / 2.0,
-                   .half_height = (line.bottom - line.top) / 2.0,
-                   .cosine = 1,
-                   .fill = color};
-    drawing_add_shape(drawing, &shape, &picture->layout.panels[panel]);
-}
-
 static void draw_lines(const Picture *picture, int panel, bool strong, Drawing *drawing) {
-    Rect rect = picture->layout.panels[panel];
-    Lines vertical = vertical_lines(picture), horizontal = horizontal_lines(picture);
-    uint32_t color = strong ? picture->theme->grid_strong : picture->theme->grid;
-    int thickness = picture->layout.hairline;
-    for (int i = 0; i < vertical.count; i++) {
-        int x = rect.left + line_pixel(&vertical, i);
-        if (is_strong(&vertical, i) == strong)
-            draw_line(picture, panel, (Rect){x, rect.top, x + thickness, rect.bottom},
-                      (Point){line_place(&vertical, i) - line_pixel(&vertical, i), 0}, color, drawing);
-    }
-    for (int i = 0; i < horizontal.count; i++) {
-        int y = rect.top - line_pixel(&horizontal, i);
-        if (is_strong(&horizontal, i) == strong)
-            draw_line(picture, panel, (Rect){rect.left, y, rect.right, y + thickness},
-                      (Point){0, line_pixel(&horizontal, i) - line_place(&horizontal, i)}, color, drawing);
+    const Rect *rect = &picture->layout.panels[panel];
+    const uint32_t color = strong ? picture->theme->grid_strong : picture->theme->grid;
+    const int thickness = picture->layout.hairline;
+    for (int vertical = 1; vertical >= 0; vertical--) {
+        const Lines lines = lines_across(picture, vertical == 1);
+        for (int i = 0; i < lines.count; i++) {
+            if (is_strong(&lines, i) != strong) continue;
+            const int pixel = line_pixel(&lines, i), x = rect->left + pixel, y = rect->top - pixel;
+            const double off = line_place(&lines, i) - pixel;
+            const Rect line = vertical == 1 ? (Rect){x, rect->top, x + thickness, rect->bottom}
+                                            : (Rect){rect->left, y, rect->right, y + thickness};
+            const Shape moving = {.x = (line.left + line.right) / 2.0 + (vertical == 1 ? off : 0),
+                                  .y = (line.top + line.bottom) / 2.0 - (vertical == 1 ? 0 : off),
+                                  .half_width = (line.right - line.left) / 2.0,
+                                  .half_height = (line.bottom - line.top) / 2.0,
+                                  .cosine = 1,
+                                  .fill = color};
+            if (picture->path == NULL)
+                drawing_add_rect(drawing, line, color);
+            else
+                drawing_add_shape(drawing, &moving, rect);
+        }
     }
 }
 
@@ -108,9 +91,9 @@ static Tics choose_tics(const Picture *picture, const Lines *lines, int room) {
     return (Tics){all, every * tic};
 }
 
-static bool has_number(const Lines *lines, int i, double every) { return fmod(lines->first + i, every) == 0; }
-
-static void format_metres(char *text, size_t size, double metres) {
+/* The number of a line, in metres. */
+static void format_line(char *text, size_t size, const Lines *lines, int i) {
+    const double metres = (lines->first + i) * lines->step;
     snprintf(text, size, "%s%g", metres < 0 ? MINUS : "", fabs(metres));
 }
 
@@ -118,42 +101,42 @@ static void format_metres(char *text, size_t size, double metres) {
 static void draw_bottom_axis(const Picture *picture, const Rect *rect, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Font *font = &layout->axis;
-    Lines lines = vertical_lines(picture);
+    Lines lines = lines_across(picture, true);
     int line = layout->hairline, baseline = rect->bottom + layout->axis_drop, gap = font->pixels / 2, widest = 0;
     int free_from = rect->left - font->pixels, unit = rect->right - font_width(font, "m");
     char text[32];
     font_add(drawing, font, "m", unit, baseline, picture->theme->ink_soft);
     for (int i = 0; i < lines.count; i++) {
         if (!is_strong(&lines, i)) continue;
-        format_metres(text, sizeof text, (lines.first + i) * lines.step);
+        format_line(text, sizeof text, &lines, i);
         widest = int_max(widest, font_width(font, text));
     }
     const Tics tics = choose_tics(picture, &lines, widest + gap);
     for (int i = 0; i < lines.count; i++) {
         if (!tics.all && !is_strong(&lines, i)) continue;
-        format_metres(text, sizeof text, (lines.first + i) * lines.step);
+        format_line(text, sizeof text, &lines, i);
         int x = rect->left + line_pixel(&lines, i), width = font_width(font, text), left = x - width / 2;
         drawing_add_rect(drawing, (Rect){x, rect->bottom + line, x + line, rect->bottom + line + layout->tick},
                          picture->theme->frame);
-        if (!has_number(&lines, i, tics.every) || left < free_from || left + width + gap > unit) continue;
+        if (fmod(lines.first + i, tics.every) != 0 || left < free_from || left + width + gap > unit) continue;
         free_from = font_add(drawing, font, text, left, baseline, picture->theme->ink_soft) + gap;
     }
 }
 
 static void draw_left_axis(const Picture *picture, const Rect *rect, Drawing *drawing) {
     const Layout *layout = &picture->layout;
-    Lines lines = horizontal_lines(picture);
+    Lines lines = lines_across(picture, false);
     int line = layout->hairline, rise = layout->axis.pixels * 3 / 8; /* half the height of a digit */
     const Tics tics = choose_tics(picture, &lines, layout->axis.pixels);
     for (int i = 0; i < lines.count; i++) {
         if (!tics.all && !is_strong(&lines, i)) continue;
         char text[32];
-        format_metres(text, sizeof text, (lines.first + i) * lines.step);
+        format_line(text, sizeof text, &lines, i);
         int y = rect->top - line_pixel(&lines, i);
         int right = rect->left - line - layout->tick;
         drawing_add_rect(drawing, (Rect){right, y, rect->left - line, y + line}, picture->theme->frame);
         int left = right - layout->tick - font_width(&layout->axis, text);
-        if (left >= 0 && has_number(&lines, i, tics.every))
+        if (left >= 0 && fmod(lines.first + i, tics.every) == 0)
             font_add(drawing, &layout->axis, text, left, y + rise, picture->theme->ink_soft);
     }
 }
