@@ -30,7 +30,6 @@ void drawing_free(Drawing *drawing) {
 }
 
 static double snap(double pixels) { return rint(pixels * SNAP) / SNAP; }
-
 static int32_t fixed(double pixels) { return (int32_t)rint(pixels * FIXED); }
 
 /* Clamps the interval [-*half, *half] to MAX_HALF_SIZE / 2 beyond [low, high]. Returns its new centre. */
@@ -70,9 +69,9 @@ static bool reserve(Drawing *drawing, void **items, size_t *capacity, size_t wan
 }
 
 static ShapeInstance *next_shape(Drawing *drawing) {
-    const size_t i = drawing->shape_count;
-    return reserve(drawing, (void **)&drawing->shapes, &drawing->shape_capacity, i + 1, sizeof *drawing->shapes)
-               ? &drawing->shapes[i]
+    const size_t wanted = drawing->shape_count + 1;
+    return reserve(drawing, (void **)&drawing->shapes, &drawing->shape_capacity, wanted, sizeof *drawing->shapes)
+               ? &drawing->shapes[drawing->shape_count]
                : NULL;
 }
 
@@ -134,24 +133,21 @@ uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap) {
     return memset(drawing->bitmaps + start, 0, size);
 }
 
-/* If the first row is below the shape's top, its local position moves by whole steps of the shader. */
-static void add_shape_rows(Drawing *drawing, const ShapeInstance *from, int top, int bottom) {
-    ShapeInstance *part = from->bounds[1] < bottom && from->bounds[3] > top ? next_shape(drawing) : NULL;
-    if (part == NULL) return;
-    *part = *from;
-    if (bottom < part->bounds[3]) part->bounds[3] = bottom;
-    if (top > part->bounds[1]) {
-        int64_t rows = top - part->bounds[1];
-        part->bounds[1] = top;
-        part->axis[2] = (int32_t)(part->axis[2] + rows * part->axis[1]);
-        part->axis[3] = (int32_t)(part->axis[3] - rows * part->axis[0]);
-    }
-    drawing->shape_count++;
-}
-
 void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom) {
-    for (size_t i = from->static_shapes; i < from->shape_count; i++)
-        add_shape_rows(drawing, &from->shapes[i], top, bottom);
+    for (size_t i = from->static_shapes; i < from->shape_count; i++) {
+        const ShapeInstance *whole = &from->shapes[i];
+        ShapeInstance *part = whole->bounds[1] < bottom && whole->bounds[3] > top ? next_shape(drawing) : NULL;
+        if (part == NULL) continue;
+        *part = *whole;
+        if (bottom < part->bounds[3]) part->bounds[3] = bottom;
+        if (top > part->bounds[1]) { /* its local position moves by whole steps of the shader */
+            const int64_t rows = top - part->bounds[1];
+            part->bounds[1] = top;
+            part->axis[2] = (int32_t)(part->axis[2] + rows * part->axis[1]);
+            part->axis[3] = (int32_t)(part->axis[3] - rows * part->axis[0]);
+        }
+        drawing->shape_count++;
+    }
     for (size_t i = 0; i < from->glyph_count; i++) {
         GlyphInstance part = from->glyphs[i];
         const int skipped = top > part.box[1] ? top - part.box[1] : 0;

@@ -94,18 +94,15 @@ static int compare_code(const void *code, const void *glyph) {
     return (wanted > found) - (wanted < found);
 }
 
-/* NULL if the atlas lacks the character. */
-static const FontGlyph *find_in_atlas(const Font *font, unsigned code) {
-    return bsearch(&code, font->glyphs, FONT_GLYPHS, sizeof *font->glyphs, compare_code);
-}
-
-/* The next character of a text. `outline` is NULL if the bitmap is in the atlas. */
+/* The next character of a text; '?' for one that neither has. `outline` is NULL if the bitmap is in the atlas. */
 static FontGlyph next_glyph(const Font *font, const char **text, const Glyph **outline) {
+    static const unsigned unknown = '?';
     const unsigned code = type_next_code(text);
-    const FontGlyph *glyph = find_in_atlas(font, code);
+    const FontGlyph *glyph = bsearch(&code, font->glyphs, FONT_GLYPHS, sizeof *glyph, compare_code);
     *outline = glyph == NULL ? type_find(font->face, code) : NULL;
     if (*outline != NULL) return glyph_metrics(font->face, *outline, font->pixels);
-    return glyph != NULL ? *glyph : *find_in_atlas(font, '?');
+    if (glyph == NULL) glyph = bsearch(&unknown, font->glyphs, FONT_GLYPHS, sizeof *glyph, compare_code);
+    return *glyph;
 }
 
 static int next_advance(const Font *font, const char **text) {

@@ -291,6 +291,7 @@ static bool do_task(void *context, void *item, Error *error) {
     return true;
 }
 
+/* Gives the second thread work, or does it at once. */
 static void give(Scan *scan, int slot, int count) {
     Error ignored = {0};
     scan->task = (Task){slot, count};
@@ -341,12 +342,6 @@ static bool deliver(Scan *scan, bool same) {
     return true;
 }
 
-/* The last rows of the band and above it. */
-static void keep_last(const Scan *scan, Side *side, const Side *from) {
-    const size_t bytes = from->rows->bytes;
-    memmove(side->above, from->above + (size_t)scan->count * bytes, (size_t)scan->kept * bytes);
-}
-
 static int rows_from(const Scan *scan, int top) {
     const int left = (int)scan->sides[0].rows->layout.height - top;
     return left < scan->band ? left : scan->band;
@@ -358,29 +353,23 @@ static void give_next(Scan *scan, int slot) {
     if (scan->files > 1 && count > 0) give(scan, slot, count);
 }
 
-/* Decompresses the rows of the first file, and waits for those of the second, in `slot`. *same: these rows of both are
-   equal, and so are all above. The first file's are then not stored, unless the two were read apart before. */
-static bool decompress_band(Scan *scan, int slot, bool *same) {
+/* The rows of the first file, and those of the second in `slot`. */
+static bool scan_band(Scan *scan, int slot) {
     Side *first = &scan->sides[0], *second = &scan->sides[1];
     const size_t size = (size_t)scan->count * (first->rows->bytes + 1);
     if (!scan->joined) decompress(first, 0, scan->count);
     finish(scan);
+    /* As long as both files have been equal, the first one's rows are not stored. */
     if (scan->joined && second->rows->twin == NULL) {
         first->rows->damaged = !png_rows_read_parted(first->rows, second->filtered[slot], first->filtered[0], size);
         scan->joined = false;
     }
     if (scan->joined) first->rows->damaged = second->rows->damaged;
     if (first->rows->damaged || second->rows->damaged) return false;
-    *same = scan->files == 1 || scan->joined ||
-            (scan->alike && scan->equal && memcmp(first->filtered[0], second->filtered[slot], size) == 0);
-    return true;
-}
 
-/* Equal bytes below equal rows are equal rows. */
-static bool scan_band(Scan *scan, int slot) {
-    Side *first = &scan->sides[0], *second = &scan->sides[1];
-    bool same;
-    if (!decompress_band(scan, slot, &same)) return false;
+    /* Equal bytes below equal rows are equal rows. */
+    const bool same = scan->files == 1 || scan->joined ||
+                      (scan->alike && scan->equal && memcmp(first->filtered[0], second->filtered[slot], size) == 0);
     if (!same) give(scan, slot, 0);
     if (same) give_next(scan, 1 - slot);
     unfilter(first, scan->joined ? second->filtered[slot] : first->filtered[0], scan->count);
@@ -388,8 +377,13 @@ static bool scan_band(Scan *scan, int slot) {
     if (first->rows->damaged || (!same && second->rows->damaged)) return false;
     if (!same) give_next(scan, 1 - slot);
     if (!deliver(scan, same)) return false;
-    if (scan->files > 1) keep_last(scan, second, same ? first : second);
-    keep_last(scan, first, first);
+
+    /* The last rows of the band and above it stay, of the second file those of the first where they are equal. */
+    for (int i = scan->files - 1; i >= 0; i--) {
+        const Side *from = same ? first : &scan->sides[i];
+        const size_t bytes = from->rows->bytes;
+        memmove(scan->sides[i].above, from->above + (size_t)scan->count * bytes, (size_t)scan->kept * bytes);
+    }
     return true;
 }
 
@@ -462,36 +456,32 @@ bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files,
 
 /* Pictures in memory: the second is made when a row differs. */
 
-static uint8_t *pixels_of(const Image *image, int y) { return image->pixels + (size_t)y * (size_t)image->width * 4; }
-
-static Image *create(int width, int height) {
-    Error ignored = {0};
-    Image *image = image_create_unset(width, height, &ignored);
-    if (image != NULL) image_provide(image);
-    return image;
-}
-
 static bool begin_images(void *context, int width, int height) {
     Image **images = context;
-    return (images[0] = create(width, height)) != NULL;
+    images[0] = image_create_unset(width, height, &(Error){0});
+    if (images[0] != NULL) image_provide(images[0]);
+    return images[0] != NULL;
 }
 
 static uint8_t *place_in_image(void *context, int side, int y) {
     Image **images = context;
+    const size_t above = (size_t)y * (size_t)images[0]->width * 4;
     if (images[side] == NULL) {
-        if ((images[1] = create(images[0]->width, images[0]->height)) == NULL) return NULL;
-        memcpy(images[1]->pixels, images[0]->pixels, (size_t)y * (size_t)images[0]->width * 4);
+        if ((images[1] = image_create_unset(images[0]->width, images[0]->height, &(Error){0})) == NULL) return NULL;
+        image_provide(images[1]);
+        memcpy(images[1]->pixels, images[0]->pixels, above);
     }
-    return pixels_of(images[side], y);
+    return images[side]->pixels + above;
 }
 
 static void keep_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
     Image **images = context;
-    if (a == b && images[1] != NULL) memcpy(pixels_of(images[1], y), a, (size_t)images[0]->width * 4);
+    const size_t bytes = (size_t)images[0]->width * 4;
+    if (a == b && images[1] != NULL) memcpy(images[1]->pixels + (size_t)y * bytes, a, bytes);
 }
 
-static bool decode_png_fast(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels,
-                            Image *images[2]) {
+static bool decode_files(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels,
+                         Image *images[2]) {
     const RowSink sink = {begin_images, place_in_image, keep_row, images, ROWS_ALL};
     images[0] = images[1] = NULL;
     if (png_fast_scan(data, sizes, files, max_pixels, PNG_BAND, false, &sink)) return true;
@@ -502,13 +492,13 @@ static bool decode_png_fast(const uint8_t *const data[], const size_t sizes[], i
 
 bool png_fast_decode(const uint8_t *data, size_t size, int64_t max_pixels, Image **image) {
     Image *images[2];
-    bool ok = decode_png_fast(&data, &size, 1, max_pixels, images);
+    const bool ok = decode_files(&data, &size, 1, max_pixels, images);
     *image = images[0];
     return ok;
 }
 
 bool png_fast_decode_pair(const uint8_t *const data[2], const size_t sizes[2], int64_t max_pixels, Image *images[2]) {
-    bool ok = decode_png_fast(data, sizes, 2, max_pixels, images);
+    const bool ok = decode_files(data, sizes, 2, max_pixels, images);
     if (images[1] == NULL) images[1] = images[0];
     return ok;
 }

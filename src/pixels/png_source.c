@@ -34,11 +34,9 @@ void png_source_close(PngSource *source) {
     free(source->piece);
 }
 
-static bool is_whole(const PngSource *source) { return source->held == source->size && source->left == 0; }
-
 bool png_source_rewind(PngSource *source) {
     source->at = 0;
-    if (is_whole(source)) return true;
+    if (source->held == source->size && source->left == 0) return true; /* one piece has all */
     source->held = 0;
     source->left = source->size;
     (void)hash_parts_end(source->parts); /* of a pass that did not end */
@@ -46,7 +44,7 @@ bool png_source_rewind(PngSource *source) {
 }
 
 /* The next piece. */
-static bool png_source_load(PngSource *source) {
+static bool load(PngSource *source) {
     const size_t wanted = source->left < PIECE ? source->left : PIECE;
     if (wanted == 0 || file_read_all(source->file, source->piece, wanted) != (ssize_t)wanted) return false;
     hash_parts_add(source->parts, source->piece, wanted);
@@ -57,7 +55,7 @@ static bool png_source_load(PngSource *source) {
 }
 
 size_t png_source_peek(PngSource *source, size_t most, const uint8_t **bytes) {
-    if (source->at == source->held && !png_source_load(source)) return 0;
+    if (source->at == source->held && !load(source)) return 0;
     const size_t held = source->held - source->at;
     *bytes = source->data + source->at;
     return held < most ? held : most;
@@ -74,9 +72,9 @@ bool png_source_take(PngSource *source, uint8_t *to, size_t size) {
 
 bool png_source_end(PngSource *source) {
     uint8_t more;
-    if (source->file < 0 || (source->hashed && is_whole(source))) return true;
+    if (source->file < 0 || (source->hashed && source->held == source->size && source->left == 0)) return true;
     while (source->left > 0)
-        if (!png_source_load(source)) return false;
+        if (!load(source)) return false;
     if (file_read_all(source->file, &more, 1) != 0) return false; /* it has grown */
     const uint64_t hash = hash_parts_end(source->parts);
     const bool same = !source->hashed || hash == source->hash;
