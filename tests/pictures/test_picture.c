@@ -155,19 +155,6 @@ TEST_WITH(captions_do_not_jump, make, destroy) {
     }
 }
 
-static uint64_t hash_with_method(const char *method) {
-    strcpy(runs[1]->method, method);
-    return hash_of(2, 640, 360, 4);
-}
-
-/* One run's network is not named, wherever it is; other settings are. */
-TEST_WITH(networks_of_one_run_are_left_out, make, destroy) {
-    uint64_t hash = hash_with_method("pair-net:network=b.npz,dt=1/60");
-    assert_true(hash_with_method("pair-net:network=/home/a/b.npz,dt=1/60") == hash);
-    assert_true(hash_with_method("pair-net:network=b.npz,dt=2/60") != hash);
-    assert_true(hash_with_method("pair-net:network=a.npz,dt=1/60") == hash);
-}
-
 TEST_WITH(hostile_names_do_no_harm, make, destroy) {
     for (int byte = 1; byte < 256; byte++) {
         memset(runs[0]->scene, byte, TRAJECTORY_NAME_SIZE - 1);
