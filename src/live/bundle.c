@@ -62,26 +62,6 @@ static bool find_parts(Bundle scene, Parts *parts) {
     return parts->text.left <= SOURCE_MAX_SIZE + 1 && parts->texts.left <= INT32_MAX;
 }
 
-static YamlNode node_at(const unsigned char *bytes) {
-    int32_t words[BUNDLE_NODE_WORDS];
-    for (int i = 0; i < BUNDLE_NODE_WORDS; i++) {
-        const uint32_t word = word_at(bytes + 4 * i);
-        memcpy(&words[i], &word, sizeof word);
-    }
-    return (YamlNode){(YamlKind)words[0], words[1], words[2], words[3], {words[4], words[5]}};
-}
-
-/* Whether the node is one for itself; `limit` is where the list or mapping that it is in ends. */
-static bool node_is_sound(const YamlNode *node, int index, int limit, const Parts *parts) {
-    const int size = (int)parts->text.left;
-    if (node->place.line < 0 || node->place.line > size || node->place.column < 0 || node->place.column > size)
-        return false;
-    if (node->end <= index || node->end > limit) return false;
-    if (node->kind == YAML_SCALAR)
-        return node->end == index + 1 && node->text >= 0 && (size_t)node->text < parts->texts.left;
-    return node->kind == YAML_SEQUENCE || node->kind == YAML_MAPPING;
-}
-
 /* A list or mapping that is open while nodes are checked. */
 typedef struct Open {
     const YamlNode *node;
@@ -93,7 +73,9 @@ static bool close_is_sound(const Open *open) {
     return open->children % per_item == 0 && open->children / per_item == open->node->count;
 }
 
+/* Whether a reader can walk the tree. */
 static bool nodes_are_sound(const YamlTree *tree, const Parts *parts) {
+    const int size = (int)parts->text.left;
     Open open[YAML_MAX_DEPTH + 1];
     int depth = 0;
     for (int i = 0; i < tree->node_count; i++) {
@@ -101,10 +83,17 @@ static bool nodes_are_sound(const YamlTree *tree, const Parts *parts) {
         while (depth > 0 && open[depth - 1].node->end == i)
             if (!close_is_sound(&open[--depth])) return false;
         if (depth == 0 && i > 0) return false;
-        if (!node_is_sound(node, i, depth > 0 ? open[depth - 1].node->end : tree->node_count, parts)) return false;
+        const int limit = depth > 0 ? open[depth - 1].node->end : tree->node_count; /* of what it is in */
+        const Place *place = &node->place;
+        if (place->line < 0 || place->line > size || place->column < 0 || place->column > size || node->end <= i ||
+            node->end > limit)
+            return false;
         if (depth > 0) open[depth - 1].children++;
-        if (node->kind == YAML_SCALAR) continue;
-        if (depth == YAML_MAX_DEPTH) return false;
+        if (node->kind == YAML_SCALAR) {
+            if (node->end != i + 1 || node->text < 0 || (size_t)node->text >= parts->texts.left) return false;
+            continue;
+        }
+        if ((node->kind != YAML_SEQUENCE && node->kind != YAML_MAPPING) || depth == YAML_MAX_DEPTH) return false;
         open[depth++] = (Open){node, 0};
     }
     while (depth > 0)
@@ -112,21 +101,10 @@ static bool nodes_are_sound(const YamlTree *tree, const Parts *parts) {
     return tree->nodes[0].end == tree->node_count;
 }
 
-static void *bundle_copy(Bundle data) {
+static void *copy(Bundle data) {
     void *bytes = malloc(data.left);
     if (bytes != NULL) memcpy(bytes, data.at, data.left);
     return bytes;
-}
-
-/* Copies, because the tree of a file owns its parts. */
-static bool copy_parts(YamlTree *tree, const Parts *parts, Error *error) {
-    tree->source = (Source){(const char *)parts->path.at, bundle_copy(parts->text), parts->text.left - 1};
-    tree->texts = bundle_copy(parts->texts);
-    tree->nodes = malloc((size_t)tree->node_count * sizeof *tree->nodes);
-    if (tree->source.text == NULL || tree->texts == NULL || tree->nodes == NULL) return error_memory(error, "bundle");
-    for (int i = 0; i < tree->node_count; i++)
-        tree->nodes[i] = node_at(parts->nodes.at + (size_t)i * BUNDLE_NODE_WORDS * 4);
-    return nodes_are_sound(tree, parts) || error_input(error, "bundle", "the tree of its scene is damaged");
 }
 
 bool bundle_tree(YamlTree *tree, Bundle scene, Error *error) {
@@ -136,8 +114,23 @@ bool bundle_tree(YamlTree *tree, Bundle scene, Error *error) {
     const size_t count = parts.nodes.left / (4 * BUNDLE_NODE_WORDS);
     if (count < 1 || count > YAML_MAX_NODES || parts.nodes.left % (4 * BUNDLE_NODE_WORDS) != 0)
         return error_input(error, "bundle", "its scene is damaged");
+
+    /* Copies, because the tree of a file owns its parts. */
     tree->node_count = (int)count;
-    if (copy_parts(tree, &parts, error)) return true;
-    yaml_tree_free(tree);
-    return false;
+    tree->source = (Source){(const char *)parts.path.at, copy(parts.text), parts.text.left - 1};
+    tree->texts = copy(parts.texts);
+    tree->nodes = malloc(count * sizeof *tree->nodes);
+    bool ok =
+        (tree->source.text != NULL && tree->texts != NULL && tree->nodes != NULL) || error_memory(error, "bundle");
+    for (size_t i = 0; ok && i < count; i++) {
+        int32_t words[BUNDLE_NODE_WORDS];
+        for (size_t k = 0; k < BUNDLE_NODE_WORDS; k++) {
+            const uint32_t word = word_at(parts.nodes.at + 4 * (i * BUNDLE_NODE_WORDS + k));
+            memcpy(&words[k], &word, sizeof word);
+        }
+        tree->nodes[i] = (YamlNode){(YamlKind)words[0], words[1], words[2], words[3], {words[4], words[5]}};
+    }
+    ok = ok && (nodes_are_sound(tree, &parts) || error_input(error, "bundle", "the tree of its scene is damaged"));
+    if (!ok) yaml_tree_free(tree);
+    return ok;
 }

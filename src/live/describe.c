@@ -16,7 +16,7 @@
 #include <stdlib.h>
 
 /* Prints JSON into the text that was last returned. NULL when memory is short. */
-static const char *describe_print(void (*write)(JsonWriter *json, const void *context), const void *context) {
+static const char *print(void (*write)(JsonWriter *json, const void *context), const void *context) {
     static char *text;
     size_t size;
     free(text);
@@ -55,41 +55,26 @@ static void put_setting(JsonWriter *json, const SettingSpec *setting) {
     json_end(json);
 }
 
-static void put_method(JsonWriter *json, const MethodDescription *method) {
-    json_begin_object(json, NULL, JSON_LINES);
-    json_put_text(json, "name", method->name);
-    json_put_text(json, "summary", method->summary);
-    json_put_text(json, "caption", method->caption);
-    json_put_bool(json, "needs_network", method->needs_network);
-    json_begin_array(json, "settings", JSON_LINES);
-    for (const SettingSpec *setting = method->settings; setting != NULL && setting->key != NULL; setting++)
-        put_setting(json, setting);
-    json_end(json);
-    json_end(json);
-}
-
 static void write_methods(JsonWriter *json, const void *context) {
     (void)context;
     json_begin_array(json, NULL, JSON_LINES);
-    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) put_method(json, kind->description);
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const MethodDescription *method = kind->description;
+        json_begin_object(json, NULL, JSON_LINES);
+        json_put_text(json, "name", method->name);
+        json_put_text(json, "summary", method->summary);
+        json_put_text(json, "caption", method->caption);
+        json_put_bool(json, "needs_network", method->needs_network);
+        json_begin_array(json, "settings", JSON_LINES);
+        for (const SettingSpec *setting = method->settings; setting != NULL && setting->key != NULL; setting++)
+            put_setting(json, setting);
+        json_end(json);
+        json_end(json);
+    }
     json_end(json);
 }
 
-const char *live_methods(void) { return describe_print(write_methods, NULL); }
-
-static void put_parameters(JsonWriter *json, const SceneParameters *all) {
-    for (const SceneParameter *parameter = all->items; parameter < all->items + all->count; parameter++) {
-        json_begin_object(json, NULL, JSON_ONE_LINE);
-        json_put_text(json, "name", parameter->name);
-        json_put_text(json, "unit", parameter->unit);
-        json_put_number(json, "value", parameter->value);
-        json_put_number(json, "from", parameter->from);
-        json_put_number(json, "to", parameter->to);
-        json_put_bool(json, "whole", parameter->whole);
-        json_put_bool(json, "common", parameter->common);
-        json_end(json);
-    }
-}
+const char *live_methods(void) { return print(write_methods, NULL); }
 
 static void put_bomb(JsonWriter *json, const Scene *scene) {
     if (!scene_has_launch(scene)) {
@@ -126,14 +111,25 @@ static void write_scene(JsonWriter *json, const void *context) {
     json_end(json);
     put_bomb(json, scene);
     json_begin_array(json, "parameters", JSON_LINES);
-    put_parameters(json, &parameters);
+    for (const SceneParameter *parameter = parameters.items; parameter < parameters.items + parameters.count;
+         parameter++) {
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        json_put_text(json, "name", parameter->name);
+        json_put_text(json, "unit", parameter->unit);
+        json_put_number(json, "value", parameter->value);
+        json_put_number(json, "from", parameter->from);
+        json_put_number(json, "to", parameter->to);
+        json_put_bool(json, "whole", parameter->whole);
+        json_put_bool(json, "common", parameter->common);
+        json_end(json);
+    }
     json_end(json);
     json_end(json);
 }
 
 const char *live_describe(LiveScene *live, const char *settings) {
     Scene *scene = live_scene(live, settings, live_new_error());
-    const char *text = scene != NULL ? describe_print(write_scene, scene) : NULL;
+    const char *text = scene != NULL ? print(write_scene, scene) : NULL;
     scene_destroy(scene);
     return text;
 }
@@ -152,7 +148,7 @@ static void write_verdict(JsonWriter *json, const void *context) {
 
 const char *live_verdict(const LiveRun *run) {
     SimulateVerdict verdict;
-    return live_verdict_of(run, &verdict) ? describe_print(write_verdict, &verdict) : NULL;
+    return live_verdict_of(run, &verdict) ? print(write_verdict, &verdict) : NULL;
 }
 
 static void write_framing(JsonWriter *json, const void *context) {
@@ -161,4 +157,4 @@ static void write_framing(JsonWriter *json, const void *context) {
     camera_frame_put(json, NULL, &frame);
 }
 
-const char *live_framing(const LiveRun *run) { return describe_print(write_framing, live_trajectory(run)); }
+const char *live_framing(const LiveRun *run) { return print(write_framing, live_trajectory(run)); }

@@ -84,29 +84,23 @@ Scene *live_scene(LiveScene *live, const char *settings, Error *error) {
     return scene_of_tree(&live->tree, values.items, values.count, error);
 }
 
-static bool begin_live(LiveRun *run, LiveScene *live, const char *settings, const char *method, bool contacts,
-                       Error *error) {
-    run->scene = live_scene(live, settings, error);
-    if (run->scene == NULL || !method_parse(&run->method, method, error)) return false;
-    run->trajectory = trajectory_of_scene(run->scene, &run->method, run->scene->frames + 1, error);
-    if (run->trajectory == NULL || !simulate_verdict_begin(&run->verdict, run->scene, &run->method, error) ||
-        !simulation_begin(&run->simulation, run->scene, &run->method, error))
-        return false;
-    run->trajectory->no_contacts = !contacts;
-    trajectory_set_bodies(run->trajectory, 0, run->simulation.world);
-    return true;
-}
-
 LiveRun *live_begin(LiveScene *scene, const char *settings, const char *method, int contacts) {
     Error *error = live_new_error();
     LiveRun *run = calloc(1, sizeof *run);
     bundle_use(scene->bundle);
-    if (run == NULL)
-        error_memory(error, "run");
-    else if (begin_live(run, scene, settings, method, contacts != 0, error))
-        return run;
-    live_end(run);
-    return NULL;
+    if (run == NULL) return error_memory(error, "run"), NULL;
+    run->scene = live_scene(scene, settings, error);
+    bool ok = run->scene != NULL && method_parse(&run->method, method, error);
+    if (ok) run->trajectory = trajectory_of_scene(run->scene, &run->method, run->scene->frames + 1, error);
+    ok = run->trajectory != NULL && simulate_verdict_begin(&run->verdict, run->scene, &run->method, error) &&
+         simulation_begin(&run->simulation, run->scene, &run->method, error);
+    if (!ok) {
+        live_end(run);
+        return NULL;
+    }
+    run->trajectory->no_contacts = contacts == 0;
+    trajectory_set_bodies(run->trajectory, 0, run->simulation.world);
+    return run;
 }
 
 void live_end(LiveRun *run) {
@@ -118,21 +112,18 @@ void live_end(LiveRun *run) {
     free(run);
 }
 
-static bool step_live(LiveRun *run, Error *error) {
-    const int frame = run->frame + 1;
+int live_step(LiveRun *run, int count) {
     Trajectory *trajectory = run->trajectory;
     const World *world = run->simulation.world;
-    if (!simulation_step(&run->simulation, frame, error)) return false;
-    if (!trajectory->no_contacts && !trajectory_set_contacts(trajectory, frame, world, error)) return false;
-    if (!verdict_watch_observe(&run->verdict.watch, frame, world, error)) return false;
-    trajectory_set_bodies(trajectory, frame, world);
-    run->frame = frame;
-    return true;
-}
-
-int live_step(LiveRun *run, int count) {
-    for (; count > 0 && run->frame < run->scene->frames && run->failure.kind == ERROR_NONE; count--)
-        if (!step_live(run, &run->failure)) break;
+    for (; count > 0 && run->frame < run->scene->frames && run->failure.kind == ERROR_NONE; count--) {
+        const int frame = run->frame + 1;
+        if (!simulation_step(&run->simulation, frame, &run->failure) ||
+            (!trajectory->no_contacts && !trajectory_set_contacts(trajectory, frame, world, &run->failure)) ||
+            !verdict_watch_observe(&run->verdict.watch, frame, world, &run->failure))
+            break;
+        trajectory_set_bodies(trajectory, frame, world);
+        run->frame = frame;
+    }
     return run->frame;
 }
 
@@ -152,8 +143,6 @@ const float *live_velocities(const LiveRun *run) { return &run->trajectory->velo
 const float *live_spins(const LiveRun *run) { return run->trajectory->angular_velocity; }
 const void *live_contacts(const LiveRun *run) { return run->trajectory->contacts; }
 
-static bool has_frame(const LiveRun *run, int frame) { return frame >= 0 && frame <= run->frame; }
-
 /* contact_start is filled up to the last step that had contacts. */
 int live_contact_start(const LiveRun *run, int frame) {
     const int last = run->trajectory->last_step + 1;
@@ -161,7 +150,7 @@ int live_contact_start(const LiveRun *run, int frame) {
 }
 
 uint64_t live_hash(const LiveRun *run, int frame) {
-    return has_frame(run, frame) ? trajectory_frame_hash(run->trajectory, frame) : 0;
+    return frame >= 0 && frame <= run->frame ? trajectory_frame_hash(run->trajectory, frame) : 0;
 }
 
 /* The arrays of the copy are those of the run; ending the verdict changes none of them. */

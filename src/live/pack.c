@@ -37,7 +37,7 @@ typedef struct Writer {
     bool failed;
 } Writer;
 
-static char *put_pack(Writer *writer, const void *data, size_t size) {
+static char *put(Writer *writer, const void *data, size_t size) {
     void *bytes = writer->bytes;
     writer->failed = writer->failed || size > UINT32_MAX - writer->size ||
                      !array_reserve(&bytes, &writer->capacity, writer->size + size + 1, 1);
@@ -52,56 +52,35 @@ static char *put_pack(Writer *writer, const void *data, size_t size) {
 static void put_word(Writer *writer, uint32_t word) {
     const unsigned char bytes[] = {(unsigned char)word, (unsigned char)(word >> 8), (unsigned char)(word >> 16),
                                    (unsigned char)(word >> 24)};
-    put_pack(writer, bytes, sizeof bytes);
+    put(writer, bytes, sizeof bytes);
 }
 
 /* Room for the data of a piece, or the data itself. */
 static char *put_piece(Writer *writer, const char *name, const void *data, size_t size) {
     put_word(writer, (uint32_t)strlen(name) + 1);
     put_word(writer, (uint32_t)size);
-    put_pack(writer, name, strlen(name) + 1);
-    return put_pack(writer, data, size);
+    put(writer, name, strlen(name) + 1);
+    return put(writer, data, size);
 }
 
-static void put_nodes(Writer *writer, const YamlTree *tree) {
-    Writer nodes = {0};
+static void put_tree(Writer *writer, const YamlTree *tree) {
+    Writer scene = {0}, nodes = {0};
     for (int i = 0; i < tree->node_count; i++) {
         const YamlNode *node = &tree->nodes[i];
         const int words[BUNDLE_NODE_WORDS] = {(int)node->kind, node->end,        node->count,
                                               node->text,      node->place.line, node->place.column};
         for (int k = 0; k < BUNDLE_NODE_WORDS; k++) put_word(&nodes, (uint32_t)words[k]);
     }
-    writer->failed = writer->failed || nodes.failed;
-    put_piece(writer, "nodes", nodes.bytes, nodes.size);
-    free(nodes.bytes);
-}
-
-/* The texts of scalars lie in the order of the nodes. */
-static size_t texts_size(const YamlTree *tree) {
-    int last = tree->node_count - 1;
+    int last = tree->node_count - 1; /* the texts of scalars lie in the order of the nodes */
     while (last > 0 && tree->nodes[last].kind != YAML_SCALAR) last--;
-    return (size_t)tree->nodes[last].text + strlen(yaml_text(tree, last)) + 1;
-}
-
-static void put_tree(Writer *writer, const YamlTree *tree) {
-    Writer scene = {0};
     put_piece(&scene, "path", tree->source.path, strlen(tree->source.path) + 1);
     put_piece(&scene, "text", tree->source.text, tree->source.size + 1);
-    put_nodes(&scene, tree);
-    put_piece(&scene, "texts", tree->texts, texts_size(tree));
-    writer->failed = writer->failed || scene.failed;
+    put_piece(&scene, "nodes", nodes.bytes, nodes.size);
+    put_piece(&scene, "texts", tree->texts, (size_t)tree->nodes[last].text + strlen(yaml_text(tree, last)) + 1);
+    writer->failed = writer->failed || nodes.failed || scene.failed;
     put_piece(writer, "scene", scene.bytes, scene.size);
     free(scene.bytes);
-}
-
-/* The name of a member is overwritten when the next one is asked for. */
-static bool put_member(Writer *writer, NpzArchive *archive, int64_t index, const char *path, Error *error) {
-    uint64_t size;
-    const char *name = npz_archive_name(archive, index, error);
-    if (name == NULL || !npz_archive_check(archive, index, name, &size, error)) return false;
-    char *data = size <= UINT32_MAX ? put_piece(writer, name, NULL, (size_t)size) : NULL;
-    if (data == NULL) return error_memory(error, path);
-    return npz_archive_read(archive, index, name, 0, data, size, error);
+    free(nodes.bytes);
 }
 
 /* A network that twinbox reads has been opened before, so its arrays are within their budget. */
@@ -111,7 +90,14 @@ static bool put_network(Writer *writer, const char *name, const char *path, Erro
     NpzFile *checked = npz_open(path, error);
     NpzArchive *archive = checked != NULL ? npz_archive_open(path, &size, error) : NULL;
     bool ok = archive != NULL;
-    for (int64_t i = 0; ok && i < npz_archive_count(archive); i++) ok = put_member(&members, archive, i, path, error);
+    for (int64_t i = 0; ok && i < npz_archive_count(archive); i++) {
+        /* The name of a member is overwritten when the next one is asked for. */
+        const char *member = npz_archive_name(archive, i, error);
+        ok = member != NULL && npz_archive_check(archive, i, member, &size, error);
+        char *data = ok && size <= UINT32_MAX ? put_piece(&members, member, NULL, (size_t)size) : NULL;
+        if (ok && data == NULL) ok = error_memory(error, path);
+        ok = ok && npz_archive_read(archive, i, member, 0, data, size, error);
+    }
     if (ok) put_piece(writer, name, members.bytes, members.size);
     npz_archive_close(archive);
     npz_close(checked);
@@ -142,30 +128,25 @@ static bool put_network_of(Writer *writer, const Views *views, const char *text,
     return there != NULL && (bundle_find(packed, there, &found) || put_network(writer, there, path, error));
 }
 
-static bool pack_scene(Writer *writer, YamlTree *tree, const char *path, const char *const *methods, int count,
-                       Error *error) {
-    Views views = {.here = scene_of_tree(tree, NULL, 0, error)};
-    tree->source.path = path_is_standard(path) ? path : path + file_folder_length(path);
-    views.there = views.here != NULL ? scene_of_tree(tree, NULL, 0, error) : NULL;
-    bool ok = views.there != NULL;
-    if (ok) put_tree(writer, tree);
-    for (int i = 0; ok && i < count; i++) ok = put_network_of(writer, &views, methods[i], error);
-    scene_destroy(views.here);
-    scene_destroy(views.there);
-    return ok && (!writer->failed || error_memory(error, path));
-}
-
 bool live_pack(const char *scene, const char *const *methods, int count, void **bundle, size_t *size, Error *error) {
     Writer writer = {0};
     YamlTree tree;
     if (!yaml_read(&tree, scene, error)) return false;
-    const bool ok = pack_scene(&writer, &tree, scene, methods, count, error);
+    Views views = {.here = scene_of_tree(&tree, NULL, 0, error)};
+    tree.source.path = path_is_standard(scene) ? scene : scene + file_folder_length(scene);
+    views.there = views.here != NULL ? scene_of_tree(&tree, NULL, 0, error) : NULL;
+    bool ok = views.there != NULL;
+    if (ok) put_tree(&writer, &tree);
+    for (int i = 0; ok && i < count; i++) ok = put_network_of(&writer, &views, methods[i], error);
+    ok = ok && (!writer.failed || error_memory(error, scene));
+    scene_destroy(views.here);
+    scene_destroy(views.there);
     yaml_tree_free(&tree);
-    if (ok) {
-        *bundle = writer.bytes;
-        *size = writer.size;
-    } else {
+    if (!ok) {
         free(writer.bytes);
+        return false;
     }
-    return ok;
+    *bundle = writer.bytes;
+    *size = writer.size;
+    return true;
 }
