@@ -147,17 +147,6 @@ static bool refuse_pixels(const CompareOptions *options, Error *error) {
                        file_name_ends_with(options->paths[0], ".png") ? "" : ", and there are no runs to limit");
 }
 
-/* Folders may have pictures, runs or both. */
-static bool read_tolerance(CompareOptions *options, Error *error) {
-    int64_t difference;
-    if (options->limit == NULL) return true;
-    const bool poses = read_distance(options, &(Error){0}) && !file_name_ends_with(options->paths[0], ".png");
-    if (!parse_int(options->limit, 0, 255, &difference)) return poses || refuse_pixels(options, error);
-    options->tolerance.given |= LIMIT_TOLERANCE;
-    options->tolerance.tolerance = (int)difference;
-    return true;
-}
-
 /* Reads the command line. False with error set if it is wrong, or after --help. */
 static bool read_options(CompareOptions *options, int argc, char **argv, Error *error) {
     const char *const *paths = options->paths;
@@ -170,8 +159,15 @@ static bool read_options(CompareOptions *options, int argc, char **argv, Error *
         return error_input(error, paths[0], "--rules, masks and limits of pixels apply to pictures only");
     if (!first && (options->scene != NULL || options->csv != NULL))
         return error_input(error, paths[0], "--scene and --csv apply to runs only");
-    return first ? json_output_check(options->json, error) && read_distance(options, error)
-                 : read_tolerance(options, error);
+    if (first) return json_output_check(options->json, error) && read_distance(options, error);
+    int64_t difference;
+    if (options->limit == NULL) return true;
+    /* Folders may have pictures, runs or both. */
+    const bool poses = read_distance(options, &(Error){0}) && !file_name_ends_with(paths[0], ".png");
+    if (!parse_int(options->limit, 0, 255, &difference)) return poses || refuse_pixels(options, error);
+    options->tolerance.given |= LIMIT_TOLERANCE;
+    options->tolerance.tolerance = (int)difference;
+    return true;
 }
 
 static bool compare_pictures(const CompareOptions *options, Error *error) {

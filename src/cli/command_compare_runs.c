@@ -17,19 +17,6 @@
 
 static bool same_length(const RunComparison *c) { return c->runs[0]->frames == c->runs[1]->frames; }
 
-static bool passed(const RunComparison *c) { return c->same_world && c->parting.beyond.frame < 0 && same_length(c); }
-
-static void print_runs(FILE *out, const char *const paths[2], const Trajectory *a, const Trajectory *b) {
-    const Trajectory *const runs[] = {a, b};
-    for (int i = 0; i < 2; i++)
-        fprintf(out, "run %d: %s by %s, %d frames of %d bodies (%s)\n", i + 1, runs[i]->scene, runs[i]->method,
-                runs[i]->frames, runs[i]->bodies, paths[i]);
-    if (a->scene_hash != b->scene_hash && a->scene_hash != 0 && b->scene_hash != 0)
-        fprintf(out, "different scenes: hashes %016" PRIx64 " and %016" PRIx64 "; this may be the cause\n",
-                a->scene_hash, b->scene_hash);
-    if (!trajectory_both_move(a, b)) fprintf(out, "only poses are compared: a run has no velocities\n");
-}
-
 static void print_body(FILE *out, const Trajectory *a, const PartedBody *parted, bool poses_only) {
     const StateDifference *by = &parted->by;
     fprintf(out, "frame %d, body %d%s: ", parted->frame, parted->body, parted->body == a->bomb ? " (the bomb)" : "");
@@ -226,93 +213,82 @@ int compare_runs_others(const RunComparison *c, RunOther others[RUN_OTHERS_MAX])
     return count;
 }
 
-static void print_others(FILE *out, const RunComparison *c) {
-    RunOther others[RUN_OTHERS_MAX];
-    const int count = compare_runs_others(c, others);
-    for (int i = 0; i < count; i++)
-        fprintf(out, "not compared: the %s, \"%s\" in run 1, \"%s\" in run 2\n", others[i].what, others[i].values[0],
-                others[i].values[1]);
-    if (c->parting.first.frame >= 0) fprintf(out, "not compared: contacts and their impulses of later steps\n");
-}
-
-static void compare_runs_print(FILE *out, const RunComparison *c) {
-    const Trajectory *a = c->runs[0];
-    print_runs(out, c->options->paths, a, c->runs[1]);
+static void print_all(FILE *out, const RunComparison *c) {
+    const Trajectory *a = c->runs[0], *b = c->runs[1];
+    for (int i = 0; i < 2; i++)
+        fprintf(out, "run %d: %s by %s, %d frames of %d bodies (%s)\n", i + 1, c->runs[i]->scene, c->runs[i]->method,
+                c->runs[i]->frames, c->runs[i]->bodies, c->options->paths[i]);
+    if (a->scene_hash != b->scene_hash && a->scene_hash != 0 && b->scene_hash != 0)
+        fprintf(out, "different scenes: hashes %016" PRIx64 " and %016" PRIx64 "; this may be the cause\n",
+                a->scene_hash, b->scene_hash);
+    if (!trajectory_both_move(a, b)) fprintf(out, "only poses are compared: a run has no velocities\n");
     if (!c->same_world) {
         fprintf(out, "%s\n", c->difference.what);
         return;
     }
     if (c->found_contacts) fprintf(out, "a run has no contacts: those of both are recomputed from the poses\n");
     print_parting(out, c);
-    print_others(out, c);
+    RunOther others[RUN_OTHERS_MAX];
+    const int count = compare_runs_others(c, others);
+    for (int i = 0; i < count; i++)
+        fprintf(out, "not compared: the %s, \"%s\" in run 1, \"%s\" in run 2\n", others[i].what, others[i].values[0],
+                others[i].values[1]);
     if (c->parting.first.frame < 0) return;
+    fprintf(out, "not compared: contacts and their impulses of later steps\n");
     fprintf(out, "growth of the largest distance: ");
     print_rate(out, &c->growth, (double)a->dt);
     if (c->chaos.distance != NULL) print_chaos(out, &c->chaos, &c->growth, &c->shifted, (double)a->dt);
 }
 
-static bool compare_runs_measure(RunComparison *c, Error *error) {
-    int frames = c->parting.frames;
-    c->distance = malloc((size_t)frames * sizeof *c->distance);
-    if (c->distance == NULL) return error_memory(error, "compare");
-    for (int frame = 0; frame < frames; frame++)
-        c->distance[frame] = trajectory_distance(c->runs[0], c->runs[1], frame);
-    /* compare_runs() frees c->distance. NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
-    return growth_measure(c->distance, 0, frames, (double)c->runs[0]->dt, &c->growth, error);
-}
-
-/* Over the same frames as the growth of the two runs. */
-static bool measure_chaos(RunComparison *c, const char *scene, Error *error) {
-    int body = chaos_body(c->runs[0], c->parting.first.body, c->parting.first.frame);
-    if (body < 0) return error_input(error, scene, "has no body that can move, so none can be shifted");
-    bool ok =
-        chaos_run(&c->chaos, scene, c->runs[0], body, c->parting.frames, progress_bar_begin(c->runs[0]->scene), error);
-    progress_bar_end();
-    return ok && growth_measure(c->chaos.distance, c->growth.first, c->growth.end, (double)c->runs[0]->dt, &c->shifted,
-                                error);
-}
-
-/* Runs of different worlds differ, but no distance of theirs means anything. */
-static bool check_worlds(RunComparison *c, Error *error) {
+/* Reads and compares both runs, and measures how their distance grows. */
+static bool measure(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
-    c->parting = (TrajectoryParting){.first = {.frame = -1}, .beyond = {.frame = -1}, .step = -1};
-    c->same_world = !trajectory_different_worlds(c->runs[0], c->runs[1], c->difference.what, sizeof c->difference.what);
-    return c->same_world || (options->scene == NULL && options->csv == NULL) ||
-           error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0],
-                       c->difference.what);
-}
-
-static bool compare_runs_find(RunComparison *c, Error *error) {
-    const CompareOptions *options = c->options;
+    Trajectory *const *runs = c->runs;
     for (int i = 0; i < 2; i++)
         if ((c->runs[i] = trajectory_read(options->paths[i], error)) == NULL) return false;
-    c->found_contacts = c->runs[0]->no_contacts || c->runs[1]->no_contacts;
+    c->found_contacts = runs[0]->no_contacts || runs[1]->no_contacts;
     for (int i = 0; c->found_contacts && i < 2; i++)
-        if (!trajectory_find_contacts(c->runs[i], error)) return false;
-    trajectory_compare(c->runs[0], c->runs[1], &c->difference);
-    if (!check_worlds(c, error)) return false;
-    if (!c->same_world) return true;
-    if (!trajectory_part(c->runs[0], c->runs[1], &options->poses, &c->parting, error) ||
-        !compare_runs_measure(c, error) || (options->scene != NULL && !measure_chaos(c, options->scene, error)))
-        return false;
-    const DistanceTable table = {c->parting.frames, (double)c->runs[0]->dt, c->distance, c->chaos.distance};
+        if (!trajectory_find_contacts(runs[i], error)) return false;
+    trajectory_compare(runs[0], runs[1], &c->difference);
+    /* Runs of different worlds differ, but no distance of theirs means anything. */
+    c->parting = (TrajectoryParting){.first = {.frame = -1}, .beyond = {.frame = -1}, .step = -1};
+    c->same_world = !trajectory_different_worlds(runs[0], runs[1], c->difference.what, sizeof c->difference.what);
+    if (!c->same_world)
+        return (options->scene == NULL && options->csv == NULL) ||
+               error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0],
+                           c->difference.what);
+    if (!trajectory_part(runs[0], runs[1], &options->poses, &c->parting, error)) return false;
+
+    const int frames = c->parting.frames;
+    const double dt = (double)runs[0]->dt;
+    c->distance = malloc((size_t)frames * sizeof *c->distance);
+    if (c->distance == NULL) return error_memory(error, "compare");
+    for (int frame = 0; frame < frames; frame++) c->distance[frame] = trajectory_distance(runs[0], runs[1], frame);
+    /* compare_runs() frees c->distance. NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
+    if (!growth_measure(c->distance, 0, frames, dt, &c->growth, error)) return false;
+    if (options->scene != NULL) { /* chaos, over the same frames as the growth of the two runs */
+        const int body = chaos_body(runs[0], c->parting.first.body, c->parting.first.frame);
+        if (body < 0) return error_input(error, options->scene, "has no body that can move, so none can be shifted");
+        const bool ok =
+            chaos_run(&c->chaos, options->scene, runs[0], body, frames, progress_bar_begin(runs[0]->scene), error);
+        progress_bar_end();
+        if (!ok || !growth_measure(c->chaos.distance, c->growth.first, c->growth.end, dt, &c->shifted, error))
+            return false;
+    }
+    const DistanceTable table = {frames, dt, c->distance, c->chaos.distance};
     return options->csv == NULL || distance_table_write(&table, options->csv, error);
 }
 
 /* The text is printed, and is in the report. */
-static bool write_text(RunComparison *c, Error *error) {
+static bool show(RunComparison *c, Error *error) {
+    const CompareOptions *options = c->options;
     size_t size;
     FILE *out = open_memstream(&c->text, &size);
     if (out == NULL) return error_memory(error, "compare");
-    compare_runs_print(out, c);
-    return fclose(out) == 0 || error_memory(error, "compare");
-}
-
-static bool compare_runs_show(RunComparison *c, Error *error) {
-    const CompareOptions *options = c->options;
-    c->passed = passed(c);
-    if (!write_text(c, error) || (options->report != NULL && !compare_runs_report(c, options->report, error)))
-        return false;
+    c->passed = c->same_world && c->parting.beyond.frame < 0 && same_length(c);
+    print_all(out, c);
+    if (fclose(out) != 0) return error_memory(error, "compare");
+    if (options->report != NULL && !compare_runs_report(c, options->report, error)) return false;
     if (options->json) return json_output("twinbox compare runs 1", compare_runs_write_json, c, error);
     fputs(c->text, stdout);
     if (c->same_world && c->parting.first.frame >= 0 && c->chaos.distance == NULL && c->runs[0]->scene_hash != 0)
@@ -324,9 +300,9 @@ static bool compare_runs_show(RunComparison *c, Error *error) {
 bool compare_runs(const CompareOptions *options, Error *error) {
     RunComparison comparison = {.options = options};
     const double begun = clock_seconds();
-    bool ok = compare_runs_find(&comparison, error);
+    bool ok = measure(&comparison, error);
     comparison.seconds = clock_seconds() - begun;
-    ok = ok && compare_runs_show(&comparison, error) && comparison.passed;
+    ok = ok && show(&comparison, error) && comparison.passed;
     chaos_free(&comparison.chaos);
     free(comparison.distance);
     free(comparison.text);

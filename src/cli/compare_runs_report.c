@@ -14,17 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void write_run(JsonWriter *json, const char *key, const char *path, const Trajectory *run) {
-    json_begin_object(json, key, JSON_ONE_LINE);
-    json_put_text(json, "path", path);
-    json_put_text(json, "scene", run->scene);
-    json_put_hash(json, "scene_hash", run->scene_hash);
-    json_put_text(json, "method", run->method);
-    json_put_int(json, "frames", run->frames);
-    json_put_int(json, "bodies", run->bodies);
-    json_end(json);
-}
-
 /* The number of a frame; negative: no frame. */
 static void put_frame(JsonWriter *json, const char *key, int frame) {
     if (!json_put_absent(json, key, frame < 0)) json_put_int(json, key, frame);
@@ -115,15 +104,6 @@ static void write_chaos(JsonWriter *json, const RunComparison *c, double dt) {
     json_end(json);
 }
 
-static void write_largest(JsonWriter *json, const TrajectoryDifference *difference) {
-    if (json_put_absent(json, "largest", difference->max_frame < 0)) return;
-    json_begin_object(json, "largest", JSON_ONE_LINE);
-    json_put_int(json, "frame", difference->max_frame);
-    json_put_int(json, "body", difference->max_body);
-    json_put_number(json, "distance", difference->max_distance);
-    json_end(json);
-}
-
 static const char *const causes[] = {[PART_NONE] = "none",
                                      [PART_START] = "initial state",
                                      [PART_LAUNCH] = "launch",
@@ -140,7 +120,17 @@ void compare_runs_write_json(JsonWriter *json, const void *context) {
     const Trajectory *a = c->runs[0];
     const bool differ = parting->first.frame >= 0, contacts = !a->no_contacts && !c->runs[1]->no_contacts,
                beyond = contacts && c->options->poses.given && parting->beyond.frame > 0;
-    for (int i = 0; i < 2; i++) write_run(json, keys[i], c->options->paths[i], c->runs[i]);
+    for (int i = 0; i < 2; i++) {
+        const Trajectory *run = c->runs[i];
+        json_begin_object(json, keys[i], JSON_ONE_LINE);
+        json_put_text(json, "path", c->options->paths[i]);
+        json_put_text(json, "scene", run->scene);
+        json_put_hash(json, "scene_hash", run->scene_hash);
+        json_put_text(json, "method", run->method);
+        json_put_int(json, "frames", run->frames);
+        json_put_int(json, "bodies", run->bodies);
+        json_end(json);
+    }
     json_put_bool(json, "passed", c->passed);
     json_put_text(json, "words", c->difference.what[0] != '\0' ? c->difference.what : NULL);
     json_put_int(json, "frames", parting->frames);
@@ -150,7 +140,13 @@ void compare_runs_write_json(JsonWriter *json, const void *context) {
     json_put_int(json, "frames_within", parting->within);
     json_put_bool(json, "poses_only", c->difference.poses_only);
     write_parted(json, "first", c, &parting->first);
-    write_largest(json, &c->difference);
+    if (!json_put_absent(json, "largest", c->difference.max_frame < 0)) {
+        json_begin_object(json, "largest", JSON_ONE_LINE);
+        json_put_int(json, "frame", c->difference.max_frame);
+        json_put_int(json, "body", c->difference.max_body);
+        json_put_number(json, "distance", c->difference.max_distance);
+        json_end(json);
+    }
     json_put_number(json, "rollout_mse", c->difference.rollout_mse);
     json_put_text(json, "cause", c->same_world ? causes[parting->cause] : NULL);
     json_put_bool(json, "contacts_found_again", c->found_contacts);
@@ -220,16 +216,8 @@ static void write_results(FILE *out, const void *context) {
     json_end(&json);
 }
 
-/* None of equal runs, and of those without a common moment. Contacts that were found again have no impulses to show. */
-static bool write_run_page(RunComparison *c, const char *folder, Error *error) {
-    const PartedBody *shown = is_beyond(c) ? &c->parting.beyond : &c->parting.first;
-    size_t bytes;
-    for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;
-    return shown->frame < 0 || report_write_run((const Trajectory *const *)c->runs, shown->frame, shown->body, folder,
-                                                "run.html", &c->link, &bytes, error);
-}
-
 bool compare_runs_report(RunComparison *c, const char *folder, Error *error) {
+    const PartedBody *shown = is_beyond(c) ? &c->parting.beyond : &c->parting.first;
     const ReportResults results = {.comparison = c,
                                    .count = 1,
                                    .failed = !c->passed,
@@ -238,6 +226,13 @@ bool compare_runs_report(RunComparison *c, const char *folder, Error *error) {
                                    .at = case_of,
                                    .write_page = write_page,
                                    .write_json = write_results};
-    return file_make_directory(folder, error) && write_run_page(c, folder, error) &&
-           report_write(&results, folder, error);
+    size_t bytes;
+    if (!file_make_directory(folder, error)) return false;
+    /* A page that plays both: none of equal runs, and of those without a common moment. Contacts that were found again
+       have no impulses to show. */
+    for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;
+    if (shown->frame >= 0 && !report_write_run((const Trajectory *const *)c->runs, shown->frame, shown->body, folder,
+                                               "run.html", &c->link, &bytes, error))
+        return false;
+    return report_write(&results, folder, error);
 }

@@ -47,7 +47,7 @@ static void add_movement(ChangeText *text, const Change *change) {
     if (has_right) add_pixels(text, right), ADD(text, " %s", change->right > 0 ? "right" : "left");
     if (has_right && has_up) ADD(text, " and");
     if (has_up) add_pixels(text, up), ADD(text, " %s", change->up > 0 ? "up" : "down");
-    if (turns) ADD(text, "%s turned %.2g degrees", has_right || has_up ? "," : "", DEGREES * fabs(change->turn));
+    if (turns) ADD(text, "%s turned %.3g degrees", has_right || has_up ? "," : "", DEGREES * fabs(change->turn));
     if (!has_right && !has_up && !turns) ADD(text, " moved less than 0.01 px");
 }
 

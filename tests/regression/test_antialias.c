@@ -117,50 +117,6 @@ TEST(shapes_sampled_otherwise_are_equal) {
     }
 }
 
-static int grey_at(const Image *image, int x, int y) { return image->pixels[4 * (y * SIDE + x)]; }
-
-/* Whether three neighbours of a pixel are equal to it. */
-static bool has_equals(const Image *image, int x, int y) {
-    int equal = -1;
-    for (int i = 0; i < 9; i++) equal += grey_at(image, x + i % 3 - 1, y + i / 3 - 1) == grey_at(image, x, y);
-    return equal >= 3;
-}
-
-/* The method that antialias_mark() starts from, for a pixel of a grey picture. */
-static bool starting_method(const Image *image, const Image *other, int x, int y) {
-    int dark_x = x, dark_y = y, light_x = x, light_y = y;
-    for (int i = 0; i < 9; i++) {
-        int at_x = x + i % 3 - 1, at_y = y + i / 3 - 1, here = grey_at(image, at_x, at_y);
-        if (here < grey_at(image, dark_x, dark_y)) dark_x = at_x, dark_y = at_y;
-        if (here > grey_at(image, light_x, light_y)) light_x = at_x, light_y = at_y;
-    }
-    bool between = (dark_x != x || dark_y != y) && (light_x != x || light_y != y) && !has_equals(image, x, y);
-    return between && ((has_equals(image, dark_x, dark_y) && has_equals(other, dark_x, dark_y)) ||
-                       (has_equals(image, light_x, light_y) && has_equals(other, light_x, light_y)));
-}
-
-/* Lines and rings that move by a part of a pixel: the starting method counts pixels in the middle of most of them,
-   and none counts here. */
-TEST(the_starting_method_fails_where_this_one_does_not) {
-    TestDrawing moved = plain;
-    int failed = 0, lines = 0;
-    moved.x = 0.3, moved.y = 0.1;
-    for (int i = 0; i < SHAPES && shapes[i].kind != BOX; i++, lines++) {
-        Image *a = drawn(&shapes[i], &plain), *b = drawn(&shapes[i], &moved);
-        bool counts = false;
-        for (int at = SIDE; at < SIDE * (SIDE - 1); at++) {
-            int x = at % SIDE, y = at / SIDE;
-            if (x == 0 || x == SIDE - 1 || grey_at(a, x, y) == grey_at(b, x, y)) continue;
-            counts = counts || (!starting_method(a, b, x, y) && !starting_method(b, a, x, y));
-        }
-        failed += counts;
-        assert_int_equal(difference_of(a, b).pixels, 0);
-        image_destroy(a);
-        image_destroy(b);
-    }
-    assert_true(failed > lines / 2);
-}
-
 /* Any colours, and dark as well as light ink. */
 TEST(colours_do_not_matter) {
     static const TestDrawing one = {.samples = FINE, .strength = 1, .ink = {250, 90, 20}, .paper = {20, 24, 60}};
@@ -248,7 +204,6 @@ TEST(lines_that_cross_may_move) {
             }
 }
 
-/* In the picture of a shape: a pixel of the edge, the inside or the paper gets the opposite colour, or red. */
 /* A line of this width and colour between sky and earth, by 16 x 16 samples; its normal has this angle. */
 static Image *outlined(double angle, double width, double move, const int line[3], double strength) {
     static const int sky[3] = {135, 206, 235}, earth[3] = {181, 101, 29};

@@ -1,8 +1,38 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The page of a comparison in a browser: presses keys and checks what the page shows.
+# The page of a comparison in a browser. Its keys, links, lists and marks; and as readers see it: contrast of all text (WCAG
+# 2.2 AA: 4.5, large text and graphics 3) in both colour schemes, no clipped label at a width of 390 pixels, the frame slider
+# above the fold at 1440 x 900, and the order of the Tab key.
 . "$(dirname "$0")/../cli/checks.sh"
-. "$sources/tests/regression/browser.sh"
+command -v chromium >/dev/null || fail "chromium is not installed; tests/setup chromium does that"
+
+# browse PAGE [OPTION...]: opens the page, with probe.html behind it, in a browser 1440 pixels wide and 900 high. What
+# the probe's script writes into #seen goes to out.
+browse() {
+    local page=$1
+    shift
+    /usr/bin/python3 - "$page" <<'PYTHON' || fail "the page allows more scripts than its own"
+import base64, hashlib, re, sys
+page, probe = open(sys.argv[1], encoding="utf-8").read(), open("probe.html", encoding="utf-8").read()
+allow = lambda script: "'sha256-" + base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() + "'"
+find = lambda text: re.search(r"<script>(.*?)</script>", text, re.DOTALL)[1]
+policy = f"script-src {allow(find(page))}\">"
+assert page.count(policy) == 1, policy
+open("probed.html", "w", encoding="utf-8").write(page.replace(policy, f"{policy[:-2]} {allow(find(probe))}\">") + probe)
+PYTHON
+    load probed.html "$@"
+}
+
+# load PAGE [OPTION...]
+load() {
+    local page=$1
+    shift
+    timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir="$folder/profile" \
+        --window-size=1440,900 --virtual-time-budget=60000 "$@" --dump-dom "file://$folder/$page" >dom 2>chromium.err ||
+        fail "chromium: $(tail -n 3 chromium.err)"
+    sed -n '/BEGIN/,/END/p' dom | sed 's/&lt;/</g; s/&gt;/>/g; s/&amp;/\&/g' >out
+    grep -q END out || fail "the page's script did not come to its end: $(tail -n 3 chromium.err)"
+}
 
 run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
 run 0 simulate "$scenes/single.yaml" --frames 8 --bomb-x 1 -o b.npz
@@ -14,14 +44,15 @@ run 1 compare "expected</script>" actual --report report
 
 # The page has no external references.
 [ "$(grep -cE '(src|href)="?(https?:|//|file:)|@import|url\(' report/report.html)" -eq 0 ] || fail "the page fetches something"
-[ "$(ls report)" = "$(printf 'junit.xml\nreport.html\nresults.json\nresults.tap')" ] || fail "the report needs other files"
+equal "files of the report" "$(ls report | paste -sd' ')" "junit.xml report.html results.json"
 
-# Appended to the page: presses keys and writes what it sees into #seen, one line per step.
-cat >probe.html <<'PROBE'
-<pre id="seen"></pre>
+# Appended to the page: writes what it sees into #seen, one line per step.
+cat >begin.html <<'PROBE'
+<pre id="seen" hidden></pre>
 <script>
 (async () => {
   const get = id => document.getElementById(id), seen = [];
+  const note = (what, ...values) => seen.push(what + ": " + values.join(" | "));
   const wait = async () => {
     do await new Promise(done => setTimeout(done, 20)); while (get("stage").getAttribute("aria-busy") !== "false");
   };
@@ -29,121 +60,94 @@ cat >probe.html <<'PROBE'
     (target || document.body).dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true, cancelable: true}));
     await wait();
   };
-  const pressed = () => [...document.querySelectorAll("[id^=mode-][aria-pressed=true]")].map(b => b.id).join();
-  const images = () => [...document.querySelectorAll("#sheet img")].map(i => i.alt.split(" ")[0] + ":" + i.naturalWidth);
-  const shown = () => [...document.querySelectorAll("#rows li")].map(row => row.firstChild.textContent);
-  const follow = async link => {
-    const changed = new Promise(done => addEventListener("hashchange", done, {once: true}));
-    location.hash = link;
-    await changed;
-    await wait();
-  };
-  const note = (what, ...values) => seen.push(what + ": " + values.join(" | "));
+  const all = what => [...document.querySelectorAll(what)];
   const place = () => [get("name").textContent, get("frame-verdict").textContent, get("place").textContent];
   try {
     await wait();
+PROBE
+cat >end.html <<'PROBE'
+  } catch (error) { note("error", error); }
+  const text = "BEGIN\n" + seen.join("\n") + "\nEND";
+  get("seen").textContent = text;
+  if (parent !== window) parent.postMessage(text, "*");
+})();
+</script>
+PROBE
+cat begin.html - end.html >probe.html <<'PROBE'
+    const images = () => all("#sheet img").map(i => i.alt.split(" ")[0] + ":" + i.naturalWidth);
+    const pressed = () => all("[id^=mode-][aria-pressed=true]").map(b => b.id).join();
+    const follow = async link => {
+      const changed = new Promise(done => addEventListener("hashchange", done, {once: true}));
+      location.hash = link;
+      await changed;
+      await wait();
+    };
     note("title", document.title);
-    note("rows", document.querySelectorAll("#rows li").length);
+    note("rows", all("#rows li").length);
     note("start", ...place(), pressed(), ...images());
     await press("ArrowRight");
     note("right", ...place(), pressed(), ...images());
     note("row", document.querySelector("#rows [aria-selected=true]").textContent);
-    note("swipe", getComputedStyle(document.querySelectorAll("#sheet img")[1]).clipPath);
     await press("]");
-    note("swipe more", getComputedStyle(document.querySelectorAll("#sheet img")[1]).clipPath, get("blend").value);
-    await press("7");
-    note("onion", pressed(), getComputedStyle(document.querySelectorAll("#sheet img")[1]).opacity);
+    note("swipe", getComputedStyle(all("#sheet img")[1]).clipPath, get("blend").value);
     await press("6");
-    await press("p");
-    note("blink", pressed(), get("blink-what").textContent, get("pause").textContent);
-    await press("b");
-    note("blinked", get("blink-what").textContent, ...[...document.querySelectorAll("#sheet img")].map(i => getComputedStyle(i).opacity));
-    for (const key of ["1", "2", "3", "4"]) { await press(key); note("key " + key, pressed(), ...images()); }
-    await press("8");
-    const [left, right] = [...document.querySelectorAll("#sheet img")].map(i => i.getBoundingClientRect());
-    note("side", pressed(), ...images(), right.left >= left.right, right.top === left.top, get("side-row").hidden);
+    note("onion", pressed(), getComputedStyle(all("#sheet img")[1]).opacity);
     await press("5");
-    document.querySelectorAll("#rows li")[1].focus();
+    await press("p");
+    await press("b");
+    note("blinked", get("blink-what").textContent, ...all("#sheet img").map(i => getComputedStyle(i).opacity));
+    for (const key of ["1", "2", "3"]) { await press(key); note("key " + key, pressed(), ...images()); }
+    await press("7");
+    const [left, right] = all("#sheet img").map(i => i.getBoundingClientRect());
+    note("side", pressed(), ...images(), right.left >= left.right, right.top === left.top);
+    note("marks of both pictures", all(".ring").map(mark => mark.dataset.number));
+    await press("m");
+    note("no marks", all(".ring").length);
+    await press("4");
+    all("#rows li")[1].focus();
     await press("ArrowDown", document.activeElement);
     note("down", ...place(), document.activeElement.firstChild.textContent);
-    await press("ArrowUp", document.activeElement);
     document.activeElement.blur();
-    note("link", location.hash);
-    await follow("#frame=2&mode=side");
+    await follow("#frame=1&mode=side");
     note("followed", ...place(), pressed(), location.hash);
     await follow("#frame=frame_000003.png&mode=nonsense");
-    note("followed to an equal one", ...place(), location.hash);
+    note("followed to an equal one", ...place(), location.hash, get("nothing").textContent);
     await press("a");
     await follow("#frame=77");
     note("followed to nothing", get("nothing").textContent, get("nothing").hidden);
-    await follow("#frame=1&mode=swipe");
-    note("followed back", ...place(), pressed(), get("nothing").hidden);
-    const sorted = {};
-    for (const key of ["flip", "largest", "severity"]) {
+    for (const key of ["largest", "severity", "name"]) {
       get("sort").value = key;
       get("sort").dispatchEvent(new Event("change"));
       await wait();
-      const all = JSON.parse(get("data").textContent).frames, none = key === "severity" ? Infinity : -1;
-      const of = name => all.find(f => f.name === name)[key] ?? none;
-      sorted[key] = shown().every((name, i, names) => i === 0 || of(names[i - 1]) >= of(name));
-      note("sorted by " + key, shown().length, sorted[key], get("name").textContent);
+      const frames = JSON.parse(get("data").textContent).frames, value = name => frames.find(f => f.name === name)[key];
+      const names = all("#rows li").map(row => row.firstChild.textContent);
+      const ordered = (a, b) => key === "name" ? a <= b : (value(a) ?? Infinity) >= (value(b) ?? Infinity);
+      note("sorted by " + key, names.length, names.every((name, i) => i === 0 || ordered(names[i - 1], name)));
     }
-    get("sort").value = "name";
-    get("sort").dispatchEvent(new Event("change"));
-    await wait();
-    note("sorted by name", shown().join(), ...place());
-    note("figures", document.querySelector("#rows [aria-selected=true] .row-figures").textContent);
-    const marks = () => document.querySelectorAll(".ring").length;
-    await press("8");
-    note("marks of both pictures", marks(), [...document.querySelectorAll(".ring")].map(mark => mark.dataset.number));
-    await press("5");
-    note("regions", get("regions-part").hidden, ...[...document.querySelectorAll("#regions li")].map(item => item.textContent), get("more-regions").textContent);
+    note("regions", get("regions-part").hidden, ...all("#regions li").map(item => item.textContent), get("more-regions").textContent);
     note("causes", get("causes").textContent);
-    note("marks", marks() > 0, get("ring-button").getAttribute("aria-pressed"));
-    await press("m");
-    note("no marks", marks(), get("ring-button").getAttribute("aria-pressed"));
     await press("+");
-    note("zoom", get("zoom").value, get("sheet").style.width);
+    note("zoom", get("zoom").value, document.querySelector("#sheet img").style.width);
     await press("0");
     await press("End");
-    note("end", ...place(), pressed(), ...images());
-    note("link by name", location.hash);
-    await follow("#frame=frame_000004.png");
-    note("followed by name", ...place());
-    await follow("#frame=sub%2Fframe_000004.png");
-    note("followed by name again", ...place());
-    note("cannot", get("mode-swipe").disabled, get("next").disabled);
-    await press("ArrowRight");
-    note("beyond", ...place());
+    note("end", ...place(), pressed(), get("mode-swipe").disabled, get("next").disabled, location.hash);
     await press("Home");
     await press("a");
-    note("all", document.querySelectorAll("#rows li").length, get("all").checked, ...place());
     get("scrubber").value = 4;
     get("scrubber").dispatchEvent(new Event("input"));
-    await wait();
-    note("scrubbed", ...place(), get("nothing").hidden, get("nothing").textContent);
-    await press("ArrowRight", get("scrubber"));
-    note("own keys", get("place").textContent);
-    await press("a");
-    note("failures", document.querySelectorAll("#rows li").length, ...place());
+    await press("ArrowRight", get("scrubber")); /* the slider's own */
+    note("scrubbed", ...place(), get("all").checked);
     const svg = document.querySelector("#plot svg"), box = svg.getBoundingClientRect();
     svg.dispatchEvent(new MouseEvent("click", {clientX: box.left + box.width * 2.5 / 6, clientY: box.top + 9}));
     await wait();
     note("plot", ...place(), document.querySelector("#plot .cursor").getAttribute("x1"));
-    document.querySelectorAll("#rows li")[0].click();
-    await wait();
-    note("click", ...place());
     await press("?");
     note("help", get("help").open, document.activeElement.tagName);
-    note("unnamed", [...document.querySelectorAll("button, input, select, img, [role=region], [role=img]")].filter(e =>
+    note("unnamed", all("button, input, select, img, [role=region], [role=img]").filter(e =>
       !(e.textContent.trim() || e.getAttribute("aria-label") || e.alt || (e.labels && e.labels.length))).map(e => e.outerHTML).join());
     note("fetched", performance.getEntriesByType("resource").filter(r => !r.name.startsWith("data:")).length);
-  } catch (error) { note("error", error); }
-  get("seen").textContent = "BEGIN\n" + seen.join("\n") + "\nEND";
-})();
-</script>
 PROBE
-# A name in a subfolder, two regions instead of those found, and a cause: a mark around most of the picture is left out.
+# A name in a subfolder, two regions instead of those found, and a cause.
 /usr/bin/python3 - <<'PYTHON'
 import json, re
 page = open("report/report.html").read()
@@ -153,83 +157,192 @@ data["frames"][5]["name"] = "sub/frame_000004.png" # a number that two names hav
 data["causes"] = ["frames 1 to 4: body 1 moved by <b>"]
 for frame in data["frames"]:
     frame["region_count"] = 3
-    frame["regions"] = [{"box": [10, 10, 20, 24], "pixels": 99, "name": "body 1 moved"},
-                        {"box": [40, 40, 50, 50], "pixels": 7, "name": None}]
+    frame["regions"] = [{"box": [10, 10, 20, 24], "pixels": 99, "largest": 7, "name": "body 1 moved"},
+                        {"box": [40, 40, 50, 50], "pixels": 7, "largest": 255, "name": None}]
 open("report/report.html", "w").write(begin + json.dumps(data).replace("<", "\\u003c") + end)
 PYTHON
-if command -v chromium >/dev/null; then
-    browse report/report.html
-    says "title: twinbox compare: physics changed, 1 frame missing, 1 frame extra"
-    says "rows: 5"
-    says "start: frame_000000.png | missing | 1 of 5 | mode-expected | expected:80"
-    says "right: frame_000001.png | physics changed | 2 of 5 | mode-swipe | expected:80 | actual:80"
-    says "row: frame_000001.pngphysics changedFLIP 0."
-    says "swipe: inset(0px 0px 0px 50%)"
-    says "swipe more: inset(0px 0px 0px 55%) | 55"
-    says "onion: mode-onion | 0.55"
-    says "blink: mode-blink | Now: expected | Continue"
-    says "blinked: Now: actual | 0 | 1"
-    says "key 1: mode-expected | expected:80"
-    says "key 2: mode-actual | actual:80"
-    says "key 3: mode-difference | difference:80"
-    says "key 4: mode-flip | FLIP:80"
-    says "side: mode-side | expected:80 | actual:80 | true | true | false"
-    says "down: frame_000002.png | physics changed | 3 of 5 | frame_000002.png"
-    says "link: #frame=1&mode=swipe"
-    says "followed: frame_000002.png | physics changed | 3 of 5 | mode-side | #frame=2&mode=side"
-    says "followed to an equal one: frame_000003.png | equal | 4 of 6 | #frame=3&mode=side"
-    says 'followed to nothing: This report has no frame "77". | false'
-    says "followed back: frame_000001.png | physics changed | 2 of 5 | mode-swipe | true"
-    says "sorted by flip: 5 | true | frame_000001.png"
-    says "sorted by largest: 5 | true | frame_000001.png"
-    says "sorted by severity: 5 | true | frame_000001.png"
-    says "sorted by name: frame_000000.png,frame_000001.png,frame_000002.png,frame_000004.png,sub/frame_000004.png | frame_000001.png | physics changed | 2 of 5"
-    says "figures: FLIP 0."
-    says "marks: true | true"
-    says "marks of both pictures: 4 | 1,1,2,2"
-    says "regions: false | body 1 moved: 10 x 14 pixels at (10, 10), 99 of them differ | 10 x 10 pixels at (40, 40), 7 of them differ | and 1 more"
-    says "causes: frames 1 to 4: body 1 moved by <b>"
-    says "no marks: 0 | false"
-    says "zoom: 1 | 80px"
-    says "end: sub/frame_000004.png | extra | 5 of 5 | mode-actual | actual:80"
-    says "link by name: #frame=sub%2Fframe_000004.png&mode=actual"
-    says "followed by name: frame_000004.png | physics changed | 4 of 5"
-    says "followed by name again: sub/frame_000004.png | extra | 5 of 5"
-    says "cannot: true | true"
-    says "beyond: sub/frame_000004.png | extra | 5 of 5"
-    says "all: 6 | true | frame_000000.png | missing | 1 of 6"
-    says "scrubbed: frame_000003.png | equal | 4 of 6 | false | Equal pictures are not included in this report."
-    says "own keys: 4 of 6"
-    says "failures: 5 | frame_000004.png | physics changed | 4 of 5"
-    says "plot: frame_000002.png | physics changed | 3 of 5 | 2.5"
-    says "click: frame_000000.png | missing | 1 of 5"
-    says "help: true | SUMMARY"
-    [ "$(grep '^unnamed:' out)" = "unnamed: " ] || fail "without a name: $(grep '^unnamed:' out)"
-    says "fetched: 0"
-    ! grep '^error:' out || fail "the page's script failed"
+browse report/report.html
+while read -r line; do says "$line"; done <<'LINES'
+title: twinbox compare: physics changed, 1 frame missing, 1 frame extra
+rows: 5
+start: frame_000000.png | missing | 1 of 5 | mode-expected | expected:80
+right: frame_000001.png | physics changed | 2 of 5 | mode-swipe | expected:80 | actual:80
+row: frame_000001.pngphysics changed
+swipe: inset(0px 0px 0px 55%) | 55
+onion: mode-onion | 0.55
+blinked: Now: actual | 0 | 1
+key 1: mode-expected | expected:80
+key 2: mode-actual | actual:80
+key 3: mode-difference | difference:80
+side: mode-side | expected:80 | actual:80 | true | true
+marks of both pictures: 1,1,2,2
+no marks: 0
+down: frame_000002.png | physics changed | 3 of 5 | frame_000002.png
+followed: frame_000001.png | physics changed | 2 of 5 | mode-side | #frame=1&mode=side
+followed to an equal one: frame_000003.png | equal | 4 of 6 | #frame=3&mode=side | Equal pictures are not included in this report.
+followed to nothing: This report has no frame "77". | false
+sorted by largest: 5 | true
+sorted by severity: 5 | true
+sorted by name: 5 | true
+regions: false | body 1 moved: 10 x 14 pixels at (10, 10), 99 of them differ by at most 7 | 10 x 10 pixels at (40, 40), 7 of them differ by at most 255 | and 1 more
+causes: frames 1 to 4: body 1 moved by <b>
+zoom: 1 | 80px
+end: sub/frame_000004.png | extra | 5 of 5 | mode-actual | true | true | #frame=sub%2Fframe_000004.png&mode=actual
+scrubbed: frame_000003.png | equal | 4 of 6 | true
+plot: frame_000002.png | physics changed | 3 of 6 | 2.5
+help: true | SUMMARY
+fetched: 0
+LINES
+[ "$(grep '^unnamed:' out)" = "unnamed: " ] || fail "without a name: $(grep '^unnamed:' out)"
+! grep '^error:' out || fail "the page's script failed"
 
-    # A comparison that passes has a page too.
-    run 0 compare actual actual --report report
-    browse report/report.html
-    says "title: twinbox compare: equal"
-    says "rows: 0"
+# Of one picture there is nothing to choose; a comparison that passes has a page, too.
+cat begin.html - end.html >probe.html <<<'    note("hidden", get("list").hidden, get("scrub").hidden, document.title);'
+run 1 compare "expected</script>/frame_000001.png" actual/frame_000001.png --report report
+browse report/report.html
+says "hidden: true | true | twinbox compare: physics changed"
+run 0 compare actual actual --report report
+browse report/report.html
+says "hidden: false | false | twinbox compare: equal"
 
-    # Of one picture there is nothing to choose, but of several there is.
-    cat >probe.html <<'PROBE'
-<pre id="seen" hidden></pre>
-<script>
-document.getElementById("seen").textContent =
-  ["BEGIN", "hidden: " + ["list", "scrub"].map(id => document.getElementById(id).hidden), "END"].join("\n");
-</script>
+# The looks of all verdicts: a frame within tolerance, without states, and one pixel of another colour; in a subfolder, one
+# with other metadata.
+mv "expected</script>" expected
+rm expected/*.npz
+mkdir expected/sub actual/sub
+/usr/bin/python3 - <<'PYTHON'
+import struct, zlib
+chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+for folder, first in ("expected", 9), ("actual", 10):
+    rows = b"".join(b"\0" + bytes([first if row == 0 else 9]) + bytes(319 * [9]) for row in range(180))
+    with open(f"{folder}/plain.png", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 320, 180, 8, 0, 0, 0, 0)))
+        file.write(chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+    with open(f"{folder}/sub/gamma.png", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0)))
+        file.write(chunk(b"gAMA", struct.pack(">I", 45454 if first == 9 else 60000)))
+        file.write(chunk(b"IDAT", zlib.compress(b"\0\0")) + chunk(b"IEND", b""))
+PYTHON
+run 1 compare expected actual --tolerance 1 --report report
+
+cat begin.html - end.html >probe.html <<'PROBE'
+    const visible = e => e.getClientRects().length > 0;
+    const name = e => e.tagName + (e.id && "#" + e.id) + (e.className.length ? "." + e.className : "") + " " + e.textContent.trim().slice(0, 20);
+
+    const channels = color => color.match(/[\d.]+/g).map(Number);
+    const over = ([r, g, b, alpha = 1], [R, G, B]) => [r * alpha + R * (1 - alpha), g * alpha + G * (1 - alpha), b * alpha + B * (1 - alpha)];
+    const luminance = color => {
+    const [r, g, b] = color.map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const ratio = (a, b) => {
+    const [low, high] = [luminance(a), luminance(b)].sort((x, y) => x - y);
+    return (high + 0.05) / (low + 0.05);
+    };
+    const ground = e => {
+    if (e === null) return [255, 255, 255];
+    const color = channels(getComputedStyle(e).backgroundColor);
+    return color[3] === 0 || color.length < 3 ? ground(e.parentElement) : over(color, color.length > 3 ? ground(e.parentElement) : [0, 0, 0]);
+    };
+    const pairs = new Set(), low = [];
+    const measure = (what, color, behind, least) => {
+    const found = ratio(over(channels(color), behind), behind);
+    pairs.add(color + " on " + behind);
+    if (!(found >= least)) low.push(`${what}: ${color} on ${behind.map(Math.round)}: ${found.toFixed(2)}, at least ${least}`);
+    };
+    const measure_text = e => {
+    const style = getComputedStyle(e), size = parseFloat(style.fontSize);
+    const large = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700);
+    measure(name(e), style.color, ground(e), large ? 3 : 4.5);
+    };
+    const has_text = e => [...e.childNodes].some(n => n.nodeType === Node.TEXT_NODE && n.textContent.trim());
+
+    note("window", innerWidth >= 390, document.documentElement.scrollWidth <= innerWidth);
+    const slider = get("scrubber").getBoundingClientRect();
+    /* A row far below is shown by scrolling the list, never the page. */
+    get("viewer").style.paddingTop = get("rows").lastChild.style.marginTop = "3000px";
+    document.body.dispatchEvent(new KeyboardEvent("keydown", {key: "End", bubbles: true}));
+    await wait();
+    note("not scrolled", scrollY);
+    get("viewer").style.paddingTop = get("rows").lastChild.style.marginTop = "";
+    note("fold", slider.top >= 0 && slider.bottom <= 900 && slider.bottom <= innerHeight);
+    const labels = [...document.querySelectorAll(".plot h3, .plot span")];
+    const clipped = labels.filter(e => {
+      const box = e.getBoundingClientRect();
+      return box.left < 0 || box.right > innerWidth || e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 0;
+    });
+    note("labels", labels.length, clipped.map(name).join(), Math.min(...labels.map(e => parseFloat(getComputedStyle(e).fontSize))) >= 11);
+    const plots = [...document.querySelectorAll(".plot")].map(e => e.getBoundingClientRect());
+    note("plots", plots.length, Math.min(...plots.map(p => p.width)) >= Math.min(300, innerWidth - 90), plots.every(p => p.height < 120));
+
+    const stops = [...document.querySelectorAll("a, button, input, select, summary, [tabindex]")].filter(e =>
+      e.tabIndex >= 0 && !e.disabled && visible(e));
+    note("tab", stops[0].id, stops.filter(e => get("rows").contains(e)).length, get("rows").children.length,
+      stops.findIndex(e => get("viewer").contains(e)), stops.includes(get("stage")));
+    get("skip").focus();
+    note("skip link seen", get("skip").getBoundingClientRect().top >= 0);
+    get("skip").click();
+    note("skipped to", document.activeElement.id);
+
+    const style = getComputedStyle(document.documentElement), of = key => style.getPropertyValue(key);
+    const rgb = text => { /* "#abc" and "#aabbcc" */
+      const digits = text.trim().slice(1), full = digits.length === 3 ? digits.replace(/./g, "$&$&") : digits;
+      return [0, 2, 4].map(i => parseInt(full.slice(i, i + 2), 16));
+    };
+    get("all").click();
+    await wait();
+    note("metadata", get("notes").textContent.includes("metadata differs in 1 frame"),
+      ...[...get("rows").lastChild.children].map(part => part.className + " " + part.textContent));
+    note("looks", ...["good", "odd", "bad"].map(look => document.querySelectorAll("#rows ." + look).length > 0));
+    for (const hidden of document.querySelectorAll("main [hidden]")) hidden.hidden = false;
+    get("help").open = true;
+    get("nothing").textContent = "text";
+    for (const e of document.querySelectorAll("body *"))
+      if (has_text(e) && visible(e) && !e.closest("button:disabled, script, style, noscript, option")) measure_text(e);
+    for (const row of [...document.querySelectorAll("#rows li")]) {
+      row.click();
+      await wait();
+      [...row.children].forEach(measure_text);
+      measure("focus of a row", "rgb(" + rgb(of("--accent-ink")) + ")", ground(row), 3);
+    }
+    for (const [graphic, behind] of [["--accent", "--page"], ["--accent", "--panel"], ["--bad", "--panel"], ["--ring", "--panel"], ["--ring", "--stage"]])
+      measure(graphic + " on " + behind, "rgb(" + rgb(of(graphic)) + ")", rgb(of(behind)), 3);
+    measure("number of a mark", "rgb(255, 255, 255)", rgb(of("--mark")), 4.5);
+    note("pairs", pairs.size >= 15);
+    note("low contrast", low.join("; "));
+    note("scheme", luminance(ground(document.body)) < 0.5 ? "dark" : "light");
 PROBE
-    run 1 compare "expected</script>/frame_000001.png" actual/frame_000001.png --report report
-    browse report/report.html
-    says "hidden: true,true"
-    grep -q "<b>1</b> frame: physics changed" report/report.html || fail "the count of one frame"
-    run 1 compare "expected</script>" actual --report report
-    browse report/report.html
-    says "hidden: false,false"
-else
-    fail "chromium is not installed; tests/setup chromium does that"
-fi
+
+# A browser window is at least 500 pixels wide; a frame is as narrow as it should be.
+cat >narrow.html <<'NARROW'
+<!DOCTYPE html>
+<body style="margin: 0">
+<iframe src="probed.html" width="390" height="844" style="border: 0"></iframe>
+<pre id="seen"></pre>
+<script>onmessage = event => { document.getElementById("seen").textContent = event.data; };</script>
+NARROW
+
+check_page() {
+    says "window: true | true"
+    says "not scrolled: 0"
+    says "labels: 5 |  | true"
+    says "plots: 1 | true | true"
+    says "tab: skip | 1 | 5 | 1 | true"
+    says "skip link seen: true"
+    says "skipped to: stage"
+    says "metadata: true | row-name sub/gamma.png | odd equal | row-figures metadata differs"
+    says "looks: true | true | true"
+    says "pairs: true"
+    [ "$(grep '^low contrast:' out)" = "low contrast: " ] || fail "$1: $(grep '^low contrast:' out)"
+    says "scheme: $2"
+    ! grep '^error:' out || fail "$1: the page's script failed"
+}
+
+browse report/report.html --blink-settings=preferredColorScheme=1
+check_page wide light
+says "fold: true"
+browse report/report.html --blink-settings=preferredColorScheme=0
+check_page wide dark
+load narrow.html --blink-settings=preferredColorScheme=1
+check_page narrow light
 finish
