@@ -295,26 +295,12 @@ static bool find_sides(const EdgeRows *a, const EdgeRows *b, int x, const uint8_
     return farthest >= 2 * LEAST_CONTRAST;
 }
 
-/* Whether the sums of 5 x 5 pixels, b less a, are what it takes to move an edge or a line between two sides by half a
-   pixel at most: one side's colour gives way to the other's. */
-static bool moves_between(const int sums[CHANNELS], int sides[2][CHANNELS], const Window *p, const Window *q) {
-    static const double MOST = 0.5 * 7; /* of the longest edge in a window */
-    double steps[CHANNELS], product = 0, square = 0;
-    for (int c = 0; c < CHANNELS; c++) {
-        steps[c] = (sides[1][c] - sides[0][c]) / 2.0;
-        product += sums[c] * steps[c], square += steps[c] * steps[c];
-    }
-    const double moved = product / square;
-    bool fits = fabs(moved) <= MOST;
-    for (int c = 0; fits && c < CHANNELS; c++)
-        fits = 20 * fabs(sums[c] - moved * steps[c]) <= 9 * contrast_of(p, q, c) + 60;
-    return fits;
-}
-
-/* The same as the second part of 2, for a line whose sides differ: in one of the windows around the pixel and its
-   neighbours. */
+/* The same as the second part of 2, for a line whose sides differ: in one of the windows of 5 x 5 pixels around the pixel
+   and its neighbours, the sums of b less a are what it takes to move an edge or a line between two sides by half a pixel
+   at most: one side's colour gives way to the other's. */
 static bool lies_between(const EdgeRows *a, const EdgeRows *b, int x, const Window *p, const Window *q,
                          const uint8_t slacks[CHANNELS]) {
+    static const double MOST = 0.5 * 7; /* of the longest edge in a window */
     int sides[2][CHANNELS] = {{0}};
     if (!find_sides(a, b, x, slacks, sides)) return false;
     for (int window = 0; window < 9; window++) {
@@ -324,7 +310,16 @@ static bool lies_between(const EdgeRows *a, const EdgeRows *b, int x, const Wind
                 const size_t at = 4 * ((size_t)x + (size_t)(window % 3)) + (size_t)k;
                 sums[k % CHANNELS] += b->rows[i][at] - a->rows[i][at];
             }
-        if (moves_between(sums, sides, p, q)) return true;
+        double steps[CHANNELS], product = 0, square = 0;
+        for (int c = 0; c < CHANNELS; c++) {
+            steps[c] = (sides[1][c] - sides[0][c]) / 2.0;
+            product += sums[c] * steps[c], square += steps[c] * steps[c];
+        }
+        const double moved = product / square;
+        bool fits = fabs(moved) <= MOST;
+        for (int c = 0; fits && c < CHANNELS; c++)
+            fits = 20 * fabs(sums[c] - moved * steps[c]) <= 9 * contrast_of(p, q, c) + 60;
+        if (fits) return true;
     }
     return false;
 }

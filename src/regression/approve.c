@@ -184,23 +184,19 @@ void approval_free(ApprovalList *list) {
     free(list->items);
 }
 
-static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem *item, Error *error) {
-    if (!json_is_object(value)) return json_read_error(json, error, "a frame or trajectory must be an object");
-    if (!read_flag(json, value, "failed", &item->failed, error) ||
-        !read_flag(json, value, "shown", &item->shown, error) ||
-        !read_file(json, value, "expected", &item->expected, error) ||
-        !read_file(json, value, "actual", &item->actual, error))
-        return false;
-    return item->expected.name != NULL || item->actual.name != NULL ||
-           json_read_error(json, error, "an expected or an actual file is required");
-}
-
 static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
     if (!json_read_char(json, '[')) return json_read_error(json, error, "'%s' must be an array", key);
     for (bool more = !json_read_char(json, ']'); more;) {
         ApprovalItem item = {0};
         const json_t *value = json_read_value(json, error);
-        const bool ok = value != NULL && read_item(json, value, &item, error);
+        bool ok = value != NULL &&
+                  (json_is_object(value) || json_read_error(json, error, "a frame or trajectory must be an object")) &&
+                  read_flag(json, value, "failed", &item.failed, error) &&
+                  read_flag(json, value, "shown", &item.shown, error) &&
+                  read_file(json, value, "expected", &item.expected, error) &&
+                  read_file(json, value, "actual", &item.actual, error);
+        ok = ok && (item.expected.name != NULL || item.actual.name != NULL ||
+                    json_read_error(json, error, "an expected or an actual file is required"));
         if (ok && item.failed && array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) {
             list->items[list->count++] = item;
         } else {

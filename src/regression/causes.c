@@ -37,26 +37,24 @@ static void add(Regression *regression, int frame, const char *what, double most
     if (cause->range_count <= CAUSE_RANGES) cause->ranges[cause->range_count - 1][1] = frame;
 }
 
-static void add_view(Regression *regression, int frame) {
-    ShownFolder *folders[SIDES];
-    for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        folders[side] =
-            shown_find(&regression->shown, regression->frames[frame].at[side]->path, &(Error){0}); /* known by now */
-    if (folders[EXPECTED] == NULL || folders[ACTUAL] == NULL) return;
-    ViewText words = view_difference(&folders[EXPECTED]->view, &folders[ACTUAL]->view);
-    char what[sizeof regression->causes->what];
-    snprintf(what, sizeof what, "%s; render with --view-from %s%s", words.text, folders[EXPECTED]->path,
-             folders[EXPECTED]->view.panels[0].run);
-    add(regression, frame, what, 0, true);
-}
-
 /* A picture that is a case of its own says what differs in its own words. */
 static void add_causes(Regression *regression, int frame) {
     const RegressionFrame *at = &regression->frames[frame];
     const FrameChanges *changes = at->changes;
     if (at->pixels >= PIXELS_MISSING) return;
     if (at->pixels == PIXELS_RESIZED && !at->alone) add(regression, frame, "sizes differ", 0, false);
-    if ((at->pixels == PIXELS_DIFFER || at->pixels == PIXELS_RESIZED) && at->other_view) add_view(regression, frame);
+    if ((at->pixels == PIXELS_DIFFER || at->pixels == PIXELS_RESIZED) && at->other_view) {
+        ShownFolder *folders[SIDES];
+        for (RegressionSide side = EXPECTED; side < SIDES; side++)
+            folders[side] = shown_find(&regression->shown, at->at[side]->path, &(Error){0}); /* known by now */
+        if (folders[EXPECTED] != NULL && folders[ACTUAL] != NULL) {
+            const ViewText words = view_difference(&folders[EXPECTED]->view, &folders[ACTUAL]->view);
+            char what[sizeof regression->causes->what];
+            snprintf(what, sizeof what, "%s; render with --view-from %s%s", words.text, folders[EXPECTED]->path,
+                     folders[EXPECTED]->view.panels[0].run);
+            add(regression, frame, what, 0, true);
+        }
+    }
     if (at->states == STATES_DIFFER && !at->alone) {
         char what[96] = "states differ";
         const TrajectoryDifference *first =
@@ -74,18 +72,6 @@ static void add_causes(Regression *regression, int frame) {
             change->kind == CHANGE_MOVED ? fmax(fabs(change->right), fabs(change->up)) : 0, false);
     }
     if ((changes == NULL || changes->count == 0) && !at->alone) add(regression, frame, "pixels differ", 0, false);
-}
-
-/* Whether all frames belong to one sequence of numbered pictures: then numbers are enough. */
-static bool is_numbered(const Regression *regression) {
-    const SequenceFrame *first = NULL;
-    for (int i = 0; i < regression->count; i++) {
-        const SequenceFrame *at = regression->frames[i].at[EXPECTED];
-        if (at == NULL) continue;
-        if (first == NULL) first = at;
-        if (!sequence_same(at, first)) return false;
-    }
-    return first != NULL;
 }
 
 /* "frame 3", but "frames 3 to 5"; the number if there are too many ranges. */
@@ -114,7 +100,15 @@ bool regression_find_causes(Regression *regression, Error *error) {
     regression->causes = calloc(CAUSES_MAX, sizeof *regression->causes);
     if (regression->causes == NULL) return error_memory(error, "causes");
     for (int i = 0; i < regression->count; i++) add_causes(regression, i);
-    const bool numbered = is_numbered(regression);
+    /* If all frames belong to one sequence of numbered pictures, numbers are enough. */
+    const SequenceFrame *first = NULL;
+    bool numbered = true;
+    for (int i = 0; i < regression->count; i++) {
+        const SequenceFrame *at = regression->frames[i].at[EXPECTED];
+        if (first == NULL) first = at;
+        numbered = numbered && (at == NULL || sequence_same(at, first));
+    }
+    numbered = numbered && first != NULL;
     for (int i = 0; i < regression->cause_count; i++) put_frames(regression, numbered, &regression->causes[i]);
     qsort(regression->causes, (size_t)regression->cause_count, sizeof *regression->causes, view_first);
     return true;

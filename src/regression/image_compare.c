@@ -101,22 +101,22 @@ void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked,
     difference->equal = difference->pixels == 0;
 }
 
-/* Rows are copied in place: the first byte of a row never lies after its new place. */
-static void cut(Image *image, int width, int height) {
-    size_t from = 4 * (size_t)image->width, to = 4 * (size_t)width;
-    for (int y = 0; y < height && width < image->width; y++) {
-        memmove(image->pixels + (size_t)y * to, image->pixels + (size_t)y * from, to);
-        if (image->pixels16 == NULL) continue;
-        memmove(image->pixels16 + (size_t)y * to, image->pixels16 + (size_t)y * from, to * sizeof *image->pixels16);
-    }
-    image->width = width;
-    image->height = height;
-}
-
 void image_cut_to_overlap(Image *a, Image *b) {
-    int width = int_min(a->width, b->width), height = int_min(a->height, b->height);
-    cut(a, width, height);
-    cut(b, width, height);
+    Image *const images[] = {a, b};
+    const int width = int_min(a->width, b->width), height = int_min(a->height, b->height);
+    const size_t to = 4 * (size_t)width;
+    for (int i = 0; i < 2; i++) {
+        Image *image = images[i];
+        const size_t from = 4 * (size_t)image->width;
+        /* In place: the first byte of a row never lies after its new place. */
+        for (size_t y = 0; y < (size_t)height && to < from; y++) {
+            memmove(image->pixels + y * to, image->pixels + y * from, to);
+            if (image->pixels16 != NULL)
+                memmove(image->pixels16 + y * to, image->pixels16 + y * from, to * sizeof *image->pixels16);
+        }
+        image->width = width;
+        image->height = height;
+    }
 }
 
 typedef struct Node {
@@ -331,8 +331,6 @@ bool row_compare_begin(RowCompare *compare, int width, int height, int tolerance
             edge_rows_create(&compare->sides[1], width, height)) ||
            error_memory(&compare->error, "image");
 }
-
-uint8_t *row_compare_place(RowCompare *compare, int side, int y) { return edge_rows_place(&compare->sides[side], y); }
 
 /* Adds the rows above `end` that wait to the regions. */
 static void add_pending(RowCompare *compare, int end) {

@@ -76,7 +76,7 @@ int image_regions_gap(int width, int height);
    rows above and below it, must be placed and given; others may be left out:
 
      row_compare_begin(&compare, width, height, tolerance, NULL);
-     memcpy(row_compare_place(&compare, side, y), pixels, 4 * width);
+     memcpy(edge_rows_place(&compare.sides[side], y), pixels, 4 * width);
      row_compare_row(&compare, y, differs);
      row_compare_end(&compare);                                       ... difference, regions */
 
@@ -99,7 +99,6 @@ typedef struct RowCompare {
 /* all_levels[height, width] of zeros gets the levels of rows that differ; NULL: they are not kept. False with `error` of
    the comparison set if out of memory, then or later. row_compare_free() must follow. */
 bool row_compare_begin(RowCompare *compare, int width, int height, int tolerance, uint8_t *all_levels);
-uint8_t *row_compare_place(RowCompare *compare, int side, int y); /* RGBA, [4 * width] */
-void row_compare_row(RowCompare *compare, int y, bool differs);   /* where it does not, only side 0 is placed */
+void row_compare_row(RowCompare *compare, int y, bool differs); /* where it does not, only side 0 is placed */
 bool row_compare_end(RowCompare *compare);
 void row_compare_free(RowCompare *compare);

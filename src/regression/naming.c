@@ -291,28 +291,6 @@ static bool name_bodies(Naming *naming, int number, Error *error) {
     return ok;
 }
 
-/* Gives a region the change of one thing, not of several bodies, that has most of its pixels. */
-static void name_region(Naming *naming, int region) {
-    FrameChanges *changes = naming->changes;
-    const ImageRegion *r = &changes->regions.list[region];
-    int64_t pixels[CHANGES_MAX] = {0};
-    int best = -1, others = -1;
-    for (int y = r->top; y < r->bottom; y++) {
-        const uint8_t *const row = naming->owners + (size_t)y * naming->width;
-        for (int x = r->left; x < r->right; x++)
-            if (row[x] >= OWNER_FIRST) pixels[row[x] - OWNER_FIRST]++;
-    }
-    for (int i = 0; i < changes->count; i++) {
-        if (pixels[i] == 0) continue;
-        others++;
-        const bool several = changes->list[i].subject == SUBJECT_BODIES,
-                   best_several = best >= 0 && changes->list[best].subject == SUBJECT_BODIES;
-        if (best < 0 || (several != best_several ? best_several : pixels[i] > pixels[best])) best = i;
-    }
-    changes->region_change[region] = (int16_t)best;
-    changes->region_others[region] = (int16_t)(others > 0 ? others : 0);
-}
-
 static void name_all(Naming *naming, Error *error) {
     static const ChangeSubject subjects[] = {SUBJECT_HEADER, SUBJECT_CAPTION, SUBJECT_AXIS, SUBJECT_LEGEND,
                                              SUBJECT_TIMELINE};
@@ -332,7 +310,27 @@ static void name_all(Naming *naming, Error *error) {
         name_rectangle(naming, around, view->marks ? SUBJECT_MARKS : SUBJECT_BACKGROUND, i + 1);
     }
     name_rectangle(naming, (ViewRect){0, 0, view->width, view->height}, SUBJECT_PAGE, 0);
-    for (int i = 0; i < naming->changes->regions.kept; i++) name_region(naming, i);
+    /* A region gets the change of one thing, not of several bodies, that has most of its pixels. */
+    FrameChanges *changes = naming->changes;
+    for (int region = 0; region < changes->regions.kept; region++) {
+        const ImageRegion *r = &changes->regions.list[region];
+        int64_t pixels[CHANGES_MAX] = {0};
+        int best = -1, others = -1;
+        for (int y = r->top; y < r->bottom; y++) {
+            const uint8_t *const row = naming->owners + (size_t)y * naming->width;
+            for (int x = r->left; x < r->right; x++)
+                if (row[x] >= OWNER_FIRST) pixels[row[x] - OWNER_FIRST]++;
+        }
+        for (int i = 0; i < changes->count; i++) {
+            const bool several = changes->list[i].subject == SUBJECT_BODIES,
+                       best_several = best >= 0 && changes->list[best].subject == SUBJECT_BODIES;
+            if (pixels[i] == 0) continue;
+            others++;
+            if (best < 0 || (several != best_several ? best_several : pixels[i] > pixels[best])) best = i;
+        }
+        changes->region_change[region] = (int16_t)best;
+        changes->region_others[region] = (int16_t)(others > 0 ? others : 0);
+    }
 }
 
 bool naming_find(const NamingScene *scene, uint8_t *levels, const ImageDifference *difference, FrameChanges *changes,

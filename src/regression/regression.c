@@ -69,7 +69,10 @@ static bool begin_rows(void *context, int width, int height) {
     return row_compare_begin(compare, width, height, compare->tolerance, compare->all_levels);
 }
 
-static uint8_t *place_row(void *context, int side, int y) { return row_compare_place(context, side, y); }
+static uint8_t *place_row(void *context, int side, int y) {
+    RowCompare *compare = context;
+    return edge_rows_place(&compare->sides[side], y);
+}
 
 static void take_row(void *context, int y, const uint8_t *a, const uint8_t *b) { row_compare_row(context, y, a != b); }
 

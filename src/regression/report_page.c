@@ -47,47 +47,35 @@ static void write_plot(FILE *file, const Regression *regression) {
 
 /* The fixed parts of page/, and pictures and results as data for its script. */
 
-static void write_count(FILE *file, int count, const char *look, const char *what) {
-    if (count > 0) fprintf(file, "<li class=\"%s\"><b>%d</b> %s</li>\n", look, count, what);
-}
-
-static void write_frames(FILE *file, int count, const char *look, const char *what) {
-    char words[64];
-    snprintf(words, sizeof words, "%s: %s", count == 1 ? "frame" : "frames", what);
-    write_count(file, count, look, words);
-}
-
 static void write_counts(FILE *file, const Regression *regression) {
     const int *by = regression->by_verdict;
+    const struct {
+        int count;
+        const char *look, *what;
+        bool runs;
+    } lines[] = {{regression->renderer, "bad", "renderer changed", false},
+                 {regression->physics, "bad", "physics changed", false},
+                 {regression->view, "bad", "view changed", false},
+                 {regression->elsewhere, "bad", "run changed", false},
+                 {regression->unknown, "bad", "pictures differ", false},
+                 {by[PIXELS_MISSING], "bad", "missing", false},
+                 {by[PIXELS_EXTRA], "bad", "extra", false},
+                 {by[PIXELS_UNREAD], "bad", "not comparable", false},
+                 {regression->metadata_failed, "bad", "metadata changed", false},
+                 {by[PIXELS_WITHIN], "odd", "within tolerance", false},
+                 {by[PIXELS_EQUAL], "good", "equal pixels", false},
+                 {regression->run_failed, "bad", regression->run_failed == 1 ? "differs" : "differ", true},
+                 {regression->run_within, "odd", "within tolerance", true}};
     fputs("<ul class=\"counts\" aria-label=\"Frames by verdict\">\n", file);
-    write_frames(file, regression->renderer, "bad", "renderer changed");
-    write_frames(file, regression->physics, "bad", "physics changed");
-    write_frames(file, regression->view, "bad", "view changed");
-    write_frames(file, regression->elsewhere, "bad", "run changed");
-    write_frames(file, regression->unknown, "bad", "pictures differ");
-    write_frames(file, by[PIXELS_MISSING], "bad", "missing");
-    write_frames(file, by[PIXELS_EXTRA], "bad", "extra");
-    write_frames(file, by[PIXELS_UNREAD], "bad", "not comparable");
-    write_frames(file, regression->metadata_failed, "bad", "metadata changed");
-    write_frames(file, by[PIXELS_WITHIN], "odd", "within tolerance");
-    write_frames(file, by[PIXELS_EQUAL], "good", "equal pixels");
-    write_count(file, regression->run_failed, "bad",
-                regression->run_failed == 1 ? "trajectory differs" : "trajectories differ");
-    write_count(file, regression->run_within, "odd",
-                regression->run_within == 1 ? "trajectory within tolerance" : "trajectories within tolerance");
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        const int count = lines[i].count;
+        const char *unit = lines[i].runs ? (count == 1 ? "trajectory " : "trajectories ")
+                           : count == 1  ? "frame: "
+                                         : "frames: ";
+        if (count > 0)
+            fprintf(file, "<li class=\"%s\"><b>%d</b> %s%s</li>\n", lines[i].look, count, unit, lines[i].what);
+    }
     fputs("</ul>\n", file);
-}
-
-static void write_description(FILE *file, const Regression *regression) {
-    const RegressionOptions *options = &regression->options;
-    html_print(file, "<p class=\"soft\">Expected <code>%s</code>, actual <code>%s</code>: ",
-               regression->sequences[EXPECTED]->folder, regression->sequences[ACTUAL]->folder);
-    fprintf(file, "%d %s, ", regression->count, regression->count == 1 ? "frame" : "frames");
-    fprintf(file, "tolerance: %s", regression_limits(regression).text);
-    if (regression->rules != NULL) html_print(file, ", rules of <code>%s</code>", rules_path(regression->rules));
-    if (options->mask != NULL && options->mask->count > 0)
-        fprintf(file, ", %d %s", options->mask->count, options->mask->count == 1 ? "mask" : "masks");
-    fputs(".</p>\n", file);
 }
 
 static void write_head(FILE *file, const Regression *regression) {
@@ -121,7 +109,15 @@ static void write_summary(FILE *file, const Report *report) {
     html_print(file,
                "<header><h1>twinbox compare</h1>\n<span class=\"verdict %s\" id=\"verdict\">%s</span>\n</header>\n",
                regression_passed(regression) ? "good" : "bad", verdict.text);
-    write_description(file, regression);
+    html_print(file, "<p class=\"soft\">Expected <code>%s</code>, actual <code>%s</code>: ",
+               regression->sequences[EXPECTED]->folder, regression->sequences[ACTUAL]->folder);
+    fprintf(file, "%d %s, ", regression->count, regression->count == 1 ? "frame" : "frames");
+    fprintf(file, "tolerance: %s", regression_limits(regression).text);
+    if (regression->rules != NULL) html_print(file, ", rules of <code>%s</code>", rules_path(regression->rules));
+    if (regression->options.mask != NULL && regression->options.mask->count > 0)
+        fprintf(file, ", %d %s", regression->options.mask->count,
+                regression->options.mask->count == 1 ? "mask" : "masks");
+    fputs(".</p>\n", file);
     write_counts(file, regression);
     html_print(file, "<p class=\"begin\">%s", regression_begin(regression).text);
     if (regression->first_run >= 0) {

@@ -37,8 +37,6 @@ void rules_destroy(Rules *rules) {
 
 const char *rules_path(const Rules *rules) { return rules->path; }
 
-static int count_of(const Rules *rules) { return rules == NULL ? 0 : rules->count; }
-
 static bool matches(const Rule *rule, const char *name) { return fnmatch(rule->files, name, 0) == 0; }
 
 bool rules_check_names(const Rules *rules, const char *const *names, int count, Error *error) {
@@ -53,26 +51,26 @@ bool rules_check_names(const Rules *rules, const char *const *names, int count, 
 }
 
 void rules_override(const Rules *rules, const char *name, Tolerance *tolerance) {
-    for (int i = 0; i < count_of(rules); i++)
+    for (int i = 0; rules != NULL && i < rules->count; i++)
         if (matches(&rules->rules[i], name)) tolerance_override(tolerance, &rules->rules[i].tolerance);
 }
 
 bool rules_have_masks(const Rules *rules, const char *name) {
-    for (int i = 0; i < count_of(rules); i++)
+    for (int i = 0; rules != NULL && i < rules->count; i++)
         if (rules->rules[i].mask.count > 0 && matches(&rules->rules[i], name)) return true;
     return false;
 }
 
 double rules_most_hidden(const Rules *rules, const char *name, int width, int height) {
     double hidden = 0;
-    for (int i = 0; i < count_of(rules); i++)
+    for (int i = 0; rules != NULL && i < rules->count; i++)
         if (matches(&rules->rules[i], name)) hidden += mask_most_hidden(&rules->rules[i].mask, width, height);
     return hidden;
 }
 
 bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
                       Error *error) {
-    for (int i = 0; i < count_of(rules); i++) {
+    for (int i = 0; rules != NULL && i < rules->count; i++) {
         const Rule *rule = &rules->rules[i];
         if (matches(rule, name) && !mask_draw(&rule->mask, expected, path, masked, error)) return false;
     }

@@ -60,13 +60,15 @@ static int compare_parts(const char *x, int x_length, const char *y, int y_lengt
     return order != 0 ? order : (x_length > y_length) - (x_length < y_length);
 }
 
-/* Order by folder; by folder and stem; by number; by all of these, then name. */
-static int compare_folders(const SequenceFrame *x, const SequenceFrame *y) {
+/* Order of frames by folder; by folder and stem; by number; by stem and number; by all of these, then name. */
+static int compare_folders(const void *a, const void *b) {
+    const SequenceFrame *x = a, *y = b;
     return compare_parts(x->name, x->folder, y->name, y->folder);
 }
 
-static int compare_stems(const SequenceFrame *x, const SequenceFrame *y) {
-    int order = compare_folders(x, y);
+static int compare_stems(const void *a, const void *b) {
+    const SequenceFrame *x = a, *y = b;
+    const int order = compare_folders(x, y);
     return order != 0 ? order : compare_parts(x->name, x->stem, y->name, y->stem);
 }
 
@@ -74,15 +76,20 @@ bool sequence_same(const SequenceFrame *x, const SequenceFrame *y) {
     return x->number >= 0 && y->number >= 0 && compare_stems(x, y) == 0;
 }
 
-static int compare_numbers(const SequenceFrame *x, const SequenceFrame *y) {
+static int compare_numbers(const void *a, const void *b) {
+    const SequenceFrame *x = a, *y = b;
     return (x->number > y->number) - (x->number < y->number);
 }
 
-static int compare_frames(const void *x, const void *y) {
-    const SequenceFrame *a = x, *b = y;
-    int order = compare_stems(a, b);
-    if (order == 0) order = compare_numbers(a, b);
-    return order != 0 ? order : strcmp(a->name, b->name);
+static int by_stem_and_number(const void *a, const void *b) {
+    const int order = compare_stems(a, b);
+    return order != 0 ? order : compare_numbers(a, b);
+}
+
+static int compare_frames(const void *a, const void *b) {
+    const SequenceFrame *x = a, *y = b;
+    const int order = by_stem_and_number(x, y);
+    return order != 0 ? order : strcmp(x->name, y->name);
 }
 
 ImageSequence *image_sequence_open(const char *path, bool recursive, Error *error) {
@@ -140,8 +147,6 @@ static SequenceFrame *find(const ImageSequence *sequence, const SequenceFrame *k
     return bsearch(key, sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare);
 }
 
-static int by_stem(const void *x, const void *y) { return compare_stems(x, y); }
-
 /* home.png for home.1.png, if that is another accepted picture for it. If `b` has any home.N.png, these are frames. */
 static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *b, const SequenceFrame *frame) {
     char name[PATH_MAX];
@@ -152,7 +157,7 @@ static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *
         return NULL;
     SequenceFrame key = {.name = name};
     read_name(&key);
-    if (find(b, &key, compare_frames) == NULL || find(b, frame, by_stem) != NULL) return NULL;
+    if (find(b, &key, compare_frames) == NULL || find(b, frame, compare_stems) != NULL) return NULL;
     return find(a, &key, compare_frames);
 }
 
@@ -218,7 +223,7 @@ static bool pair_group(Pairing *pairing, Range a, Range b, Error *error) {
 }
 
 /* Takes the first frames for which `compare` finds no difference; none unless `any`. */
-static Range take_leading(Range *range, bool any, int (*compare)(const SequenceFrame *, const SequenceFrame *)) {
+static Range take_leading(Range *range, bool any, int (*compare)(const void *, const void *)) {
     assert(range->count == 0 || range->frames[0] != NULL);
     Range leading = {range->frames, any};
     while (any && leading.count < range->count && compare(range->frames[0], range->frames[leading.count]) == 0)
@@ -228,20 +233,10 @@ static Range take_leading(Range *range, bool any, int (*compare)(const SequenceF
     return leading;
 }
 
-static int by_stem_and_number(const SequenceFrame *x, const SequenceFrame *y) {
-    int order = compare_stems(x, y);
-    return order != 0 ? order : compare_numbers(x, y);
-}
-
-static bool has_one_numbered_stem(Range range) {
-    return range.count > 0 && range.frames[0]->number >= 0 &&
-           compare_stems(range.frames[0], range.frames[range.count - 1]) == 0;
-}
-
 typedef bool PairRanges(Pairing *pairing, Range a, Range b, Error *error);
 
 /* Calls pair_ranges for each part of both ranges that has one place in the order of `compare`. */
-static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const SequenceFrame *, const SequenceFrame *),
+static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const void *, const void *),
                   PairRanges *pair_ranges, Error *error) {
     while (a.count > 0 || b.count > 0) {
         int order = a.count == 0 ? 1 : b.count == 0 ? -1 : compare(a.frames[0], b.frames[0]);
@@ -252,7 +247,8 @@ static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const Seque
 }
 
 static bool pair_folder(Pairing *pairing, Range a, Range b, Error *error) {
-    bool numbers_alone = has_one_numbered_stem(a) && has_one_numbered_stem(b);
+    const bool numbers_alone = a.count > 0 && b.count > 0 && sequence_same(a.frames[0], a.frames[a.count - 1]) &&
+                               sequence_same(b.frames[0], b.frames[b.count - 1]);
     return merge(pairing, a, b, numbers_alone ? compare_numbers : by_stem_and_number, pair_group, error);
 }
 

@@ -174,45 +174,35 @@ static bool is_harmless(const Error *failure, Error *error) {
     return failure->kind != ERROR_SYSTEM;
 }
 
-static bool read_run(ShownFolder *folder, const char *name, const Trajectory **run, Error *error) {
-    char path[PATH_MAX];
+bool shown_run(ShownFolder *folder, const char *name, const Trajectory **run, Error *error) {
     Error failure = {0};
     *run = NULL;
-    for (int i = 0; i < folder->run_count; i++)
-        if (strcmp(folder->names[i], name) == 0) return *run = folder->runs[i], true;
-    if (folder->run_count == VIEW_PANELS_MAX) return true;
-    if (file_path(path, sizeof path, &failure, "%s%s", folder->path, name))
-        *run = folder->runs[folder->run_count] = trajectory_read(path, &failure);
-    folder->names[folder->run_count++] = name;
-    return is_harmless(&failure, error);
-}
-
-bool shown_run(ShownFolder *folder, const char *name, const Trajectory **run, Error *error) {
-    bool ok;
 #pragma omp critical(shown_folders)
-    ok = read_run(folder, name, run, error);
-    return ok;
-}
-
-static void free_folder(ShownFolder *folder) {
-    for (int i = 0; folder != NULL && i < folder->run_count; i++) trajectory_destroy(folder->runs[i]);
-    if (folder != NULL) free(folder->path);
-    free(folder);
+    {
+        int i = 0;
+        char path[PATH_MAX];
+        while (i < folder->run_count && strcmp(folder->names[i], name) != 0) i++;
+        if (i == folder->run_count && i < VIEW_PANELS_MAX) {
+            if (file_path(path, sizeof path, &failure, "%s%s", folder->path, name))
+                folder->runs[i] = trajectory_read(path, &failure);
+            folder->names[folder->run_count++] = name;
+        }
+        if (i < folder->run_count) *run = folder->runs[i];
+    }
+    return is_harmless(&failure, error);
 }
 
 static ShownFolder *read_folder(const char *picture, size_t length, Error *error) {
     ShownFolder *folder = calloc(1, sizeof *folder);
     char path[PATH_MAX];
     Error failure = {0};
-    if (folder == NULL || (folder->path = strndup(picture, length)) == NULL) {
-        error_memory(error, picture);
-        return free_folder(folder), NULL;
-    }
-    if (file_path(path, sizeof path, &failure, "%smanifest.json", folder->path))
+    bool ok = (folder != NULL && (folder->path = strndup(picture, length)) != NULL) || error_memory(error, picture);
+    if (ok && file_path(path, sizeof path, &failure, "%smanifest.json", folder->path))
         (void)view_read(&folder->view, path, &failure);
-    if (is_harmless(&failure, error)) return folder;
-    free_folder(folder);
-    return NULL;
+    ok = ok && is_harmless(&failure, error);
+    if (!ok && folder != NULL) free(folder->path);
+    if (!ok) free(folder);
+    return ok ? folder : NULL;
 }
 
 ShownFolder *shown_find(Shown *shown, const char *picture, Error *error) {
@@ -235,6 +225,8 @@ void shown_free(Shown *shown) {
     while (shown->first != NULL) {
         ShownFolder *folder = shown->first;
         shown->first = folder->next;
-        free_folder(folder);
+        for (int i = 0; i < folder->run_count; i++) trajectory_destroy(folder->runs[i]);
+        free(folder->path);
+        free(folder);
     }
 }

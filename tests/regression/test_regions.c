@@ -197,8 +197,8 @@ TEST(rows_give_what_whole_pictures_give) {
             const uint8_t *a = pair.a->pixels + bytes * (size_t)y, *b = pair.b->pixels + bytes * (size_t)y;
             const bool differs = memcmp(a, b, bytes) != 0;
             if (!near) continue;
-            memcpy(row_compare_place(&rows, 0, y), a, bytes);
-            if (differs) memcpy(row_compare_place(&rows, 1, y), b, bytes);
+            memcpy(edge_rows_place(&rows.sides[0], y), a, bytes);
+            if (differs) memcpy(edge_rows_place(&rows.sides[1], y), b, bytes);
             row_compare_row(&rows, y, differs);
         }
         assert_true(row_compare_end(&rows));
