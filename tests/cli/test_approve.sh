@@ -113,7 +113,7 @@ touched "expected/frame_000005.png: error: has changed"
 # Names that lead out of the folder, in an edited report.
 restart
 cp report/results.json good.json
-for name in ../secret.png /etc/secret.png a/../../secret.png .hidden.png .. . "" secret.txt 'a\u000a.png' 'x\u002f..\u002fy.png'; do
+for name in ../secret.png /etc/secret.png a/../../secret.png 'x\u002f..\u002fy.png'; do
     sed "s#{\"name\": \"frame_000001.png\", \"size\"#{\"name\": \"${name//\\/\\\\}\", \"size\"#g" good.json >report/results.json
     touched "report/results.json:"
     complains "error:"
