@@ -138,11 +138,6 @@ struct RegionScan {
     ImageRegions *regions;
 };
 
-int image_regions_gap(int width, int height) {
-    int gap = (width < height ? width : height) / 120;
-    return gap < 4 ? 4 : gap > 12 ? 12 : gap;
-}
-
 static void free_scan(RegionScan *scan) {
     if (scan == NULL) return;
     free(scan->nodes);
@@ -157,10 +152,13 @@ static void free_scan(RegionScan *scan) {
 /* NULL with error set if out of memory. The regions are complete, and must last, until end_scan(). */
 static RegionScan *create_scan(int width, int height, ImageRegions *regions, Error *error) {
     const size_t columns = (size_t)width, capacity = 3 * columns;
+    const int gap = int_min(width, height) / 120;
     RegionScan *scan = calloc(1, sizeof *scan);
     if (scan == NULL) return error_memory(error, "regions"), NULL;
-    *scan = (RegionScan){
-        .width = width, .gap = image_regions_gap(width, height), .capacity = (int)capacity, .regions = regions};
+    *scan = (RegionScan){.width = width,
+                         .gap = int_min(int_max(gap, REGION_GAP), 3 * REGION_GAP),
+                         .capacity = (int)capacity,
+                         .regions = regions};
     *regions = (ImageRegions){.count = 0};
     scan->nodes = calloc(capacity, sizeof *scan->nodes);
     scan->kept = malloc(capacity * sizeof *scan->kept);

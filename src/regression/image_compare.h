@@ -41,10 +41,11 @@ int64_t image_find_levels(const Image *a, const Image *b, const uint8_t *masked,
 void image_cut_to_overlap(Image *a, Image *b);
 
 /* Clusters of differing pixels. Two differing pixels belong to one region if a chain of differing pixels links them
-   whose steps are at most the gap, in x and in y. So a moved box is one or two regions, and so is a caption. Time is
+   whose steps are at most the gap, in x and in y: the space between two words of a caption, REGION_GAP pixels or, in
+   large pictures, up to three times as many. So a moved box is one or two regions, and so is a caption. Time is
    linear in the pixels and memory in the width, whatever the pictures show. */
 
-enum { IMAGE_REGIONS_MAX = 16 };
+enum { IMAGE_REGIONS_MAX = 16, REGION_GAP = 4 };
 
 /* Where fewer than half of the first pixels that differ do so as edges may, edges are not looked for, and cost
    nothing. */
@@ -68,9 +69,6 @@ typedef struct ImageRegions {
    memory. */
 bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, const ImageDifference *difference,
                         ImageRegions *regions, Error *error);
-
-/* The gap in pixels for pictures of this size: the space between two words of a caption, or more. */
-int image_regions_gap(int width, int height);
 
 /* The same for pictures of at most 8 bits that are read from the top. Each row that differs, and those ROWS_AROUND
    rows above and below it, must be placed and given; others may be left out:

@@ -3,13 +3,12 @@
 #include "regression/mask.h"
 
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/antialias.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static int64_t clamp(int64_t value, int64_t largest) { return value < 0 ? 0 : value > largest ? largest : value; }
 
 /* The part of a rectangle that is in a picture of this size. */
 typedef struct Covered {
@@ -17,9 +16,9 @@ typedef struct Covered {
 } Covered;
 
 static Covered covered(const MaskPart *part, int width, int height) {
-    return (Covered){(size_t)clamp(part->x, width), (size_t)clamp(part->y, height),
-                     (size_t)clamp((int64_t)part->x + part->width, width),
-                     (size_t)clamp((int64_t)part->y + part->height, height)};
+    return (Covered){(size_t)int_max(0, int_min(part->x, width)), (size_t)int_max(0, int_min(part->y, height)),
+                     (size_t)int_max(0, int_min(part->x + part->width, width)),
+                     (size_t)int_max(0, int_min(part->y + part->height, height))};
 }
 
 double mask_most_hidden(const Mask *mask, int width, int height) {
@@ -39,11 +38,10 @@ typedef struct MaskPicture {
     uint8_t *file; /* [size], until it is decoded */
     size_t size;
     int width, height;
+    size_t count;  /* pixels */
     uint8_t *bits; /* one for each pixel; NULL: not decoded */
     Error fault;   /* of decoding; then it is not tried again */
 } MaskPicture;
-
-static size_t bits_of(const MaskPicture *picture) { return (size_t)picture->width * (size_t)picture->height; }
 
 static void destroy(MaskPicture *picture) {
     if (picture == NULL) return;
@@ -56,9 +54,9 @@ static void destroy(MaskPicture *picture) {
 static void decode(MaskPicture *picture) {
     Image *image = image_decode_png(picture->file, picture->size, picture->path, IMAGE_MAX_PIXELS, &picture->fault);
     if (image == NULL) return;
-    picture->bits = calloc(bits_of(picture) / 8 + 1, 1);
+    picture->bits = calloc(picture->count / 8 + 1, 1);
     if (picture->bits == NULL) error_memory(&picture->fault, picture->path);
-    for (size_t i = 0; picture->bits != NULL && i < bits_of(picture); i++) {
+    for (size_t i = 0; picture->bits != NULL && i < picture->count; i++) {
         const uint8_t *p = image->pixels + 4 * i;
         if (p[3] > 0 && (p[0] | p[1] | p[2]) != 0) picture->bits[i / 8] |= (uint8_t)(1U << i % 8);
     }
@@ -85,6 +83,7 @@ bool mask_add_picture(Mask *mask, const char *path, Error *error) {
     else if ((picture->file = image_load_png(path, &picture->size, error)) != NULL &&
              png_check(picture->file, picture->size, path, &picture->width, &picture->height, error) &&
              png_check_pixels(picture->width, picture->height, IMAGE_MAX_PIXELS, path, error) &&
+             (picture->count = (size_t)picture->width * (size_t)picture->height) > 0 &&
              add(mask, (MaskPart){.kind = MASK_PICTURE, .picture = picture}, error))
         return true;
     destroy(picture);
@@ -108,7 +107,7 @@ static bool draw_picture(MaskPicture *picture, const Image *expected, const char
 #pragma omp critical(mask_picture)
     if (picture->bits == NULL && picture->fault.kind == ERROR_NONE) decode(picture);
     if (picture->bits == NULL) return *error = picture->fault, false;
-    for (size_t i = 0; i < bits_of(picture); i++)
+    for (size_t i = 0; i < picture->count; i++)
         if (picture->bits[i / 8] >> i % 8 & 1) masked[i] = IGNORED_MASK;
     return true;
 }

@@ -17,7 +17,7 @@ typedef enum MaskKind { MASK_RECTANGLE, MASK_PICTURE, MASK_COLOR } MaskKind;
 
 typedef struct MaskPart {
     MaskKind kind;
-    int x, y, width, height;     /* of a rectangle, which may extend beyond the edges */
+    int x, y, width, height;     /* of a rectangle, which may extend beyond the edges; at most 1,000,000 */
     struct MaskPicture *picture; /* masks where it is neither black nor transparent */
     uint8_t color[3];            /* masks opaque pixels that have this colour in the expected picture */
 } MaskPart;

@@ -260,8 +260,6 @@ static void name_changed(Panel *panel) {
     }
 }
 
-static double area_of(ViewRect rect) { return (double)(rect.right - rect.left) * (rect.bottom - rect.top); }
-
 /* Names the bodies of a panel: those whose states differ, then those whose pixels do. They must be known. */
 static bool name_bodies(Naming *naming, int number, Error *error) {
     const Trajectory *expected = naming->scene->runs[number][0], *actual = naming->scene->runs[number][1];
@@ -282,9 +280,11 @@ static bool name_bodies(Naming *naming, int number, Error *error) {
                               hypot(a->half_width, a->half_height) * hypot(b->cosine - a->cosine, b->sine - a->sine);
             }
             if (drawn.exists[0] || drawn.exists[1]) panel.bodies[panel.count++] = drawn;
-            if (drawn.exists[0]) area += area_of(bounds(&drawn.box[0], 1, panel.view->rect));
+            const ViewRect rect = bounds(&drawn.box[0], 1, panel.view->rect);
+            if (drawn.exists[0]) area += (double)(rect.right - rect.left) * (rect.bottom - rect.top);
         }
-    const bool usable = area <= PAINTED_MAX * area_of(panel.view->rect);
+    const ViewRect whole = panel.view->rect;
+    const bool usable = area <= PAINTED_MAX * (double)(whole.right - whole.left) * (whole.bottom - whole.top);
     const bool ok = !usable || name_moved(&panel, error);
     if (usable && ok) name_changed(&panel);
     free(panel.bodies);

@@ -43,63 +43,35 @@ ReportCase report_case(const void *report, int i) {
 /* junit.xml for CI systems: a test case per frame and trajectory, with the time of its comparison. The times make it
    the one file of a report that differs from run to run. html_put() also escapes for XML. */
 
-static void write_attribute(FILE *file, const char *key, const char *value) {
-    fprintf(file, " %s=\"", key);
-    html_put(file, value);
-    fputc('"', file);
-}
-
-static void write_case(FILE *file, const ReportCase *made) {
-    static const char *const titles[SIDES] = {"expected: ", "actual: "};
-    const FrameChanges *changes = made->frame != NULL ? made->frame->changes : NULL;
-    char message[sizeof made->words.text + 64];
-    fprintf(file, "  <testcase classname=\"%s\"", made->kind);
-    write_attribute(file, "name", made->name);
-    write_attribute(file, "file", made->paths[made->paths[EXPECTED] != NULL ? EXPECTED : ACTUAL]);
-    fprintf(file, " time=\"%.6f\"%s\n", made->seconds, made->failed ? ">" : "/>");
-    if (!made->failed) return;
-    snprintf(message, sizeof message, "%s: %s", made->verdict, made->words.text);
-    fputs("    <failure", file);
-    write_attribute(file, "type", made->verdict);
-    write_attribute(file, "message", message);
-    fputc('>', file);
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        if (made->paths[side] == NULL) continue;
-        fputs(titles[side], file);
-        html_put(file, made->paths[side]);
-        fputc('\n', file);
-    }
-    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
-        html_put(file, region_words(changes, i).text);
-        fputc('\n', file);
-    }
-    fputs("</failure>\n    <system-out>", file);
-    for (int i = 0; i < SIDES; i++) { /* the first one, the actual picture, is what GitLab shows */
-        const char *path = made->paths[i == 0 ? ACTUAL : EXPECTED];
-        if (path == NULL || strstr(path, "]]") != NULL) continue; /* which would end the form of GitLab and Jenkins */
-        fputs("[[ATTACHMENT|", file);
-        html_put(file, path);
-        fputs("]]\n", file);
-    }
-    fputs("</system-out>\n  </testcase>\n", file);
-}
-
 static void write_junit(FILE *file, const void *context) {
+    static const char *const titles[SIDES] = {"expected: ", "actual: "};
     const ReportResults *results = context;
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", file);
     fprintf(file,
             "<testsuite name=\"twinbox compare\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\" "
             "time=\"%.6f\">\n",
             results->count, results->failed, results->seconds);
-    for (int i = 0; i < results->count; i++) {
-        const ReportCase made = results->at(results->comparison, i);
-        write_case(file, &made);
+    for (int k = 0; k < results->count; k++) {
+        const ReportCase made = results->at(results->comparison, k);
+        const FrameChanges *changes = made.frame != NULL ? made.frame->changes : NULL;
+        html_print(file, "  <testcase classname=\"%s\" name=\"%s\" file=\"%s\"", made.kind, made.name,
+                   made.paths[made.paths[EXPECTED] != NULL ? EXPECTED : ACTUAL]);
+        fprintf(file, " time=\"%.6f\"%s\n", made.seconds, made.failed ? ">" : "/>");
+        if (!made.failed) continue;
+        html_print(file, "    <failure type=\"%s\" message=\"%s: %s\">", made.verdict, made.verdict, made.words.text);
+        for (RegressionSide side = EXPECTED; side < SIDES; side++)
+            if (made.paths[side] != NULL) html_print(file, "%s%s\n", titles[side], made.paths[side]);
+        for (int i = 0; changes != NULL && i < changes->regions.kept; i++)
+            html_print(file, "%s\n", region_words(changes, i).text);
+        fputs("</failure>\n    <system-out>", file);
+        for (int i = 0; i < SIDES; i++) { /* the first one, the actual picture, is what GitLab shows */
+            const char *path = made.paths[i == 0 ? ACTUAL : EXPECTED];
+            if (path != NULL && strstr(path, "]]") == NULL) /* which would end the form of GitLab and Jenkins */
+                html_print(file, "[[ATTACHMENT|%s]]\n", path);
+        }
+        fputs("</system-out>\n  </testcase>\n", file);
     }
-    if (results->notes[0] != '\0') {
-        fputs("  <system-out>", file);
-        html_put(file, results->notes);
-        fputs("</system-out>\n", file);
-    }
+    if (results->notes[0] != '\0') html_print(file, "  <system-out>%s</system-out>\n", results->notes);
     fputs("</testsuite>\n", file);
 }
 
