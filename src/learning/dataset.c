@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Datasets: the rows of a launch, subsets, and the launches that are drawn. */
+/* Datasets: their launches, the rows of a launch, recording, and subsets. */
 #include "learning/dataset.h"
 
 #include "base/base.h"
+#include "base/machine.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
@@ -17,6 +18,102 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The paper's random launches (3.3). */
+static const double random_x = 15, random_rotation = 1.5, random_spin = 20;
+
+static int launches_each(const DatasetOptions *options) {
+    const int given = options->bomb_x.count + options->random;
+    return options->table != NULL ? options->table->count : given > 0 ? given : LAUNCH_GRID;
+}
+
+/* Those of the table; or swept launches first, then random ones; or those of the scene's family. */
+static bool choose_launches(const DatasetOptions *options, const Scene *scene, const gsl_rng *generator, Launch *out,
+                            Error *error) {
+    const int given = options->bomb_x.count + options->random, each = launches_each(options);
+    const Launch own = launch_of(scene);
+    bool ok = true;
+    if (options->table != NULL)
+        ok = launches_for(options->table, scene, out, error);
+    else if (given == 0)
+        ok = launches_for_training(scene, LAUNCH_GRID, out, error);
+    for (int k = 0; options->table == NULL && k < given; k++) {
+        out[k] = own;
+        if (k < options->bomb_x.count) {
+            out[k].x = range_value(&options->bomb_x, k);
+        } else {
+            out[k].x = (float)gsl_ran_flat(generator, -random_x, random_x);
+            out[k].rotation = (float)gsl_ran_flat(generator, -random_rotation, random_rotation);
+            out[k].spin = (float)gsl_ran_flat(generator, -random_spin, random_spin);
+        }
+    }
+    for (int k = 0; ok && k < each; k++)
+        if (out[k].mass != own.mass || out[k].frame != own.frame) /* a dataset has no columns for them */
+            ok = error_input(error, scene->name,
+                             "a dataset has one mass and one frame of the bomb; the launches have others");
+    return ok && launches_check(scene, out, each, error);
+}
+
+/* Fills the launch tables. A fifth of each scene's launches, at least one, is held out; that is drawn first, so that it
+   does not depend on later draws. */
+static bool fill_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
+    const int each = launches_each(options);
+    gsl_set_error_handler_off(); /* its default aborts */
+    gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
+    Launch *launches = malloc((size_t)each * sizeof *launches);
+    int *order = malloc((size_t)each * sizeof *order);
+    bool ok = (generator != NULL && launches != NULL && order != NULL) || error_memory(error, "dataset");
+    if (ok) gsl_rng_set(generator, (unsigned long)options->seed);
+    for (int scene = 0; ok && scene < dataset->scene_count; scene++) {
+        for (int i = 0; i < each; i++) order[i] = i;
+        gsl_ran_shuffle(generator, order, (size_t)each, sizeof *order);
+        for (int i = 0; i < each / 5; i++) dataset->launch_test[scene * each + order[i]] = 1;
+    }
+    for (int scene = 0; ok && scene < dataset->scene_count; scene++) {
+        ok = choose_launches(options, scenes[scene], generator, launches, error);
+        for (int i = 0; ok && i < each; i++) {
+            const int at = scene * each + i;
+            dataset->launch_scene[at] = scene;
+            dataset->launch_x[at] = launches[i].x;
+            dataset->launch_rotation[at] = launches[i].rotation;
+            dataset->launch_spin[at] = launches[i].spin;
+        }
+    }
+    if (generator != NULL) gsl_rng_free(generator);
+    free(launches);
+    free(order);
+    return ok;
+}
+
+static Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error) {
+    Dataset *dataset = calloc(1, sizeof *dataset);
+    if (dataset == NULL) return error_memory(error, "dataset"), NULL;
+    dataset->view = options->view;
+    dataset->target = options->target;
+    dataset->labels = options->labels;
+    dataset->scene_count = options->scene_count;
+    for (int i = 0; i < options->scene_count; i++) strcpy(dataset->scenes[i], scenes[i]->name);
+    if ((dataset_make_launches(dataset, options->scene_count * launches_each(options)) ||
+         error_memory(error, "dataset")) &&
+        fill_launches(dataset, options, scenes, error))
+        return dataset;
+    dataset_destroy(dataset);
+    return NULL;
+}
+
+/* One touching pair in one step, or in one sweep of it. */
+typedef struct PairRow {
+    float inputs[PAIR_INPUTS_MAX], changes[PAIR_CHANGES], context[PAIR_CONTEXT];
+    int32_t frame, bodies[2];
+} PairRow;
+
+/* The rows of one launch. */
+typedef struct LaunchRows {
+    PairRow *rows;
+    size_t count, capacity;
+    size_t start;    /* index of its first row in the dataset */
+    int unconverged; /* as in Dataset */
+} LaunchRows;
+
 /* The launch being recorded. */
 typedef struct LaunchRecorder {
     const Dataset *dataset; /* options of the recording */
@@ -27,26 +124,9 @@ typedef struct LaunchRecorder {
     PairMoment now;
 } LaunchRecorder;
 
-static bool dataset_reserve(PairMoment *moment, const ContactProblem *problem, ContactSolution *solution,
-                            Error *error) {
+static bool reserve(PairMoment *moment, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     if (!pair_moment_reserve(moment, problem)) return error_memory(error, "dataset");
     *solution = pair_moment_solution(moment);
-    return true;
-}
-
-/* The solution that the changes are computed from. *known: false if it did not converge, which is counted. */
-static bool dataset_label(LaunchRecorder *recorder, const World *world, ContactSolution *solution, bool *known,
-                          Error *error) {
-    const ContactProblem *problem = world_problem(world);
-    *solution = *world_solution(world);
-    *known = true;
-    if (recorder->dataset->labels == DATASET_BY_ENGINE) return true;
-    Reference *reference = &recorder->reference;
-    if (!reference_solve(reference, problem, NULL, error)) return false;
-    *known = reference_converged(reference);
-    recorder->launch->unconverged += !*known;
-    if (!dataset_reserve(&recorder->labels, problem, solution, error)) return false;
-    reference_round(reference, problem, solution);
     return true;
 }
 
@@ -63,13 +143,6 @@ static PairRow *add_row(LaunchRecorder *recorder, int frame, const ContactProble
     return row;
 }
 
-/* changes[3]: the difference of two velocities. */
-static void dataset_difference(float *changes, const BodyVelocity *to, const BodyVelocity *from) {
-    changes[0] = to->linear.x - from->linear.x;
-    changes[1] = to->linear.y - from->linear.y;
-    changes[2] = to->angular - from->angular;
-}
-
 /* The state after the warm start, before the first sweep. */
 static SequentialOptions sweeps_of(const Scene *scene) {
     return (SequentialOptions){.accumulate = scene->accumulate_impulses, .warm = true};
@@ -79,11 +152,18 @@ static bool record_step(LaunchRecorder *recorder, int frame, const World *world,
     const Dataset *dataset = recorder->dataset;
     const ContactProblem *problem = world_problem(world);
     const SequentialOptions options = sweeps_of(recorder->scene);
-    ContactSolution solution, begun;
-    bool known;
-    if (!dataset_label(recorder, world, &solution, &known, error)) return false;
-    if (!known) return true;
-    if (!dataset_reserve(&recorder->now, problem, &begun, error)) return false;
+    ContactSolution solution = *world_solution(world), begun;
+    if (dataset->labels == DATASET_BY_REFERENCE) {
+        Reference *reference = &recorder->reference;
+        if (!reference_solve(reference, problem, NULL, error)) return false;
+        if (!reference_converged(reference)) {
+            recorder->launch->unconverged++;
+            return true;
+        }
+        if (!reserve(&recorder->labels, problem, &solution, error)) return false;
+        reference_round(reference, problem, &solution);
+    }
+    if (!reserve(&recorder->now, problem, &begun, error)) return false;
     const bool by_contact = pair_views[dataset->view].by_contact;
     if (by_contact) sequential_impulses_begin(problem, &options, &begun);
     if (dataset->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&recorder->now, problem);
@@ -101,7 +181,7 @@ static bool record_visits(LaunchRecorder *recorder, int frame, const World *worl
     const ContactProblem *problem = world_problem(world);
     const SequentialOptions options = sweeps_of(recorder->scene);
     ContactSolution now;
-    if (!dataset_reserve(&recorder->now, problem, &now, error)) return false;
+    if (!reserve(&recorder->now, problem, &now, error)) return false;
     sequential_impulses_begin(problem, &options, &now);
     for (int sweep = 0; sweep < recorder->scene->iterations; sweep++)
         for (int first = 0, count; first < problem->contact_count; first += count) {
@@ -111,51 +191,143 @@ static bool record_visits(LaunchRecorder *recorder, int frame, const World *worl
             const BodyVelocity *a = &now.velocities[row->bodies[0]], *b = &now.velocities[row->bodies[1]];
             BodyVelocity before_a = *a, before_b = *b;
             sequential_impulses_visit(problem, &options, first, count, &now);
-            dataset_difference(row->changes, a, &before_a);
-            dataset_difference(row->changes + 3, b, &before_b);
+            const float changes[PAIR_CHANGES] = {a->linear.x - before_a.linear.x, a->linear.y - before_a.linear.y,
+                                                 a->angular - before_a.angular,   b->linear.x - before_b.linear.x,
+                                                 b->linear.y - before_b.linear.y, b->angular - before_b.angular};
+            memcpy(row->changes, changes, sizeof changes);
             if (pair_views[recorder->dataset->view].by_contact)
                 pair_to_contact_frame(&problem->contacts[first], row->changes);
         }
     return true;
 }
 
-static bool dataset_observe(void *context, int frame, const World *world, Error *error) {
+static bool observe(void *context, int frame, const World *world, Error *error) {
     LaunchRecorder *recorder = context;
     return recorder->dataset->target == TARGET_IMPULSE ? record_visits(recorder, frame, world, error)
                                                        : record_step(recorder, frame, world, error);
 }
 
-bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error) {
-    LaunchRecorder recorder = {.dataset = dataset, .scene = launched, .launch = rows};
+/* What is recorded; shared by the threads. */
+typedef struct Recording {
+    const DatasetOptions *options;
+    Scene *scenes[DATASET_MAX_SCENES];
+    Dataset *dataset;     /* its launches, and no rows yet */
+    LaunchRows *launches; /* [dataset->launches] */
+} Recording;
+
+/* Runs launch i with the engine, and appends the rows for the dataset's view, target and labels. */
+static bool record_launch(void *context, int i, Error *error) {
+    const Recording *recording = context;
+    const Dataset *dataset = recording->dataset;
+    const Scene *scene = recording->scenes[dataset->launch_scene[i]];
+    const size_t every = recording->options->every > 1 ? (size_t)recording->options->every : 1;
+    LaunchRows *rows = &recording->launches[i];
+    Launch launch = launch_of(scene);
+    launch.x = dataset->launch_x[i];
+    launch.rotation = dataset->launch_rotation[i];
+    launch.spin = dataset->launch_spin[i];
+    const Scene launched = launch_scene(scene, &launch);
+    LaunchRecorder recorder = {.dataset = dataset, .scene = &launched, .launch = rows};
     Method method;
-    StepObserver observer = {dataset_observe, &recorder};
-    bool ok = method_parse(&method, "engine", error) && simulate_observed(launched, &method, &observer, error);
+    const StepObserver observer = {observe, &recorder};
+    const bool ok = method_parse(&method, "engine", error) && simulate_observed(&launched, &method, &observer, error);
     reference_free(&recorder.reference);
     pair_moment_free(&recorder.labels);
     pair_moment_free(&recorder.now);
-    return ok;
+    if (!ok || every == 1) return ok;
+    /* Drops and frees the other rows now: those of many launches would exceed memory. */
+    size_t kept = 0;
+    for (size_t row = 0; row < rows->count; row += every) rows->rows[kept++] = rows->rows[row];
+    rows->count = kept;
+    PairRow *smaller = realloc(rows->rows, (kept + 1) * sizeof *smaller);
+    if (smaller != NULL) rows->rows = smaller;
+    return true;
+}
+
+/* Concatenates the rows of the launches, in order. */
+static bool gather(const Recording *recording, Error *error) {
+    Dataset *dataset = recording->dataset;
+    LaunchRows *launches = recording->launches;
+    const size_t inputs = (size_t)dataset_inputs(dataset), changes = (size_t)pair_change_count(dataset->target);
+    size_t rows = 0;
+    for (int i = 0; i < dataset->launches; i++) {
+        launches[i].start = rows;
+        rows += launches[i].count;
+        dataset->unconverged += launches[i].unconverged;
+    }
+    if (rows == 0 && dataset->unconverged > 0)
+        return error_input(error, "dataset", "the reference converges in no step in which bodies touch");
+    if (rows == 0) return error_input(error, "dataset", "no two bodies touched in any launch");
+    if (!dataset_make_rows(dataset, (int64_t)rows, recording->options->context)) return error_memory(error, "dataset");
+        /* In parallel: most of the time is page faults at the first write. */
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < dataset->launches; i++) {
+        size_t at = launches[i].start;
+        for (size_t k = 0; k < launches[i].count; k++, at++) {
+            const PairRow *row = &launches[i].rows[k];
+            memcpy(dataset->inputs + at * inputs, row->inputs, inputs * sizeof *row->inputs);
+            memcpy(dataset->changes + at * changes, row->changes, changes * sizeof *row->changes);
+            if (dataset->context != NULL)
+                memcpy(dataset->context + at * PAIR_CONTEXT, row->context, sizeof row->context);
+            dataset->launch[at] = i;
+            dataset->frame[at] = row->frame;
+            memcpy(dataset->bodies + at * 2, row->bodies, sizeof row->bodies);
+        }
+        free(launches[i].rows);
+        launches[i].rows = NULL;
+    }
+    return true;
+}
+
+static bool check_options(const DatasetOptions *options, Error *error) {
+    const int launches = launches_each(options);
+    if (options->scene_count < 1 || options->scene_count > DATASET_MAX_SCENES)
+        return error_input(error, "dataset", "%d scenes; expected 1 to %d", options->scene_count, DATASET_MAX_SCENES);
+    if (launches < 5 || launches > DATASET_MAX_LAUNCHES)
+        return error_input(error, "dataset",
+                           "%d launches per scene; expected at least 5, to hold out a fifth, and at most %d", launches,
+                           DATASET_MAX_LAUNCHES);
+    if (options->target == TARGET_IMPULSE && options->labels == DATASET_BY_REFERENCE)
+        return error_input(error, "dataset",
+                           "the target impulse is the change by a sweep of the engine; the reference has none");
+    if (options->target == TARGET_IMPULSE && options->view == PAIR_NEIGHBOURS)
+        return error_input(error, "dataset", "the target impulse has no view neighbours: they change at every visit");
+    if (options->target == TARGET_POINTS && !pair_views[options->view].by_contact)
+        return error_input(error, "dataset",
+                           "the target points needs the view contact or neighbours, whose inputs have the warm start");
+    return !options->context || options->target == TARGET_PAIR ||
+           error_input(error, "dataset", "the context is for laws on the target pair; the target %s has none",
+                       pair_target_names[options->target]);
+}
+
+Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error) {
+    Recording recording = {.options = options};
+    bool ok = check_options(options, error);
+    for (int i = 0; ok && i < options->scene_count; i++) {
+        const Scene *scene = recording.scenes[i] = scene_read(options->scenes[i], error);
+        ok = scene != NULL &&
+             (scene->bomb.present || error_input(error, options->scenes[i], "the scene has no bomb to launch"));
+    }
+    Dataset *dataset = recording.dataset = ok ? dataset_of_launches(options, recording.scenes, error) : NULL;
+    ok = dataset != NULL;
+    if (ok) {
+        recording.launches = calloc((size_t)dataset->launches, sizeof *recording.launches);
+        ok = recording.launches != NULL || error_memory(error, "dataset");
+        ok = ok &&
+             parallel_for(&(ParallelWork){record_launch, &recording}, dataset->launches, "recorded launches", progress,
+                          error) &&
+             gather(&recording, error);
+        for (int i = 0; recording.launches != NULL && i < dataset->launches; i++) free(recording.launches[i].rows);
+        free(recording.launches);
+    }
+    for (int i = 0; i < DATASET_MAX_SCENES; i++) scene_destroy(recording.scenes[i]);
+    if (ok) return dataset;
+    dataset_destroy(dataset);
+    return NULL;
 }
 
 static bool is_kept(const Dataset *dataset, const bool *keep, int64_t row) {
     return dataset_is_test(dataset, row) || keep[dataset->launch[row]];
-}
-
-/* Copies the kept rows of an array with `size` bytes per row. */
-static void copy_rows(void *to, const void *from, const Dataset *dataset, const bool *keep, size_t size) {
-    char *at = to;
-    for (int64_t row = 0; row < dataset->rows; row++) {
-        if (!is_kept(dataset, keep, row)) continue;
-        memcpy(at, (const char *)from + (size_t)row * size, size);
-        at += size;
-    }
-}
-
-static void copy_all_rows(Dataset *to, const Dataset *from, const bool *keep) {
-    DatasetArrays arrays, others;
-    const int count = dataset_arrays(to, &arrays);
-    dataset_arrays(from, &others);
-    for (int i = DATASET_FIRST_ROWS; i < count; i++)
-        copy_rows((void *)arrays.list[i].data, others.list[i].data, from, keep, dataset_row_size(&others.list[i]));
 }
 
 Dataset *dataset_subset(const Dataset *dataset, const bool *keep, Error *error) {
@@ -173,21 +345,28 @@ Dataset *dataset_subset(const Dataset *dataset, const bool *keep, Error *error) 
         return error_memory(error, "dataset"), dataset_destroy(subset), NULL;
     memcpy(subset->launch_block, dataset->launch_block,
            (size_t)(dataset->launch_test + dataset->launches - (uint8_t *)dataset->launch_block));
-    copy_all_rows(subset, dataset, keep);
+    DatasetArrays to, from;
+    const int count = dataset_arrays(subset, &to);
+    dataset_arrays(dataset, &from);
+    for (int i = DATASET_FIRST_ROWS; i < count; i++) {
+        const NpzArray *array = &from.list[i];
+        const size_t size = sizeof(float) * (array->rank == 2 ? (size_t)array->shape[1] : 1); /* of a row */
+        char *at = (char *)to.list[i].data;
+        for (int64_t row = 0; row < dataset->rows; row++) {
+            if (!is_kept(dataset, keep, row)) continue;
+            memcpy(at, (const char *)array->data + (size_t)row * size, size);
+            at += size;
+        }
+    }
     return subset;
 }
 
-/* Writes the indices of training launches with rows to order[launches]; returns their number. */
-static int list_launches(const Dataset *dataset, bool *has_rows, int *order) {
-    int count = 0;
-    for (int64_t row = 0; row < dataset->rows; row++) has_rows[dataset->launch[row]] = !dataset_is_test(dataset, row);
-    for (int i = 0; i < dataset->launches; i++)
-        if (has_rows[i]) order[count++] = i;
-    return count;
-}
-
+/* Marks `count` training launches with rows; order[launches] is work space. */
 static bool draw_kept(const Dataset *dataset, int count, uint64_t seed, bool *keep, int *order, Error *error) {
-    const int launches = list_launches(dataset, keep, order);
+    int launches = 0;
+    for (int64_t row = 0; row < dataset->rows; row++) keep[dataset->launch[row]] = !dataset_is_test(dataset, row);
+    for (int i = 0; i < dataset->launches; i++)
+        if (keep[i]) order[launches++] = i;
     if (count < 1 || count > launches)
         return error_input(error, "dataset", "%d training launches requested; expected 1 to %d", count, launches);
     gsl_set_error_handler_off(); /* its default aborts */
@@ -212,123 +391,4 @@ Dataset *dataset_draw_subset(const Dataset *dataset, int count, uint64_t seed, E
     free(order);
     free(keep);
     return subset;
-}
-
-/* The paper's random launches (3.3). */
-static const double random_x = 15, random_rotation = 1.5, random_spin = 20;
-
-static float dataset_draw(const gsl_rng *generator, double limit) {
-    return (float)gsl_ran_flat(generator, -limit, limit);
-}
-
-static void put_launch(Dataset *dataset, int i, const Launch *launch) {
-    dataset->launch_x[i] = launch->x;
-    dataset->launch_rotation[i] = launch->rotation;
-    dataset->launch_spin[i] = launch->spin;
-}
-
-int dataset_launches_each(const DatasetOptions *options) {
-    const int given = options->bomb_x.count + options->random;
-    return options->table != NULL ? options->table->count : given > 0 ? given : LAUNCH_GRID;
-}
-
-/* Swept launches first, then random ones. */
-static void draw_launches(const DatasetOptions *options, const Scene *scene, const gsl_rng *generator, Launch *out) {
-    for (int k = 0; k < options->bomb_x.count + options->random; k++) {
-        out[k] = launch_of(scene);
-        if (k < options->bomb_x.count) {
-            out[k].x = range_value(&options->bomb_x, k);
-        } else {
-            out[k].x = dataset_draw(generator, random_x);
-            out[k].rotation = dataset_draw(generator, random_rotation);
-            out[k].spin = dataset_draw(generator, random_spin);
-        }
-    }
-}
-
-/* A dataset has no columns for masses and frames. */
-static bool check_launch(const Scene *scene, const Launch *launch, Error *error) {
-    const Launch own = launch_of(scene);
-    return (launch->mass == own.mass && launch->frame == own.frame) ||
-           error_input(error, scene->name,
-                       "a dataset has one mass and one frame of the bomb; the launches have others");
-}
-
-static bool choose_launches(const DatasetOptions *options, const Scene *scene, const gsl_rng *generator, Launch *out,
-                            Error *error) {
-    bool ok = true;
-    if (options->table != NULL)
-        ok = launches_for(options->table, scene, out, error);
-    else if (options->bomb_x.count + options->random > 0)
-        draw_launches(options, scene, generator, out);
-    else
-        ok = launches_for_training(scene, LAUNCH_GRID, out, error);
-    for (int k = 0; ok && k < dataset_launches_each(options); k++) ok = check_launch(scene, &out[k], error);
-    return ok && launches_check(scene, out, dataset_launches_each(options), error);
-}
-
-static bool put_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes,
-                         const gsl_rng *generator, Error *error) {
-    const int each = dataset_launches_each(options);
-    Launch *launches = malloc((size_t)each * sizeof *launches);
-    bool ok = launches != NULL || error_memory(error, "dataset");
-    for (int i = 0; ok && i < dataset->launches; i++) {
-        const int scene = i / each;
-        if (i % each == 0) ok = choose_launches(options, scenes[scene], generator, launches, error);
-        if (ok) put_launch(dataset, i, &launches[i % each]);
-        dataset->launch_scene[i] = scene;
-    }
-    free(launches);
-    return ok;
-}
-
-/* Draws the held-out launches. */
-static bool dataset_split(Dataset *dataset, int launches_per_scene, const gsl_rng *generator) {
-    int *order = malloc((size_t)launches_per_scene * sizeof *order);
-    if (order == NULL) return false;
-    for (int scene = 0; scene < dataset->scene_count; scene++) {
-        for (int i = 0; i < launches_per_scene; i++) order[i] = i;
-        gsl_ran_shuffle(generator, order, (size_t)launches_per_scene, sizeof *order);
-        for (int i = 0; i < launches_per_scene / 5; i++)
-            dataset->launch_test[scene * launches_per_scene + order[i]] = 1;
-    }
-    free(order);
-    return true;
-}
-
-/* The split is drawn first, so that it does not depend on later draws. */
-static bool dataset_fill(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
-    gsl_set_error_handler_off(); /* its default aborts */
-    gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
-    if (generator == NULL) return error_memory(error, "dataset");
-    gsl_rng_set(generator, (unsigned long)options->seed);
-    bool ok = dataset_split(dataset, dataset_launches_each(options), generator) || error_memory(error, "dataset");
-    ok = ok && put_launches(dataset, options, scenes, generator, error);
-    gsl_rng_free(generator);
-    return ok;
-}
-
-Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error) {
-    Dataset *dataset = calloc(1, sizeof *dataset);
-    if (dataset == NULL) return error_memory(error, "dataset"), NULL;
-    dataset->view = options->view;
-    dataset->target = options->target;
-    dataset->labels = options->labels;
-    dataset->scene_count = options->scene_count;
-    for (int i = 0; i < options->scene_count; i++) strcpy(dataset->scenes[i], scenes[i]->name);
-    if ((dataset_make_launches(dataset, options->scene_count * dataset_launches_each(options)) ||
-         error_memory(error, "dataset")) &&
-        dataset_fill(dataset, options, scenes, error))
-        return dataset;
-    dataset_destroy(dataset);
-    return NULL;
-}
-
-Scene dataset_launch(const Dataset *dataset, Scene *const *scenes, int i) {
-    const Scene *scene = scenes[dataset->launch_scene[i]];
-    Launch launch = launch_of(scene);
-    launch.x = dataset->launch_x[i];
-    launch.rotation = dataset->launch_rotation[i];
-    launch.spin = dataset->launch_spin[i];
-    return launch_scene(scene, &launch);
 }

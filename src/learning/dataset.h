@@ -92,36 +92,6 @@ bool dataset_make_rows(Dataset *dataset, int64_t rows, bool context);
 bool dataset_write(const Dataset *dataset, const char *path, Error *error);
 Dataset *dataset_read(const char *path, Error *error);
 
-/* The rows of one launch. */
-
-/* One touching pair in one step, or in one sweep of it. */
-typedef struct PairRow {
-    float inputs[PAIR_INPUTS_MAX], changes[PAIR_CHANGES], context[PAIR_CONTEXT];
-    int32_t frame, bodies[2];
-} PairRow;
-
-/* The rows of one launch. */
-typedef struct LaunchRows {
-    PairRow *rows;
-    size_t count, capacity;
-    size_t start;    /* index of its first row in the dataset */
-    int unconverged; /* as in Dataset */
-} LaunchRows;
-
-/* Runs a launched scene with the engine, and appends the rows for the dataset's view, target and labels. */
-bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error);
-
-/* The launches of a dataset. */
-
-/* Launches of each scene. */
-int dataset_launches_each(const DatasetOptions *options);
-
-/* Fills the launch tables; a fifth of each scene's launches, at least one, is held out. */
-Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error);
-
-/* Launch i of the dataset in its scene; shares the scene's bodies. */
-Scene dataset_launch(const Dataset *dataset, Scene *const *scenes, int i);
-
 /* Subsets of the training launches, with the same held-out launches. */
 
 /* A copy with the rows of all held-out launches and of the training launches for which keep[launches] is true. Launches
@@ -152,8 +122,3 @@ typedef struct DatasetArrays {
 /* The arrays in the order of the file; they point to the dataset and to *arrays. Returns their number, which is one
    less without context. */
 int dataset_arrays(const Dataset *dataset, DatasetArrays *arrays);
-
-/* Bytes of a row in an array of rows, which all have numbers of 4 bytes. */
-static inline size_t dataset_row_size(const NpzArray *array) {
-    return sizeof(float) * (array->rank == 2 ? (size_t)array->shape[1] : 1);
-}

@@ -50,14 +50,6 @@ void dataset_destroy(Dataset *dataset) {
     free(dataset);
 }
 
-static void join_scenes(const Dataset *dataset, char text[DATASET_SCENES_SIZE]) {
-    text[0] = '\0';
-    for (int s = 0; s < dataset->scene_count; s++) {
-        if (s > 0) strcat(text, "\n");
-        strcat(text, dataset->scenes[s]);
-    }
-}
-
 typedef struct DatasetFile {
     Dataset *dataset;
     bool context;
@@ -150,7 +142,7 @@ static bool read_sizes(void *of, NpzFile *npz, Error *error) {
     return true;
 }
 
-static bool dataset_file_create(void *of, Error *error) {
+static bool make_arrays(void *of, Error *error) {
     const DatasetFile *file = of;
     return (dataset_make_launches(file->dataset, file->dataset->launches) &&
             dataset_make_rows(file->dataset, file->dataset->rows, file->context)) ||
@@ -167,43 +159,36 @@ static bool check_indices(const int32_t *numbers, int64_t count, int32_t limit, 
     return true;
 }
 
-static bool check_context(const Dataset *dataset, const char *path, Error *error) {
-    if (dataset->context == NULL) return true;
-    for (int64_t r = 0; r < dataset->rows; r++) {
+static bool check_contents(void *of, const char *path, Error *error) {
+    const Dataset *dataset = ((DatasetFile *)of)->dataset;
+    const int64_t rows = dataset->rows;
+    if (!check_indices(dataset->launch_scene, dataset->launches, dataset->scene_count, "launch_scene", path, error) ||
+        !check_indices(dataset->launch, rows, dataset->launches, "launch", path, error) ||
+        !check_indices(dataset->frame, rows, INT32_MAX, "frame", path, error) ||
+        !check_indices(dataset->bodies, rows * 2, INT32_MAX, "bodies", path, error))
+        return false;
+    for (int64_t r = 0; dataset->context != NULL && r < rows; r++) {
         const char *fault = pair_context_fault(dataset->context + r * PAIR_CONTEXT);
         if (fault != NULL) return error_input(error, path, "context: row %lld has %s", (long long)r, fault);
     }
-    return true;
-}
-
-static bool check_split(const Dataset *dataset, const char *path, Error *error) {
     for (int i = 0; i < dataset->launches; i++)
         if (dataset->launch_test[i] > 1)
             return error_input(error, path, "launch_test: number %d is %d; expected 0 and 1", i,
                                dataset->launch_test[i]);
     int64_t test_rows = 0;
-    for (int64_t r = 0; r < dataset->rows; r++) test_rows += dataset_is_test(dataset, r);
-    if (test_rows > 0 && test_rows < dataset->rows) return true;
-    return error_input(error, path, "%lld rows to train on and %lld to test on; expected at least one of each",
-                       (long long)(dataset->rows - test_rows), (long long)test_rows);
+    for (int64_t r = 0; r < rows; r++) test_rows += dataset_is_test(dataset, r);
+    return (test_rows > 0 && test_rows < rows) ||
+           error_input(error, path, "%lld rows to train on and %lld to test on; expected at least one of each",
+                       (long long)(rows - test_rows), (long long)test_rows);
 }
 
-static bool check_contents(void *of, const char *path, Error *error) {
-    const Dataset *dataset = ((DatasetFile *)of)->dataset;
-    const int64_t rows = dataset->rows;
-    return check_indices(dataset->launch_scene, dataset->launches, dataset->scene_count, "launch_scene", path, error) &&
-           check_indices(dataset->launch, rows, dataset->launches, "launch", path, error) &&
-           check_indices(dataset->frame, rows, INT32_MAX, "frame", path, error) &&
-           check_indices(dataset->bodies, rows * 2, INT32_MAX, "bodies", path, error) &&
-           check_context(dataset, path, error) && check_split(dataset, path, error);
-}
-
-static const NetFileKind kind = {"dataset",  DATASET_VERSION,     list_fields,
-                                 read_sizes, dataset_file_create, check_contents};
+static const NetFileKind kind = {"dataset", DATASET_VERSION, list_fields, read_sizes, make_arrays, check_contents};
 
 int dataset_arrays(const Dataset *dataset, DatasetArrays *arrays) {
     DatasetFile file = {(Dataset *)dataset, dataset->context != NULL, arrays->scenes};
-    join_scenes(dataset, arrays->scenes);
+    arrays->scenes[0] = '\0';
+    for (int i = 0; i < dataset->scene_count; i++)
+        text_add(arrays->scenes, sizeof arrays->scenes, "%s%s", i > 0 ? "\n" : "", dataset->scenes[i]);
     const int count = list_fields(&file, arrays->fields);
     arrays->list[0] = (NpzArray){"version", NPZ_INT32, 0, {0}, &kind.version};
     arrays->list[1] = (NpzArray){"kind", NPZ_TEXT, 0, {0}, kind.name};

@@ -91,19 +91,6 @@ struct GaussNewton {
     Chunk chunks[MAX_CHUNKS];
 };
 
-static bool create_chunk(const GaussNewton *work, Chunk *chunk, Error *error) {
-    const Network *shape = work->shape;
-    size_t outputs = (size_t)shape->widths[shape->layers], widest = (size_t)network_scratch_width(shape) + 1;
-    chunk->block = network_block_create(shape, error);
-    const size_t deltas = outputs * (size_t)work->units * BLOCK_ROWS, products = widest * widest * BLOCK_ROWS;
-    chunk->deltas = calloc(deltas + products + work->parameters * (1 + work->parameters), sizeof(double));
-    if (chunk->block == NULL || chunk->deltas == NULL) return false;
-    chunk->products = chunk->deltas + deltas;
-    chunk->jtu = chunk->products + products;
-    chunk->jtj = chunk->jtu + work->parameters;
-    return true;
-}
-
 GaussNewton *gauss_newton_create(const Network *shape, Error *error) {
     GaussNewton *work = calloc(1, sizeof *work);
     if (work == NULL) return error_memory(error, "training"), NULL;
@@ -117,9 +104,18 @@ GaussNewton *gauss_newton_create(const Network *shape, Error *error) {
     for (int r = 0; r < BLOCK_ROWS; r++) work->ones[r] = 1;
     size_t affordable = MAX_MATRIX_NUMBERS / (work->parameters * work->parameters);
     work->chunk_count = affordable < 1 ? 1 : affordable < MAX_CHUNKS ? (int)affordable : MAX_CHUNKS;
-    for (int c = 0; c < work->chunk_count; c++)
-        if (!create_chunk(work, &work->chunks[c], error))
+    const size_t outputs = (size_t)shape->widths[shape->layers], widest = (size_t)network_scratch_width(shape) + 1,
+                 deltas = outputs * (size_t)work->units * BLOCK_ROWS, products = widest * widest * BLOCK_ROWS;
+    for (int c = 0; c < work->chunk_count; c++) {
+        Chunk *chunk = &work->chunks[c];
+        chunk->block = network_block_create(shape, error);
+        chunk->deltas = calloc(deltas + products + work->parameters * (1 + work->parameters), sizeof(double));
+        if (chunk->block == NULL || chunk->deltas == NULL)
             return error_memory(error, "training"), gauss_newton_destroy(work), NULL;
+        chunk->products = chunk->deltas + deltas;
+        chunk->jtu = chunk->products + products;
+        chunk->jtj = chunk->jtu + work->parameters;
+    }
     return work;
 }
 
@@ -148,29 +144,16 @@ static void add_symmetric(const GaussNewton *work, Chunk *chunk, size_t a, size_
     chunk->jtj[row * work->parameters + column] += value;
 }
 
-/* x_i x_i' of layers l and m; only i' <= i if l == m. */
-static void fill_products(const GaussNewton *work, Chunk *chunk, int l, int m) {
-    double *product = chunk->products;
-    for (int i = 0; i <= work->shape->widths[l]; i++)
-        for (int i2 = 0; i2 <= (l == m ? i : work->shape->widths[m]); i2++, product += BLOCK_ROWS) {
-            const double *a = input_values(work, chunk, l, i), *b = input_values(work, chunk, m, i2);
-            for (int r = 0; r < BLOCK_ROWS; r++) product[r] = a[r] * b[r];
-        }
-}
-
-/* D of unit j of layer l and unit j2 of layer m. */
-static void fill_weights(const GaussNewton *work, const Chunk *chunk, int unit, int unit2, double weights[BLOCK_ROWS]) {
-    memset(weights, 0, BLOCK_ROWS * sizeof *weights);
+/* Adds D x_i x_i' of unit j of layer l and unit j2 of layer m, for all their inputs; the products x_i x_i' are those of
+   the pair of layers. */
+static void add_unit_pair(const GaussNewton *work, Chunk *chunk, int l, int j, int m, int j2) {
+    const int unit = work->first_unit[l] + j, unit2 = work->first_unit[m] + j2;
+    double weights[BLOCK_ROWS] = {0};
     for (int k = 0; k < work->shape->widths[work->shape->layers]; k++) {
         const double *a = chunk->deltas + (k * work->units + unit) * BLOCK_ROWS;
         const double *b = chunk->deltas + (k * work->units + unit2) * BLOCK_ROWS;
         for (int r = 0; r < BLOCK_ROWS; r++) weights[r] += a[r] * b[r];
     }
-}
-
-static void add_unit_pair(const GaussNewton *work, Chunk *chunk, int l, int j, int m, int j2) {
-    double weights[BLOCK_ROWS];
-    fill_weights(work, chunk, work->first_unit[l] + j, work->first_unit[m] + j2, weights);
     const double *product = chunk->products;
     for (int i = 0; i <= work->shape->widths[l]; i++)
         for (int i2 = 0; i2 <= (l == m ? i : work->shape->widths[m]); i2++, product += BLOCK_ROWS) {
@@ -181,37 +164,38 @@ static void add_unit_pair(const GaussNewton *work, Chunk *chunk, int l, int j, i
         }
 }
 
+/* m <= l */
 static void add_layer_pair(const GaussNewton *work, Chunk *chunk, int l, int m) {
-    fill_products(work, chunk, l, m);
-    bool both_last = m == work->shape->layers - 1; /* m <= l */
+    const bool both_last = m == work->shape->layers - 1;
+    double *product = chunk->products; /* only i' <= i if l == m */
+    for (int i = 0; i <= work->shape->widths[l]; i++)
+        for (int i2 = 0; i2 <= (l == m ? i : work->shape->widths[m]); i2++, product += BLOCK_ROWS) {
+            const double *a = input_values(work, chunk, l, i), *b = input_values(work, chunk, m, i2);
+            for (int r = 0; r < BLOCK_ROWS; r++) product[r] = a[r] * b[r];
+        }
     for (int j = 0; j < work->shape->widths[l + 1]; j++)
         for (int j2 = 0; j2 <= (l == m ? j : work->shape->widths[m + 1] - 1); j2++)
             if (!both_last || j == j2) add_unit_pair(work, chunk, l, j, m, j2); /* outputs share no prediction */
 }
 
-/* One backward pass per output k, with output delta 1 for k and 0 for the others. */
-static void fill_deltas(const GaussNewton *work, Chunk *chunk, int rows, const double *parameters) {
-    const Network *shape = work->shape;
-    int outputs = shape->widths[shape->layers];
-    double *last = chunk->block->deltas[shape->layers - 1];
-    for (int k = 0; k < outputs; k++) {
-        for (int i = 0; i < outputs * BLOCK_ROWS; i++) last[i] = i / BLOCK_ROWS == k && i % BLOCK_ROWS < rows;
-        network_backward(chunk->block, parameters);
-        for (int l = 0; l < shape->layers; l++)
-            memcpy(chunk->deltas + (k * work->units + work->first_unit[l]) * BLOCK_ROWS, chunk->block->deltas[l],
-                   (size_t)shape->widths[l + 1] * BLOCK_ROWS * sizeof(double));
-    }
-}
-
 static void add_block(const GaussNewton *work, Chunk *chunk, const Samples *samples, int64_t b,
                       const double *parameters, const double *u, bool with_jtj) {
-    int layers = work->shape->layers, numbers = samples->outputs * BLOCK_ROWS;
+    const Network *shape = work->shape;
+    const int layers = shape->layers, outputs = samples->outputs, rows = samples_in_block(samples, b);
+    double *last = chunk->block->deltas[layers - 1];
     loss_forward(chunk->block, samples, b, parameters);
-    memcpy(chunk->block->deltas[layers - 1], u + b * numbers, (size_t)numbers * sizeof *u);
+    memcpy(last, u + b * outputs * BLOCK_ROWS, (size_t)outputs * BLOCK_ROWS * sizeof *u);
     network_backward(chunk->block, parameters);
     network_add_gradient(chunk->block, chunk->jtu);
     if (!with_jtj) return;
-    fill_deltas(work, chunk, samples_in_block(samples, b), parameters);
+    /* One backward pass per output k, with output delta 1 for k and 0 for the others. */
+    for (int k = 0; k < outputs; k++) {
+        for (int i = 0; i < outputs * BLOCK_ROWS; i++) last[i] = i / BLOCK_ROWS == k && i % BLOCK_ROWS < rows;
+        network_backward(chunk->block, parameters);
+        for (int l = 0; l < layers; l++)
+            memcpy(chunk->deltas + (k * work->units + work->first_unit[l]) * BLOCK_ROWS, chunk->block->deltas[l],
+                   (size_t)shape->widths[l + 1] * BLOCK_ROWS * sizeof(double));
+    }
     for (int l = 0; l < layers; l++)
         for (int m = 0; m <= l; m++) add_layer_pair(work, chunk, l, m);
 }
@@ -269,26 +253,6 @@ static int derivatives(CBLAS_TRANSPOSE_t transpose, const gsl_vector *x, const g
     return GSL_SUCCESS;
 }
 
-static double loss_of(const Trainer *trainer, const gsl_vector *f) {
-    double norm = gsl_blas_dnrm2(f);
-    return norm * norm / ((double)trainer->train->rows * trainer->train->outputs);
-}
-
-/* Ends early, without an error, if no damping lowers the loss. */
-static bool optimizers_run(Trainer *trainer, gsl_multilarge_nlinear_workspace *work, GaussNewton *gauss_newton,
-                           double *parameters, Error *error) {
-    LeastSquares problem = {trainer, gauss_newton};
-    gsl_multilarge_nlinear_fdf function = {
-        .f = residuals, .df = derivatives, .n = work->n, .p = work->p, .params = &problem};
-    gsl_vector_view start = gsl_vector_view_array(parameters, work->p);
-    int status = gsl_multilarge_nlinear_init(&start.vector, &function, work);
-    if (status != GSL_SUCCESS) return error_system(error, "lm", "%s", gsl_strerror(status));
-    bool ok;
-    do ok = trainer_visit(trainer, work->x->data, loss_of(trainer, work->f), error);
-    while (ok && !trainer->finished && gsl_multilarge_nlinear_iterate(work) == GSL_SUCCESS);
-    return ok;
-}
-
 static bool lm_minimize(Trainer *trainer, double *parameters, Error *error) {
     const Samples *samples = trainer->train;
     long long numbers = (long long)samples->rows * samples->outputs;
@@ -307,8 +271,20 @@ static bool lm_minimize(Trainer *trainer, double *parameters, Error *error) {
     gsl_multilarge_nlinear_workspace *work = gsl_multilarge_nlinear_alloc(gsl_multilarge_nlinear_trust, &settings,
                                                                           residual_count, (size_t)trainer->parameters);
     GaussNewton *gauss_newton = gauss_newton_create(trainer->network, error);
-    bool ok = work != NULL && gauss_newton != NULL ? optimizers_run(trainer, work, gauss_newton, parameters, error)
-                                                   : error_memory(error, "training");
+    bool ok = (work != NULL && gauss_newton != NULL) || error_memory(error, "training");
+    if (ok) {
+        LeastSquares problem = {trainer, gauss_newton};
+        gsl_multilarge_nlinear_fdf function = {
+            .f = residuals, .df = derivatives, .n = work->n, .p = work->p, .params = &problem};
+        gsl_vector_view start = gsl_vector_view_array(parameters, work->p);
+        int status = gsl_multilarge_nlinear_init(&start.vector, &function, work);
+        if (status != GSL_SUCCESS) ok = error_system(error, "lm", "%s", gsl_strerror(status));
+        while (ok && !trainer->finished && status == GSL_SUCCESS) { /* ends early if no damping lowers the loss */
+            const double norm = gsl_blas_dnrm2(work->f);
+            ok = trainer_visit(trainer, work->x->data, norm * norm / ((double)samples->rows * samples->outputs), error);
+            if (ok && !trainer->finished) status = gsl_multilarge_nlinear_iterate(work);
+        }
+    }
     gauss_newton_destroy(gauss_newton);
     gsl_multilarge_nlinear_free(work);
     return ok;
@@ -338,13 +314,6 @@ static void gradient_only(const gsl_vector *x, void *context, gsl_vector *gradie
     value_and_gradient(x, context, &loss, gradient);
 }
 
-/* One step. If the line search fails, restarts once along the gradient. False if that fails too. */
-static bool optimizers_iterate(gsl_multimin_fdfminimizer *minimizer) {
-    if (gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS) return true;
-    return gsl_multimin_fdfminimizer_restart(minimizer) == GSL_SUCCESS &&
-           gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS;
-}
-
 static bool bfgs_minimize(Trainer *trainer, double *parameters, Error *error) {
     size_t count = (size_t)trainer->parameters;
     gsl_multimin_function_fdf function = {value, gradient_only, value_and_gradient, count, trainer};
@@ -353,9 +322,15 @@ static bool bfgs_minimize(Trainer *trainer, double *parameters, Error *error) {
         gsl_multimin_fdfminimizer_alloc(gsl_multimin_fdfminimizer_vector_bfgs2, count);
     if (minimizer == NULL) return error_memory(error, "training");
     gsl_multimin_fdfminimizer_set(minimizer, &function, &start.vector, first_step, line_search_accuracy);
-    bool ok;
-    do ok = trainer_visit(trainer, minimizer->x->data, minimizer->f, error);
-    while (ok && !trainer->finished && optimizers_iterate(minimizer));
+    bool ok = true, lowered = true;
+    while (ok && !trainer->finished && lowered) {
+        ok = trainer_visit(trainer, minimizer->x->data, minimizer->f, error);
+        if (!ok || trainer->finished) break;
+        /* If the line search fails, it is tried once more along the gradient. */
+        lowered = gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS ||
+                  (gsl_multimin_fdfminimizer_restart(minimizer) == GSL_SUCCESS &&
+                   gsl_multimin_fdfminimizer_iterate(minimizer) == GSL_SUCCESS);
+    }
     gsl_multimin_fdfminimizer_free(minimizer);
     return ok;
 }

@@ -172,11 +172,6 @@ void laws_destroy(Laws *laws) {
 }
 
 /* Half the derivative of factor * excess^2 with respect to one row's outputs; `excess` includes the factor. */
-static void add_slope(const Laws *laws, double excess, const double slope[PAIR_CHANGES], double *half_slopes) {
-    for (int k = 0; k < PAIR_CHANGES; k++)
-        half_slopes[k * BLOCK_ROWS] += excess * slope[k] / (double)laws->network->output.scale[k];
-}
-
 double laws_add(const Laws *laws, const NetworkBlock *block, int64_t b, int rows, double *half_slopes) {
     const Normalisation *output = &laws->network->output;
     const double *prediction = block->values[block->shape->layers];
@@ -190,51 +185,39 @@ double laws_add(const Laws *laws, const NetworkBlock *block, int64_t b, int rows
             const double excess = laws_known[law].violation(&row->pair, change, slope) - row->label[law];
             if (excess <= 0) continue;
             sum += laws->factor[law] * excess * excess;
-            add_slope(laws, laws->factor[law] * excess, slope, half_slopes + r);
+            for (int k = 0; k < PAIR_CHANGES; k++)
+                half_slopes[k * BLOCK_ROWS + r] += laws->factor[law] * excess * slope[k] / (double)output->scale[k];
         }
     }
     return sum;
 }
 
-static void predicted_change(const Dataset *dataset, const Network *network, int64_t row, float *scratch,
-                             double change[PAIR_CHANGES]) {
-    float output[PAIR_CHANGES];
-    network_predict(network, dataset->inputs + row * dataset_inputs(dataset), scratch, output);
-    for (int k = 0; k < PAIR_CHANGES; k++) change[k] = (double)output[k];
-}
-
-static bool pair_laws_measure(const Dataset *dataset, const Network *network, float *scratch, LawNumbers *violations,
-                              Error *error) {
+bool laws_measure(const Dataset *dataset, const Network *network, LawNumbers *violations, Error *error) {
+    const LawNumbers none = {{0}};
+    float *scratch = NULL, output[PAIR_CHANGES];
     double change[PAIR_CHANGES], slope[PAIR_CHANGES];
     int64_t count = 0;
-    *violations = (LawNumbers){{0}};
+    if (!laws_check(dataset, network != NULL ? network->widths[network->layers] : PAIR_CHANGES, &none, error))
+        return false;
+    if (network != NULL && strcmp(network->inputs, pair_views[dataset->view].inputs) != 0)
+        return error_input(error, "laws", "the network has other inputs (%.80s)", network->inputs);
+    if (network != NULL) {
+        scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch);
+        if (scratch == NULL) return error_memory(error, "laws");
+    }
+    *violations = none;
     for (int64_t row = 0; row < dataset->rows; row++) {
         if (!dataset_is_test(dataset, row)) continue;
         const LawPair pair = law_pair(dataset->context + row * PAIR_CONTEXT);
-        if (network != NULL)
-            predicted_change(dataset, network, row, scratch, change);
-        else
-            label_change(dataset, row, change);
+        label_change(dataset, row, change);
+        if (network != NULL) network_predict(network, dataset->inputs + row * dataset_inputs(dataset), scratch, output);
+        for (int k = 0; network != NULL && k < PAIR_CHANGES; k++) change[k] = (double)output[k];
         for (int law = 0; law < LAWS; law++) violations->of[law] += laws_known[law].violation(&pair, change, slope);
         count++;
     }
-    if (count == 0) return error_input(error, "laws", "the dataset has no test rows");
-    for (int law = 0; law < LAWS; law++) violations->of[law] /= (double)count;
-    return true;
-}
-
-bool laws_measure(const Dataset *dataset, const Network *network, LawNumbers *violations, Error *error) {
-    const LawNumbers none = {{0}};
-    if (!laws_check(dataset, network != NULL ? network->widths[network->layers] : PAIR_CHANGES, &none, error))
-        return false;
-    if (network == NULL) return pair_laws_measure(dataset, NULL, NULL, violations, error);
-    if (strcmp(network->inputs, pair_views[dataset->view].inputs) != 0)
-        return error_input(error, "laws", "the network has other inputs (%.80s)", network->inputs);
-    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch);
-    if (scratch == NULL) return error_memory(error, "laws");
-    const bool ok = pair_laws_measure(dataset, network, scratch, violations, error);
     free(scratch);
-    return ok;
+    for (int law = 0; law < LAWS; law++) violations->of[law] /= (double)count;
+    return count > 0 || error_input(error, "laws", "the dataset has no test rows");
 }
 
 bool law_weights_any(const LawNumbers *weights) {
@@ -301,20 +284,16 @@ static double error_loss(double *error, double threshold) {
     return inner * (2 * size - inner);
 }
 
-static bool set_thresholds(Loss *loss, const Network *shape, LossKind kind) {
-    loss->thresholds = malloc((size_t)loss->outputs * sizeof *loss->thresholds);
-    for (int k = 0; loss->thresholds != NULL && k < loss->outputs; k++)
-        loss->thresholds[k] = kind == LOSS_MSE ? INFINITY : SMOOTH_L1_THRESHOLD * (double)shape->output.scale[k];
-    return loss->thresholds != NULL;
-}
-
 Loss *loss_create(const Network *shape, LossKind kind, Error *error) {
     Loss *loss = calloc(1, sizeof *loss);
     if (loss == NULL) return error_memory(error, "training"), NULL;
     loss->parameters = network_parameter_count(shape);
     loss->last = shape->layers - 1;
     loss->outputs = shape->widths[shape->layers];
-    if (!set_thresholds(loss, shape, kind)) return error_memory(error, "training"), loss_destroy(loss), NULL;
+    loss->thresholds = malloc((size_t)loss->outputs * sizeof *loss->thresholds);
+    if (loss->thresholds == NULL) return error_memory(error, "training"), loss_destroy(loss), NULL;
+    for (int k = 0; k < loss->outputs; k++)
+        loss->thresholds[k] = kind == LOSS_MSE ? INFINITY : SMOOTH_L1_THRESHOLD * (double)shape->output.scale[k];
     int affordable = MAX_GRADIENT_NUMBERS / loss->parameters;
     loss->chunk_count = affordable < 1 ? 1 : affordable < MAX_CHUNKS ? affordable : MAX_CHUNKS;
     for (int c = 0; c < loss->chunk_count; c++) {
@@ -427,11 +406,12 @@ double loss_of_constant(const Loss *loss, const Samples *samples, const double *
     return sum / ((double)samples->rows * samples->outputs);
 }
 
-static bool check_shape(const Dataset *dataset, const TrainingOptions *options, Error *error) {
+bool training_check(const Dataset *dataset, const TrainingOptions *options, Error *error) {
+    const Network *start = options->start;
     if (options->layers < 1 || options->layers > NETWORK_MAX_LAYERS)
         return error_input(error, "layers", "must be 1 to %d weight layers (got %d)", NETWORK_MAX_LAYERS,
                            options->layers);
-    int first = options->widths[0], last = options->widths[options->layers];
+    const int first = options->widths[0], last = options->widths[options->layers];
     if (first != dataset_inputs(dataset))
         return error_input(error, "layers", "the first width must be %d, the inputs of a pair (got %d)",
                            dataset_inputs(dataset), first);
@@ -441,19 +421,12 @@ static bool check_shape(const Dataset *dataset, const TrainingOptions *options, 
             dataset->target == TARGET_POINTS ? "4 (both points)" : "2 (relative velocity) or 6 (both bodies)", last);
     if (options->iterations < 0)
         return error_input(error, "iterations", "must be 0 or more (got %d)", options->iterations);
-    return true;
-}
-
-static bool check_rows(const Dataset *dataset, Error *error) {
     int64_t test_rows = 0;
     for (int64_t row = 0; row < dataset->rows; row++) test_rows += dataset_is_test(dataset, row);
-    if (test_rows > 0 && test_rows < dataset->rows) return true;
-    return error_input(error, "dataset", "needs at least one training row and one test row (got %lld and %lld)",
-                       (long long)(dataset->rows - test_rows), (long long)test_rows);
-}
-
-static bool check_start(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    const Network *start = options->start;
+    if (test_rows == 0 || test_rows == dataset->rows)
+        return error_input(error, "dataset", "needs at least one training row and one test row (got %lld and %lld)",
+                           (long long)(dataset->rows - test_rows), (long long)test_rows);
+    if (law_weights_any(&options->laws) && !laws_check(dataset, last, &options->laws, error)) return false;
     if (start == NULL) return true;
     if (strcmp(start->inputs, pair_views[dataset->view].inputs) != 0)
         return error_input(error, "dataset", "the start network was trained on other inputs (%.80s)", start->inputs);
@@ -463,11 +436,4 @@ static bool check_start(const Dataset *dataset, const TrainingOptions *options, 
     for (int l = 0; fits && l <= options->layers; l++) fits = start->widths[l] == options->widths[l];
     if (!fits) return error_input(error, "layers", "the start network has other widths");
     return network_config_matches(start, options, error);
-}
-
-bool training_check(const Dataset *dataset, const TrainingOptions *options, Error *error) {
-    return check_shape(dataset, options, error) && check_rows(dataset, error) &&
-           (!law_weights_any(&options->laws) ||
-            laws_check(dataset, options->widths[options->layers], &options->laws, error)) &&
-           check_start(dataset, options, error);
 }

@@ -84,18 +84,8 @@ void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Networ
 }
 
 /* The same float32 expression as in network_predict(), so that training and inference see the same inputs. */
-static float pair_training_normalise(const Normalisation *normalisation, int column, float x) {
+static float normalise(const Normalisation *normalisation, int column, float x) {
     return (x - normalisation->offset[column]) * normalisation->scale[column];
-}
-
-static void store_row(Samples *samples, int64_t to, const Dataset *dataset, int64_t row, const Network *network) {
-    int64_t b = to / BLOCK_ROWS, r = to % BLOCK_ROWS;
-    for (int i = 0; i < samples->inputs; i++)
-        samples->x[(b * samples->inputs + i) * BLOCK_ROWS + r] =
-            pair_training_normalise(&network->input, i, input_at(dataset, row, i));
-    for (int k = 0; k < samples->outputs; k++)
-        samples->y[(b * samples->outputs + k) * BLOCK_ROWS + r] =
-            pair_training_normalise(&network->output, k, dataset_target(dataset, row, samples->outputs, k));
 }
 
 Samples *samples_create(const Dataset *dataset, const Network *network, bool test, Error *error) {
@@ -110,8 +100,16 @@ Samples *samples_create(const Dataset *dataset, const Network *network, bool tes
     if (samples->x == NULL) return error_memory(error, "training"), free(samples), NULL;
     samples->y = samples->x + padded * (size_t)samples->inputs;
     int64_t to = 0;
-    for (int64_t row = 0; row < dataset->rows; row++)
-        if (dataset_is_test(dataset, row) == test) store_row(samples, to++, dataset, row, network);
+    for (int64_t row = 0; row < dataset->rows; row++) {
+        if (dataset_is_test(dataset, row) != test) continue;
+        const int64_t b = to / BLOCK_ROWS, r = to++ % BLOCK_ROWS;
+        for (int i = 0; i < samples->inputs; i++)
+            samples->x[(b * samples->inputs + i) * BLOCK_ROWS + r] =
+                normalise(&network->input, i, input_at(dataset, row, i));
+        for (int k = 0; k < samples->outputs; k++)
+            samples->y[(b * samples->outputs + k) * BLOCK_ROWS + r] =
+                normalise(&network->output, k, dataset_target(dataset, row, samples->outputs, k));
+    }
     return samples;
 }
 
@@ -121,15 +119,12 @@ void samples_destroy(Samples *samples) {
     free(samples);
 }
 
-static const float *target_column(const Samples *samples, int64_t b, int k) {
-    return samples->y + (b * samples->outputs + k) * BLOCK_ROWS;
-}
-
 void samples_mean(const Samples *samples, double *mean) {
     for (int k = 0; k < samples->outputs; k++) {
         double sum = 0;
         for (int64_t b = 0; b < samples->blocks; b++)
-            for (int r = 0; r < samples_in_block(samples, b); r++) sum += target_column(samples, b, k)[r];
+            for (int r = 0; r < samples_in_block(samples, b); r++)
+                sum += samples->y[(b * samples->outputs + k) * BLOCK_ROWS + r];
         mean[k] = sum / (double)samples->rows;
     }
 }
@@ -146,7 +141,7 @@ static const Word scale_words[] = {{"minmax", SCALE_MINMAX}, {"standard", SCALE_
 static const Word loss_words[] = {{"mse", LOSS_MSE}, {"smooth-l1", LOSS_SMOOTH_L1}, {NULL, 0}};
 
 /* If name is NULL, value keeps its default. */
-static bool pair_training_choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
+static bool choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
     if (name == NULL) return true;
     NameList known = {0};
     for (int i = 0; words[i].name != NULL; i++) {
@@ -156,24 +151,16 @@ static bool pair_training_choose(const char *option, const char *name, const Wor
     return error_unknown(error, option, name, "a valid value", &known);
 }
 
-/* ERROR_INPUT: an unknown word. */
-static bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Error *error) {
-    int loss = LOSS_MSE;
-    if (!pair_training_choose("loss", options->loss, loss_words, &loss, error)) return false;
-    *kind = (LossKind)loss;
-    return true;
-}
-
 /* NULL words take the defaults of TrainingOptions. ERROR_INPUT: an unknown word, or output targets outside the range of
    the output activation. */
 static bool network_config_parse(NetworkConfig *config, const TrainingOptions *options, Error *error) {
     bool two = options->widths[options->layers] == 2;
     int hidden = ACTIVATION_SIGMOID, output = two ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;
-    if (!pair_training_choose("hidden", options->hidden, hidden_words, &hidden, error) ||
-        !pair_training_choose("output activation", options->output_activation, output_words, &output, error))
+    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !choose("output activation", options->output_activation, output_words, &output, error))
         return false;
     int scale = output == ACTIVATION_LINEAR ? SCALE_STANDARD : SCALE_MINMAX;
-    if (!pair_training_choose("scale", options->scale, scale_words, &scale, error)) return false;
+    if (!choose("scale", options->scale, scale_words, &scale, error)) return false;
     if (output == ACTIVATION_SIGMOID && scale == SCALE_STANDARD)
         return error_input(error, "scale", "standard needs linear outputs: a sigmoid stays between 0 and 1");
     *config = (NetworkConfig){(Activation)hidden, (Activation)output, (OutputScale)scale};
@@ -184,8 +171,8 @@ bool network_config_matches(const Network *start, const TrainingOptions *options
     if (options->scale != NULL)
         return error_input(error, "scale", "the start network keeps its own scale; omit this option");
     int last = start->layers - 1, hidden = ACTIVATION_SIGMOID, output = (int)start->activations[last];
-    if (!pair_training_choose("hidden", options->hidden, hidden_words, &hidden, error) ||
-        !pair_training_choose("output activation", options->output_activation, output_words, &output, error))
+    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !choose("output activation", options->output_activation, output_words, &output, error))
         return false;
     for (int l = 0; options->hidden != NULL && l < last; l++)
         if (start->activations[l] != (Activation)hidden)
@@ -196,36 +183,6 @@ bool network_config_matches(const Network *start, const TrainingOptions *options
 }
 
 const Optimizer *const optimizers[] = {&optimizer_adam, &optimizer_bfgs, &optimizer_gd, &optimizer_lm, NULL};
-
-static const Optimizer *find_optimizer(const char *name, Error *error) {
-    NameList known = {0};
-    for (int i = 0; optimizers[i] != NULL; i++) {
-        if (strcmp(optimizers[i]->name, name) == 0) return optimizers[i];
-        name_list_add(&known, optimizers[i]->name);
-    }
-    error_unknown(error, "optimizer", name, "an optimizer", &known);
-    return NULL;
-}
-
-/* Glorot and Bengio, "Understanding the difficulty of training deep feedforward neural networks" (2010):
-   uniform in +- sqrt(6 / (inputs + outputs)), biases 0. */
-static void draw_weights(Network *network, const gsl_rng *rng) {
-    for (int l = 0; l < network->layers; l++) {
-        int inputs = network->widths[l], outputs = network->widths[l + 1];
-        double limit = sqrt(6.0 / (inputs + outputs));
-        for (int i = 0; i < inputs * outputs; i++)
-            network->weights[l][i] = (float)(limit * (2 * gsl_rng_uniform(rng) - 1));
-    }
-}
-
-static bool set_random_weights(Network *network, uint64_t seed, Error *error) {
-    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    if (rng == NULL) return error_memory(error, "training");
-    gsl_rng_set(rng, (unsigned long)((seed ^ seed >> 32) & UINT32_MAX)); /* the generator takes 32 bits */
-    draw_weights(network, rng);
-    gsl_rng_free(rng);
-    return true;
-}
 
 static Network *new_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
     NetworkConfig config = {0};
@@ -239,9 +196,19 @@ static Network *new_network(const Dataset *dataset, const TrainingOptions *optio
              pair_output_names(dataset->view, dataset->target, options->widths[options->layers]));
     snprintf(network->target, sizeof network->target, "%s", pair_target_names[dataset->target]);
     samples_fit_normalisation(dataset, config.scale, network);
-    if (set_random_weights(network, options->seed, error)) return network;
-    network_destroy(network);
-    return NULL;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    if (rng == NULL) return network_destroy(network), error_memory(error, "training"), NULL;
+    gsl_rng_set(rng, (unsigned long)((options->seed ^ options->seed >> 32) & UINT32_MAX)); /* it takes 32 bits */
+    /* Glorot and Bengio, "Understanding the difficulty of training deep feedforward neural networks" (2010):
+       uniform in +- sqrt(6 / (inputs + outputs)), biases 0. */
+    for (int l = 0; l < network->layers; l++) {
+        const int inputs = network->widths[l], outputs = network->widths[l + 1];
+        const double limit = sqrt(6.0 / (inputs + outputs));
+        for (int i = 0; i < inputs * outputs; i++)
+            network->weights[l][i] = (float)(limit * (2 * gsl_rng_uniform(rng) - 1));
+    }
+    gsl_rng_free(rng);
+    return network;
 }
 
 /* 0, 10, 50, 100, 1000, 2000 as the paper's Table 1, then 5000, 10000, 20000, ... */
@@ -268,19 +235,12 @@ static void report_score(Trainer *trainer) {
     trainer->options->on_score(trainer->options->context, &score);
 }
 
-/* Also false if a parameter overflows the network's float32. */
-static bool is_finite(const double *parameters, int count, double loss) {
-    if (!isfinite(loss)) return false;
-    for (int p = 0; p < count; p++)
-        if (!(fabs(parameters[p]) <= FLT_MAX)) return false;
-    return true;
-}
-
 bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss, Error *error) {
     size_t size = (size_t)trainer->parameters * sizeof *parameters;
     trainer->iteration++;
-    if (!is_finite(parameters, trainer->parameters, train_loss))
-        return error_input(error, "training", "diverged: NaN or infinite in iteration %d", trainer->iteration);
+    bool finite = isfinite(train_loss); /* and no parameter overflows the network's float32 */
+    for (int p = 0; finite && p < trainer->parameters; p++) finite = fabs(parameters[p]) <= FLT_MAX;
+    if (!finite) return error_input(error, "training", "diverged: NaN or infinite in iteration %d", trainer->iteration);
     memcpy(trainer->now, parameters, size);
     trainer->loss_now = train_loss;
     if (trainer->iteration == 0 || train_loss < trainer->best_loss) {
@@ -293,70 +253,69 @@ bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss
     return true;
 }
 
-static bool score_constant(Trainer *trainer, Error *error) {
-    double *mean = malloc((size_t)trainer->train->outputs * sizeof *mean);
-    if (mean == NULL) return error_memory(error, "training");
+/* Runs the optimiser and stores the best weights in the network. All its parameters are one block from weights[0]. */
+static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *network, Error *error) {
+    const size_t count = (size_t)trainer->parameters, outputs = (size_t)trainer->train->outputs;
+    double *parameters = calloc(3 * count + outputs, sizeof *parameters);
+    if (parameters == NULL) return error_memory(error, "training");
+    double *mean = parameters + 3 * count;
+    trainer->now = parameters + count;
+    trainer->best = parameters + 2 * count;
     samples_mean(trainer->train, mean);
     trainer->constant_test = loss_of_constant(trainer->loss, trainer->test, mean);
     trainer->constant_train = loss_of_constant(trainer->loss, trainer->train, mean);
-    free(mean);
-    return true;
-}
-
-/* Runs the optimiser and stores the best weights in the network. All its parameters are one block from weights[0]. */
-static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *network, Error *error) {
-    size_t count = (size_t)trainer->parameters;
-    double *numbers = calloc(3 * count, sizeof *numbers);
-    if (numbers == NULL) return error_memory(error, "training");
-    double *parameters = numbers;
-    trainer->now = numbers + count;
-    trainer->best = numbers + 2 * count;
     for (size_t p = 0; p < count; p++) parameters[p] = (double)network->weights[0][p];
-    bool ok = optimizer->minimize(trainer, parameters, error);
+    const bool ok = optimizer->minimize(trainer, parameters, error);
     if (ok) {
         report_score(trainer);
         for (size_t p = 0; p < count; p++) network->weights[0][p] = (float)trainer->best[p];
     }
-    free(numbers);
+    free(parameters);
     return ok;
 }
 
-static bool pair_training_train(Network *network, const Dataset *dataset, const Optimizer *optimizer,
-                                const TrainingOptions *options, const Progress *progress, Error *error) {
+static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer, const TrainingOptions *options,
+                  const Progress *progress, Error *error) {
     const bool with_laws = law_weights_any(&options->laws);
+    int kind = LOSS_MSE;
     Laws *laws = with_laws ? laws_create(dataset, network, &options->laws, error) : NULL;
-    LossKind kind = LOSS_MSE;
-    Loss *loss = loss_kind_parse(&kind, options, error) ? loss_create(network, kind, error) : NULL;
-    Samples *train_samples = samples_create(dataset, network, false, error);
-    Samples *test_samples = samples_create(dataset, network, true, error);
+    Loss *loss =
+        choose("loss", options->loss, loss_words, &kind, error) ? loss_create(network, (LossKind)kind, error) : NULL;
+    Samples *rows = samples_create(dataset, network, false, error),
+            *test = samples_create(dataset, network, true, error);
     Trainer trainer = {.options = options,
                        .progress = progress,
                        .network = network,
-                       .train = train_samples,
-                       .test = test_samples,
-                       .loss_kind = kind,
+                       .train = rows,
+                       .test = test,
+                       .loss_kind = (LossKind)kind,
                        .loss = loss,
                        .laws = laws,
                        .parameters = network_parameter_count(network),
                        .iteration = -1,
                        .scored = -1};
-    bool ok = (laws != NULL || !with_laws) && loss != NULL && train_samples != NULL && test_samples != NULL &&
-              score_constant(&trainer, error) && minimize(&trainer, optimizer, network, error);
-    samples_destroy(test_samples);
-    samples_destroy(train_samples);
+    const bool ok = (laws != NULL || !with_laws) && loss != NULL && rows != NULL && test != NULL &&
+                    minimize(&trainer, optimizer, network, error);
+    samples_destroy(test);
+    samples_destroy(rows);
     loss_destroy(loss);
     laws_destroy(laws);
     return ok;
 }
 
 Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error) {
-    /* GSL's default handler aborts. */
-    gsl_set_error_handler_off();
-    const Optimizer *optimizer = find_optimizer(options->optimizer, error);
-    if (optimizer == NULL || !training_check(dataset, options, error)) return NULL;
+    const Optimizer *optimizer = NULL;
+    NameList known = {0};
+    gsl_set_error_handler_off(); /* its default aborts */
+    for (int i = 0; optimizers[i] != NULL; i++) {
+        if (strcmp(optimizers[i]->name, options->optimizer) == 0) optimizer = optimizers[i];
+        name_list_add(&known, optimizers[i]->name);
+    }
+    if (optimizer == NULL) return error_unknown(error, "optimizer", options->optimizer, "an optimizer", &known), NULL;
+    if (!training_check(dataset, options, error)) return NULL;
     Network *network =
         options->start != NULL ? network_copy(options->start, error) : new_network(dataset, options, error);
-    if (network != NULL && !pair_training_train(network, dataset, optimizer, options, progress, error)) {
+    if (network != NULL && !train(network, dataset, optimizer, options, progress, error)) {
         network_destroy(network);
         network = NULL;
     }

@@ -53,17 +53,6 @@ BodyPose box_particles_fit(const Vec2 *particles, Vec2 size, const BodyPose *nea
     return (BodyPose){vec2((float)x, (float)y), (float)((double)near->angle + plane_angle(cosine, sine))};
 }
 
-float box_particles_distance(const Vec2 *particles, Vec2 size, const BodyPose *pose) {
-    Vec2 placed[BOX_PARTICLES];
-    float sum = 0;
-    box_particles_place(placed, size, pose);
-    for (int k = 0; k < BOX_PARTICLES; k++) {
-        const Vec2 away = vec2_sub(particles[k], placed[k]);
-        sum += vec2_dot(away, away);
-    }
-    return sqrtf(sum / BOX_PARTICLES);
-}
-
 /* Rows that pass a perceptron together: 64 rows of 16 numbers in four arrays stay in the L1 cache. */
 enum { TILE = 64 };
 
@@ -72,7 +61,7 @@ void gns_pass_free(GnsPass *pass) {
     *pass = (GnsPass){.tape = pass->tape};
 }
 
-static float *gns_graph_take(float *numbers, size_t *used, size_t count) {
+static float *take(float *numbers, size_t *used, size_t count) {
     float *at = numbers != NULL ? numbers + *used : NULL;
     *used += (count + 7) & ~(size_t)7;
     return at;
@@ -80,34 +69,34 @@ static float *gns_graph_take(float *numbers, size_t *used, size_t count) {
 
 static GnsLayerTape take_layer(float *numbers, size_t *used, size_t rows, size_t width) {
     GnsLayerTape layer;
-    layer.first = gns_graph_take(numbers, used, rows * width);
-    layer.second = gns_graph_take(numbers, used, rows * width);
-    layer.normalised = gns_graph_take(numbers, used, rows * width);
-    layer.inverse = gns_graph_take(numbers, used, rows);
+    layer.first = take(numbers, used, rows * width);
+    layer.second = take(numbers, used, rows * width);
+    layer.normalised = take(numbers, used, rows * width);
+    layer.inverse = take(numbers, used, rows);
     return layer;
 }
 
 /* Places the arrays in `numbers`, or with NULL only counts them. */
-static size_t gns_graph_place(GnsPass *pass, float *numbers, const GnsLayout *layout, const GnsGraph *graph) {
+static size_t place(GnsPass *pass, float *numbers, const GnsLayout *layout, const GnsGraph *graph) {
     const size_t nodes = (size_t)graph->nodes, edges = (size_t)graph->edges, width = (size_t)layout->width;
     const bool tape = pass->tape;
     size_t used = 0;
     for (int m = 0; m <= layout->rounds; m++) {
         const bool own = tape || m == 0;
-        pass->node[m] = own ? gns_graph_take(numbers, &used, nodes * width) : pass->node[0];
-        pass->edge[m] = own ? gns_graph_take(numbers, &used, edges * width) : pass->edge[0];
+        pass->node[m] = own ? take(numbers, &used, nodes * width) : pass->node[0];
+        pass->edge[m] = own ? take(numbers, &used, edges * width) : pass->edge[0];
         if (m == layout->rounds) break;
-        pass->sum[m] = own ? gns_graph_take(numbers, &used, nodes * width) : pass->sum[0];
+        pass->sum[m] = own ? take(numbers, &used, nodes * width) : pass->sum[0];
         pass->edge_rounds[m] = own ? take_layer(numbers, &used, tape ? edges : TILE, width) : pass->edge_rounds[0];
         pass->node_rounds[m] = tape ? take_layer(numbers, &used, nodes, width) : pass->edge_rounds[0];
     }
     pass->nodes = tape ? take_layer(numbers, &used, nodes, width) : pass->edge_rounds[0];
     pass->edges = tape ? take_layer(numbers, &used, edges, width) : pass->edge_rounds[0];
     pass->decoder = tape ? take_layer(numbers, &used, nodes, width) : pass->edge_rounds[0];
-    pass->outputs = gns_graph_take(numbers, &used, nodes * GNS_OUTPUTS);
-    pass->from_receiver = gns_graph_take(numbers, &used, nodes * width);
-    pass->from_sender = gns_graph_take(numbers, &used, nodes * width);
-    pass->change = gns_graph_take(numbers, &used, TILE * width);
+    pass->outputs = take(numbers, &used, nodes * GNS_OUTPUTS);
+    pass->from_receiver = take(numbers, &used, nodes * width);
+    pass->from_sender = take(numbers, &used, nodes * width);
+    pass->change = take(numbers, &used, TILE * width);
     return used;
 }
 
@@ -119,8 +108,8 @@ static GnsLayerTape rows_of(const GnsPass *pass, const GnsLayerTape *layer, int 
 }
 
 /* The rest of a perceptron, from the sums of its first layer on. */
-static void gns_graph_finish(const GnsKernels *kernels, const GnsMlp *mlp, const float *parameters,
-                             const GnsLayerTape *tape, int rows, float *out) {
+static void finish(const GnsKernels *kernels, const GnsMlp *mlp, const float *parameters, const GnsLayerTape *tape,
+                   int rows, float *out) {
     const int width = mlp->width;
     float *last = mlp->gain >= 0 ? tape->normalised : out;
     kernels->relu(tape->first, rows * width);
@@ -136,18 +125,18 @@ static void gns_graph_finish(const GnsKernels *kernels, const GnsMlp *mlp, const
 static int tile_rows(int first, int rows) { return rows - first < TILE ? rows - first : TILE; }
 
 /* out[rows, mlp->outputs] of in[rows, mlp->inputs] */
-static void gns_graph_apply(const GnsPass *pass, const GnsMlp *mlp, const float *parameters, const GnsLayerTape *tape,
-                            const float *in, int rows, float *out) {
+static void apply(const GnsPass *pass, const GnsMlp *mlp, const float *parameters, const GnsLayerTape *tape,
+                  const float *in, int rows, float *out) {
     for (int first = 0; first < rows; first += TILE) {
         const int count = tile_rows(first, rows);
         const GnsLayerTape at = rows_of(pass, tape, first, mlp->width);
         pass->kernels->multiply(at.first, in + (ptrdiff_t)first * mlp->inputs, parameters + mlp->weights[0],
                                 parameters + mlp->biases[0], count, mlp->inputs, mlp->width);
-        gns_graph_finish(pass->kernels, mlp, parameters, &at, count, out + (ptrdiff_t)first * mlp->outputs);
+        finish(pass->kernels, mlp, parameters, &at, count, out + (ptrdiff_t)first * mlp->outputs);
     }
 }
 
-static void gns_graph_add(float *out, const float *a, const float *b, int count) {
+static void add(float *out, const float *a, const float *b, int count) {
     for (int i = 0; i < count; i++) out[i] = a[i] + b[i];
 }
 
@@ -171,9 +160,9 @@ static void pass_messages(const GnsPass *pass, const GnsMlp *mlp, const float *p
         kernels->add_rows(tape.first, pass->from_receiver, graph->receiver + first, count, width);
         kernels->add_rows(tape.first, pass->from_sender, graph->sender + first, count, width);
         kernels->multiply(tape.first, pass->edge[m] + at, weights, NULL, count, width, width);
-        gns_graph_finish(kernels, mlp, parameters, &tape, count, pass->change);
+        finish(kernels, mlp, parameters, &tape, count, pass->change);
         kernels->add_to_rows(pass->sum[m], pass->change, graph->receiver + first, count, width);
-        gns_graph_add(pass->edge[m + 1] + at, pass->edge[m] + at, pass->change, count * width);
+        add(pass->edge[m + 1] + at, pass->edge[m] + at, pass->change, count * width);
     }
 }
 
@@ -188,24 +177,23 @@ static void update_nodes(const GnsPass *pass, const GnsMlp *mlp, const float *pa
                           count, width, width);
         kernels->multiply(tape.first, pass->sum[m] + at, parameters + mlp->weights[0] + (ptrdiff_t)width * width, NULL,
                           count, width, width);
-        gns_graph_finish(kernels, mlp, parameters, &tape, count, pass->change);
-        gns_graph_add(pass->node[m + 1] + at, pass->node[m] + at, pass->change, count * width);
+        finish(kernels, mlp, parameters, &tape, count, pass->change);
+        add(pass->node[m + 1] + at, pass->node[m] + at, pass->change, count * width);
     }
 }
 
 bool gns_forward(GnsPass *pass, const GnsLayout *layout, const float *parameters, const GnsGraph *graph) {
-    const size_t needed = gns_graph_place(pass, NULL, layout, graph);
+    const size_t needed = place(pass, NULL, layout, graph);
     if (!array_reserve((void **)&pass->numbers, &pass->capacity, needed, sizeof *pass->numbers)) return false;
-    gns_graph_place(pass, pass->numbers, layout, graph);
+    place(pass, pass->numbers, layout, graph);
     if (pass->kernels == NULL) pass->kernels = &kernels_best()->gns;
-    gns_graph_apply(pass, &layout->nodes, parameters, &pass->nodes, graph->node_inputs, graph->nodes, pass->node[0]);
-    gns_graph_apply(pass, &layout->edges, parameters, &pass->edges, graph->edge_inputs, graph->edges, pass->edge[0]);
+    apply(pass, &layout->nodes, parameters, &pass->nodes, graph->node_inputs, graph->nodes, pass->node[0]);
+    apply(pass, &layout->edges, parameters, &pass->edges, graph->edge_inputs, graph->edges, pass->edge[0]);
     for (int m = 0; m < layout->rounds; m++) {
         pass_messages(pass, &layout->edge_rounds[m], parameters, graph, m);
         update_nodes(pass, &layout->node_rounds[m], parameters, graph->nodes, m);
     }
-    gns_graph_apply(pass, &layout->decoder, parameters, &pass->decoder, pass->node[layout->rounds], graph->nodes,
-                    pass->outputs);
+    apply(pass, &layout->decoder, parameters, &pass->decoder, pass->node[layout->rounds], graph->nodes, pass->outputs);
     return true;
 }
 
@@ -224,15 +212,6 @@ static int list_count(int nodes) {
     return count;
 }
 
-static bool gns_graph_reserve(GnsGraph *graph, int nodes) {
-    const size_t count = (size_t)nodes, edges = count * GNS_NEIGHBOURS;
-    return ARRAY_BLOCK_RESERVE(&graph->arrays, ARRAY_PART(graph->node_inputs, count * GNS_NODE_INPUTS),
-                               ARRAY_PART(graph->edge_inputs, edges * GNS_EDGE_INPUTS),
-                               ARRAY_PART(graph->receiver, edges), ARRAY_PART(graph->sender, edges),
-                               ARRAY_PART(graph->first, list_count(nodes)), ARRAY_PART(graph->next, count),
-                               ARRAY_PART(graph->cell, count));
-}
-
 static int64_t cell_of(float x, float radius) {
     const float at = floorf(x / radius);
     return (int64_t)(at < -cell_limit ? -cell_limit : at > cell_limit ? cell_limit : at);
@@ -244,32 +223,9 @@ static int list_of(int64_t x, int64_t y, int lists) {
     return (int)(((uint64_t)x * 73856093u ^ (uint64_t)y * 19349663u) & (uint64_t)(lists - 1));
 }
 
-static void fill_grid(GnsGraph *graph, const GnsParticles *particles, float radius) {
-    const int lists = list_count(graph->nodes);
-    for (int i = 0; i < lists; i++) graph->first[i] = -1;
-    for (int i = graph->nodes - 1; i >= 0; i--) { /* so each list rises */
-        graph->cell[i][0] = cell_of(particles->position[i].x, radius);
-        graph->cell[i][1] = cell_of(particles->position[i].y, radius);
-        const int list = list_of(graph->cell[i][0], graph->cell[i][1], lists);
-        graph->next[i] = graph->first[list];
-        graph->first[list] = i;
-    }
-}
-
-static void add_edge(GnsGraph *graph, const GnsParticles *particles, int receiver, int sender, Vec2 way, float length) {
-    const GnsBody *to = &particles->body[receiver / BOX_PARTICLES], *from = &particles->body[sender / BOX_PARTICLES];
-    float *inputs = graph->edge_inputs + (ptrdiff_t)graph->edges * GNS_EDGE_INPUTS;
-    inputs[0] = way.x;
-    inputs[1] = way.y;
-    inputs[2] = length;
-    inputs[3] = from->mass / (from->mass + to->mass);
-    inputs[4] = to == from ? 1.0f : 0.0f;
-    graph->receiver[graph->edges] = receiver;
-    graph->sender[graph->edges++] = sender;
-}
-
-static void add_edges_from_cell(GnsGraph *graph, const GnsParticles *particles, int i, int64_t x, int64_t y,
-                                float radius, int last) {
+/* Edges to particle i from those of a cell, as long as there are fewer than `last` in all. */
+static void add_edges(GnsGraph *graph, const GnsParticles *particles, int i, int64_t x, int64_t y, float radius,
+                      int last) {
     for (int j = graph->first[list_of(x, y, list_count(graph->nodes))]; j >= 0; j = graph->next[j]) {
         if (j == i || graph->cell[j][0] != x || graph->cell[j][1] != y) continue;
         const Vec2 way = vec2_scale(1.0f / radius, vec2_sub(particles->position[j], particles->position[i]));
@@ -279,17 +235,15 @@ static void add_edges_from_cell(GnsGraph *graph, const GnsParticles *particles, 
             graph->beyond = true;
             return;
         }
-        add_edge(graph, particles, i, j, way, sqrtf(square));
-    }
-}
-
-static void find_edges(GnsGraph *graph, const GnsParticles *particles, float radius) {
-    fill_grid(graph, particles, radius);
-    for (int i = 0; i < graph->nodes; i++) {
-        const int last = graph->edges + GNS_NEIGHBOURS;
-        for (int y = -1; y <= 1; y++)
-            for (int x = -1; x <= 1; x++)
-                add_edges_from_cell(graph, particles, i, graph->cell[i][0] + x, graph->cell[i][1] + y, radius, last);
+        const GnsBody *to = &particles->body[i / BOX_PARTICLES], *from = &particles->body[j / BOX_PARTICLES];
+        float *inputs = graph->edge_inputs + (ptrdiff_t)graph->edges * GNS_EDGE_INPUTS;
+        inputs[0] = way.x;
+        inputs[1] = way.y;
+        inputs[2] = sqrtf(square);
+        inputs[3] = from->mass / (from->mass + to->mass);
+        inputs[4] = to == from ? 1.0f : 0.0f;
+        graph->receiver[graph->edges] = i;
+        graph->sender[graph->edges++] = j;
     }
 }
 
@@ -338,11 +292,32 @@ static void fill_node(GnsGraph *graph, const GnsParticles *particles, int i, con
 
 bool gns_graph_build(GnsGraph *graph, const GnsParticles *particles, const Box *ground, int count,
                      const GnsScales *scales) {
-    if (!gns_graph_reserve(graph, gns_particle_count(particles))) return false;
-    graph->nodes = gns_particle_count(particles);
+    const int nodes = gns_particle_count(particles), lists = list_count(nodes);
+    const size_t room = (size_t)nodes, edges = room * GNS_NEIGHBOURS;
+    if (!ARRAY_BLOCK_RESERVE(&graph->arrays, ARRAY_PART(graph->node_inputs, room * GNS_NODE_INPUTS),
+                             ARRAY_PART(graph->edge_inputs, edges * GNS_EDGE_INPUTS),
+                             ARRAY_PART(graph->receiver, edges), ARRAY_PART(graph->sender, edges),
+                             ARRAY_PART(graph->first, lists), ARRAY_PART(graph->next, room),
+                             ARRAY_PART(graph->cell, room)))
+        return false;
+    graph->nodes = nodes;
     graph->edges = 0;
     graph->beyond = false;
-    find_edges(graph, particles, scales->radius);
-    for (int i = 0; i < graph->nodes; i++) fill_node(graph, particles, i, ground, count, scales);
+    /* A grid of cells as wide as the radius. */
+    for (int i = 0; i < lists; i++) graph->first[i] = -1;
+    for (int i = nodes - 1; i >= 0; i--) { /* so each list rises */
+        graph->cell[i][0] = cell_of(particles->position[i].x, scales->radius);
+        graph->cell[i][1] = cell_of(particles->position[i].y, scales->radius);
+        const int list = list_of(graph->cell[i][0], graph->cell[i][1], lists);
+        graph->next[i] = graph->first[list];
+        graph->first[list] = i;
+    }
+    for (int i = 0; i < nodes; i++) {
+        const int last = graph->edges + GNS_NEIGHBOURS;
+        for (int y = -1; y <= 1; y++)
+            for (int x = -1; x <= 1; x++)
+                add_edges(graph, particles, i, graph->cell[i][0] + x, graph->cell[i][1] + y, scales->radius, last);
+    }
+    for (int i = 0; i < nodes; i++) fill_node(graph, particles, i, ground, count, scales);
     return true;
 }

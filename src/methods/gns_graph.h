@@ -28,9 +28,6 @@ void box_particles_place(Vec2 *particles, Vec2 size, const BodyPose *pose);
    same bits on every machine. */
 BodyPose box_particles_fit(const Vec2 *particles, Vec2 size, const BodyPose *near);
 
-/* m: the root of that mean square. */
-float box_particles_distance(const Vec2 *particles, Vec2 size, const BodyPose *pose);
-
 /* The angle of (cosine, sine), -pi to pi, without the maths library; the two need not have length 1. 0 for (0, 0). */
 double plane_angle(double cosine, double sine);
 

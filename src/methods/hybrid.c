@@ -65,7 +65,7 @@ static const SettingSpec settings[] = {
      SETTING_BOOL(Hybrid, retrieves)},
     {0}};
 
-static void hybrid_destroy(void *state) {
+static void destroy(void *state) {
     Hybrid *hybrid = state;
     if (hybrid == NULL) return;
     hybrid_memory_destroy(hybrid->own);
@@ -87,11 +87,11 @@ static Hybrid *make_hybrid(Error *error) {
     hybrid->retrieves = true;
     hybrid->interior = solver_interior.create(&converged, error);
     if (hybrid->interior != NULL) return hybrid;
-    hybrid_destroy(hybrid);
+    destroy(hybrid);
     return NULL;
 }
 
-static void *hybrid_create(const Settings *chosen, Error *error) {
+static void *create(const Settings *chosen, Error *error) {
     Hybrid *hybrid = make_hybrid(error);
     const char *path = settings_get(chosen, "network");
     if (hybrid == NULL) return NULL;
@@ -100,7 +100,7 @@ static void *hybrid_create(const Settings *chosen, Error *error) {
         ok = ((hybrid->path = strdup(path)) != NULL || error_memory(error, "hybrid")) &&
              (hybrid->memory = hybrid->own = hybrid_memory_read(path, error)) != NULL;
     if (ok) return hybrid;
-    hybrid_destroy(hybrid);
+    destroy(hybrid);
     return NULL;
 }
 
@@ -114,7 +114,7 @@ bool hybrid_make(ContactSolver *solver, const HybridMemory *memory, const Hybrid
 }
 
 /* Before the bomb appears there is one body less. */
-static bool hybrid_fits(const Hybrid *hybrid, const ContactProblem *problem, Error *error) {
+static bool fits(const Hybrid *hybrid, const ContactProblem *problem, Error *error) {
     const HybridMemory *memory = hybrid->memory;
     const char *where = hybrid->path != NULL ? hybrid->path : "hybrid";
     const int bodies = problem->bomb < 0 ? memory->body_count - 1 : memory->body_count;
@@ -126,18 +126,21 @@ static bool hybrid_fits(const Hybrid *hybrid, const ContactProblem *problem, Err
                        memory->scene, memory->bomb, problem->bomb);
 }
 
-static bool hybrid_reserve(Hybrid *hybrid, const ContactProblem *problem) {
+/* Fills `others`, and the key if there is a memory. False when memory is short. */
+static bool make_query(Hybrid *hybrid, const ContactProblem *problem, HybridQuery *query) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     const size_t words = bodies * sizeof(BodyWords) + sizeof problem->dt + contacts * sizeof(ContactWords);
-    return ARRAY_BLOCK_RESERVE(&hybrid->arrays, ARRAY_PART(hybrid->others, bodies * HYBRID_NUMBERS),
-                               ARRAY_PART(hybrid->words, words));
-}
-
-static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *problem) {
+    if (!ARRAY_BLOCK_RESERVE(&hybrid->arrays, ARRAY_PART(hybrid->others, bodies * HYBRID_NUMBERS),
+                             ARRAY_PART(hybrid->words, words)))
+        return false;
+    float *others = hybrid->others;
     char *at = hybrid->words;
     for (int i = 0; i < problem->body_count; i++, at += sizeof(BodyWords)) {
         const ProblemBody *body = &problem->bodies[i];
         memcpy(at, &(BodyWords){body->size.x, body->size.y, body->inv_mass, body->inv_inertia}, sizeof(BodyWords));
+        if (i == problem->bomb) continue;
+        hybrid_memory_numbers(body, body->angle, problem->dt, others);
+        others += HYBRID_NUMBERS;
     }
     memcpy(at, &problem->dt, sizeof problem->dt);
     at += sizeof problem->dt;
@@ -147,25 +150,13 @@ static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *proble
         const uint32_t feature = of_bomb ? scene_view_feature(problem, contact) : contact->feature;
         memcpy(at, &(ContactWords){contact->a, contact->b, feature, contact->friction}, sizeof(ContactWords));
     }
-    return hash_xxh3(hybrid->words, (size_t)(at - hybrid->words));
-}
-
-/* Fills `others`, and the key if there is a memory. */
-static HybridQuery make_query(Hybrid *hybrid, const ContactProblem *problem) {
     const ProblemBody *bomb = &problem->bodies[problem->bomb];
-    float *others = hybrid->others;
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        if (i == problem->bomb) continue;
-        hybrid_memory_numbers(body, body->angle, problem->dt, others);
-        others += HYBRID_NUMBERS;
-    }
     hybrid_memory_numbers(bomb, scene_view_angle(bomb), problem->dt, hybrid->bomb);
-    HybridQuery query = {hash_contacts(hybrid, problem), problem->contact_count, NULL};
-    if (hybrid->memory == NULL) return query;
+    *query = (HybridQuery){hash_xxh3(hybrid->words, words), problem->contact_count, NULL};
+    if (hybrid->memory == NULL) return true;
     hybrid_memory_key(hybrid->memory, hybrid->bomb, hybrid->others, hybrid->key);
-    query.key = hybrid->key;
-    return query;
+    query->key = hybrid->key;
+    return true;
 }
 
 static bool is_impact(const Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution) {
@@ -173,18 +164,6 @@ static bool is_impact(const Hybrid *hybrid, const ContactProblem *problem, Conta
     if (problem->bomb < 0) return false;
     sequential_impulses_begin(problem, &warm, solution);
     return residual_reaches_scalar(problem, solution, hybrid->memory != NULL ? hybrid->memory->gate : hybrid_gate);
-}
-
-static int clamp(const ContactProblem *problem, ContactImpulse *impulses) {
-    int outside = 0;
-    for (int i = 0; i < problem->contact_count; i++) {
-        ContactImpulse *impulse = &impulses[i], given = *impulse;
-        impulse->normal = given.normal > 0 ? given.normal : 0;
-        const float most = problem->contacts[i].friction * impulse->normal;
-        impulse->tangent = contact_clamp(given.tangent, -most, most);
-        outside += given.normal != impulse->normal || given.tangent != impulse->tangent;
-    }
-    return outside;
 }
 
 /* False for a NaN too. */
@@ -202,9 +181,14 @@ void hybrid_answer(const HybridMemory *memory, int entry, const float *key, cons
                    ContactSolution *solution) {
     contact_solution_begin(problem, solution);
     hybrid_memory_answer(memory, entry, key, solution->impulses);
-    solution->fallbacks.outside_cone += clamp(problem, solution->impulses);
-    for (int i = 0; i < problem->contact_count; i++)
-        contact_push(solution->velocities, &problem->contacts[i], problem->bodies, solution->impulses[i]);
+    for (int i = 0; i < problem->contact_count; i++) {
+        ContactImpulse *impulse = &solution->impulses[i], given = *impulse;
+        impulse->normal = given.normal > 0 ? given.normal : 0;
+        const float most = problem->contacts[i].friction * impulse->normal;
+        impulse->tangent = contact_clamp(given.tangent, -most, most);
+        solution->fallbacks.outside_cone += given.normal != impulse->normal || given.tangent != impulse->tangent;
+        contact_push(solution->velocities, &problem->contacts[i], problem->bodies, *impulse);
+    }
 }
 
 /* The fallbacks so far are added to those of interior. */
@@ -216,14 +200,14 @@ static bool converge(Hybrid *hybrid, const ContactProblem *problem, ContactSolut
     return true;
 }
 
-static bool hybrid_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Hybrid *hybrid = state;
-    if (hybrid->memory != NULL && !hybrid_fits(hybrid, problem, error)) return false;
+    if (hybrid->memory != NULL && !fits(hybrid, problem, error)) return false;
     solution->fallbacks = (Fallbacks){0};
     const bool asks = hybrid->retrieves && (hybrid->memory != NULL || hybrid->watch.see != NULL);
     if (!asks || !is_impact(hybrid, problem, solution)) return converge(hybrid, problem, solution, error);
-    if (!hybrid_reserve(hybrid, problem)) return error_memory(error, "hybrid");
-    const HybridQuery query = make_query(hybrid, problem);
+    HybridQuery query;
+    if (!make_query(hybrid, problem, &query)) return error_memory(error, "hybrid");
     HybridStep step = {problem, solution, query, hybrid->bomb, hybrid->others, -1};
     if (hybrid->memory != NULL) step.entry = hybrid_memory_find(hybrid->memory, &step.query);
     if (step.entry >= 0) {
@@ -250,6 +234,6 @@ const ContactSolverKind solver_hybrid = {
                     .chart = METHOD_RUNS("", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = hybrid_create,
-    .solve = hybrid_solve,
-    .destroy = hybrid_destroy};
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -12,24 +12,10 @@
 
 enum { LEAST_TABLE = 64 };
 
-static void hybrid_memory_put(HybridMemory *memory, int set) {
+static void put(HybridMemory *memory, int set) {
     size_t at = (size_t)memory->set_hash[set] & (memory->table_size - 1);
     while (memory->table[at] >= 0) at = (at + 1) & (memory->table_size - 1);
     memory->table[at] = set;
-}
-
-/* Keeps the table at most half full, so that searches are short. */
-static bool grow_table(HybridMemory *memory) {
-    if (2 * ((size_t)memory->set_count + 1) <= memory->table_size) return true;
-    const size_t size = memory->table_size > 0 ? 2 * memory->table_size : LEAST_TABLE;
-    int32_t *table = malloc(size * sizeof *table);
-    if (table == NULL) return false;
-    free(memory->table);
-    memory->table = table;
-    memory->table_size = size;
-    for (size_t i = 0; i < size; i++) table[i] = -1;
-    for (int set = 0; set < memory->set_count; set++) hybrid_memory_put(memory, set);
-    return true;
 }
 
 /* Gives an array that keeps its items room for `count` of `size` bytes. False when memory is short; the array stays
@@ -58,12 +44,22 @@ int hybrid_memory_add_set(HybridMemory *memory, uint64_t hash, int contacts) {
             return -1;
         memory->set_capacity = count;
     }
-    if (!grow_table(memory)) return -1;
+    /* The table stays at most half full, so that searches are short. */
+    if (2 * ((size_t)memory->set_count + 1) > memory->table_size) {
+        const size_t size = memory->table_size > 0 ? 2 * memory->table_size : LEAST_TABLE;
+        int32_t *table = malloc(size * sizeof *table);
+        if (table == NULL) return -1;
+        free(memory->table);
+        memory->table = table;
+        memory->table_size = size;
+        for (size_t i = 0; i < size; i++) table[i] = -1;
+        for (int known = 0; known < memory->set_count; known++) put(memory, known);
+    }
     const int set = memory->set_count++;
     memory->set_hash[set] = hash;
     memory->set_contacts[set] = contacts;
     memory->set_lists[set] = (HybridList){0};
-    hybrid_memory_put(memory, set);
+    put(memory, set);
     return set;
 }
 
@@ -82,21 +78,6 @@ static int place_of(const HybridMemory *memory, const HybridList *list, float x)
             high = middle;
     }
     return low;
-}
-
-/* Room for one more entry in a set's list; false when memory is short. Then the entry, added last, goes to its
-   place. */
-static bool reserve_list(HybridMemory *memory, int set) {
-    HybridList *list = &memory->set_lists[set];
-    return array_reserve((void **)&list->entries, &list->capacity, (size_t)list->count + 1, sizeof *list->entries);
-}
-
-static void insert_listed(HybridMemory *memory, int entry) {
-    HybridList *list = &memory->set_lists[memory->entry_set[entry]];
-    int at = place_of(memory, list, first_number(memory, entry));
-    for (int i = list->count++; i > at; i--) list->entries[i] = list->entries[i - 1];
-    list->entries[at] = entry;
-    if (memory->reach[entry] > list->reach) list->reach = memory->reach[entry];
 }
 
 const int32_t *hybrid_memory_about(const HybridMemory *memory, const HybridQuery *query, float radius, int *count) {
@@ -143,7 +124,7 @@ void hybrid_memory_key(const HybridMemory *memory, const float *bomb, const floa
 }
 
 /* product[i] = row i of M times `from`; returns from^T M from. */
-static float hybrid_memory_apply(const HybridMemory *memory, int entry, const float *from, float *product) {
+static float apply(const HybridMemory *memory, int entry, const float *from, float *product) {
     const float *metric = memory->metrics + (size_t)entry * (size_t)memory->metric_size;
     float sum = 0;
     for (int i = 0; i < memory->key_size; i++) product[i] = 0;
@@ -173,7 +154,7 @@ static float take_away(const HybridMemory *memory, int entry, const float *key, 
 float hybrid_memory_distance(const HybridMemory *memory, int entry, const float *key) {
     float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
     take_away(memory, entry, key, from);
-    return hybrid_memory_apply(memory, entry, from, product);
+    return apply(memory, entry, from, product);
 }
 
 /* The most central of the entries, at most `least` from the query. */
@@ -184,7 +165,7 @@ static int search(const HybridMemory *memory, const HybridQuery *query, float ra
     const bool inside = least <= 1;
     for (int i = 0; i < count; i++) {
         if (take_away(memory, entries[i], query->key, from) > memory->reach[entries[i]] && inside) continue;
-        const float distance = hybrid_memory_apply(memory, entries[i], from, product);
+        const float distance = apply(memory, entries[i], from, product);
         if (distance > least) continue;
         least = distance;
         best = entries[i];
@@ -226,8 +207,7 @@ void hybrid_memory_answer(const HybridMemory *memory, int entry, const float *ke
    M-orthogonal to d has. For s > 1 this is the smallest ellipsoid that contains the old one and d (Pope 1997, 3.4). */
 void hybrid_memory_stretch(HybridMemory *memory, int entry, const float *key) {
     float from[HYBRID_KEY_MAX] = {0}, product[HYBRID_KEY_MAX];
-    const float length = take_away(memory, entry, key, from),
-                distance = hybrid_memory_apply(memory, entry, from, product);
+    const float length = take_away(memory, entry, key, from), distance = apply(memory, entry, from, product);
     if (!(distance > FLT_MIN)) return;
     const float factor = (1 - distance) / (distance * distance);
     float *metric = memory->metrics + (size_t)entry * (size_t)memory->metric_size;
@@ -265,15 +245,10 @@ HybridMemory *hybrid_memory_create(int body_count, int bomb, int components, Err
                     HYBRID_BODIES_MAX);
         return NULL;
     }
-    if (components < 1 || components > HYBRID_COMPONENTS_MAX) {
-        error_input(error, "hybrid", "%d components; expected 1 to %d", components, HYBRID_COMPONENTS_MAX);
-        return NULL;
-    }
+    if (components < 1 || components > HYBRID_COMPONENTS_MAX)
+        return error_input(error, "hybrid", "%d components; expected 1 to %d", components, HYBRID_COMPONENTS_MAX), NULL;
     HybridMemory *memory = calloc(1, sizeof *memory);
-    if (memory == NULL) {
-        error_memory(error, "hybrid");
-        return NULL;
-    }
+    if (memory == NULL) return error_memory(error, "hybrid"), NULL;
     memory->body_count = body_count;
     memory->bomb = bomb;
     memory->components = components;
@@ -331,7 +306,10 @@ bool hybrid_memory_add(HybridMemory *memory, const HybridQuery *query, const Hyb
         return error_memory(error, "hybrid");
     int set = hybrid_memory_set(memory, query->hash, query->contacts);
     if (set < 0) set = hybrid_memory_add_set(memory, query->hash, query->contacts);
-    if (set < 0 || !reserve_list(memory, set)) return error_memory(error, "hybrid");
+    HybridList *list = set < 0 ? NULL : &memory->set_lists[set];
+    if (list == NULL ||
+        !array_reserve((void **)&list->entries, &list->capacity, (size_t)list->count + 1, sizeof *list->entries))
+        return error_memory(error, "hybrid");
     memory->entry_set[e] = set;
     memory->entry_begin[e] = memory->impulse_count;
     memory->reach[e] = entry->reach;
@@ -344,6 +322,10 @@ bool hybrid_memory_add(HybridMemory *memory, const HybridQuery *query, const Hyb
                (size_t)query->contacts * sizeof *entry->impulses);
     memory->impulse_count += (size_t)query->contacts;
     memory->entry_count++;
-    insert_listed(memory, (int)e);
+    /* To its place in the list, by its first number. */
+    const int place = place_of(memory, list, first_number(memory, (int)e));
+    for (int i = list->count++; i > place; i--) list->entries[i] = list->entries[i - 1];
+    list->entries[place] = (int32_t)e;
+    if (memory->reach[e] > list->reach) list->reach = memory->reach[e];
     return true;
 }

@@ -77,7 +77,7 @@ static bool read_sizes(void *of, NpzFile *file, Error *error) {
 }
 
 /* One block: the hashes, then integers, then floats. */
-static bool hybrid_memory_file_create(void *of, Error *error) {
+static bool make_block(void *of, Error *error) {
     Contents *contents = of;
     const HybridMemory *memory = contents->memory;
     const size_t sets = (size_t)contents->sets, entries = (size_t)contents->entries, key = (size_t)memory->key_size,
@@ -96,8 +96,14 @@ static bool hybrid_memory_file_create(void *of, Error *error) {
     return true;
 }
 
-static bool add_sets(const Contents *contents, const char *path, Error *error) {
+/* Sets first; then the entries, whose neighbours are of their own sets, and whose contacts are as many as the
+   impulses. */
+static bool fill_memory(void *of, const char *path, Error *error) {
+    const Contents *contents = of;
     HybridMemory *memory = contents->memory;
+    const size_t key = (size_t)memory->key_size;
+    int64_t impulses = 0;
+    if (memory->launches < 0) return error_input(error, path, "launches is %d; expected at least 0", memory->launches);
     for (int64_t i = 0; i < contents->sets; i++) {
         const int contacts = contents->set_contacts[i];
         if (contacts < 0 || contacts > HYBRID_CONTACTS_MAX)
@@ -107,12 +113,6 @@ static bool add_sets(const Contents *contents, const char *path, Error *error) {
             return error_input(error, path, "set_hash: number %lld is there twice", (long long)i);
         if (hybrid_memory_add_set(memory, contents->set_hash[i], contacts) < 0) return error_memory(error, path);
     }
-    return true;
-}
-
-/* The entries' neighbours are of their own sets, and the impulses are as many as the contacts. */
-static bool check_entries(const Contents *contents, const char *path, Error *error) {
-    int64_t impulses = 0;
     for (int64_t i = 0; i < contents->entries; i++) {
         const int32_t set = contents->entry_set[i];
         if (set < 0 || set >= contents->sets)
@@ -130,12 +130,6 @@ static bool check_entries(const Contents *contents, const char *path, Error *err
             return error_input(error, path, "near: number %lld is %d, which is no entry of the same contacts",
                                (long long)i, (int)near);
     }
-    return true;
-}
-
-static bool add_entries(const Contents *contents, Error *error) {
-    HybridMemory *memory = contents->memory;
-    const size_t key = (size_t)memory->key_size;
     const ContactImpulse *pushes = (const ContactImpulse *)contents->pushes;
     for (size_t i = 0; i < (size_t)contents->entries; i++) {
         const int set = contents->entry_set[i];
@@ -148,14 +142,7 @@ static bool add_entries(const Contents *contents, Error *error) {
     return true;
 }
 
-static bool fill_memory(void *of, const char *path, Error *error) {
-    const int launches = ((Contents *)of)->memory->launches;
-    if (launches < 0) return error_input(error, path, "launches is %d; expected at least 0", launches);
-    return add_sets(of, path, error) && check_entries(of, path, error) && add_entries(of, error);
-}
-
-static const NetFileKind kind = {"hybrid",   HYBRID_VERSION, list_fields, read_sizes, hybrid_memory_file_create,
-                                 fill_memory};
+static const NetFileKind kind = {"hybrid", HYBRID_VERSION, list_fields, read_sizes, make_block, fill_memory};
 
 bool hybrid_memory_write(const HybridMemory *memory, const char *path, Error *error) {
     if (memory->entry_count == 0) return error_input(error, path, "the memory is empty: there is nothing to write");

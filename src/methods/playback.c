@@ -36,7 +36,7 @@ static const SettingSpec settings[] = {{"launches", "recorded launches, spread o
                                         SETTING_INT(Playback, launch_count, 1, 10000)},
                                        {0}};
 
-static void playback_destroy(void *state) {
+static void destroy(void *state) {
     Playback *playback = state;
     free(playback->launches);
     free(playback->before);
@@ -45,8 +45,8 @@ static void playback_destroy(void *state) {
 }
 
 /* Steps world from after step `first` - 1 to step `last`; out: [steps, bodies of world]. */
-static bool playback_record(Stepper *stepper, World *world, const Scene *scene, int first, int last, BodyVelocity *out,
-                            Error *error) {
+static bool record(Stepper *stepper, World *world, const Scene *scene, int first, int last, BodyVelocity *out,
+                   Error *error) {
     for (int frame = first; frame <= last; frame++) {
         const Step step = {.scene = scene, .frame = frame};
         if (!stepper_step(stepper, world, &step, error)) return false;
@@ -57,65 +57,55 @@ static bool playback_record(Stepper *stepper, World *world, const Scene *scene, 
     return true;
 }
 
-static bool record_launches(Playback *playback, Stepper *stepper, const Scene *scene, World *start, World *world,
-                            Error *error) {
-    if (!playback_record(stepper, start, scene, 1, playback->frames_before, playback->before, error)) return false;
-    size_t size = (size_t)playback->frames * (size_t)playback->bodies;
-    for (int i = 0; i < playback->launch_count; i++) {
-        Scene launched = launch_scene(scene, &playback->launches[i]);
-        if (!world_copy(world, start, error) || !scene_add_bomb(&launched, world, error) ||
-            !playback_record(stepper, world, &launched, playback->frames_before + 1, scene->frames,
-                             playback->after + (size_t)i * size, error))
-            return false;
-    }
-    return true;
-}
-
-static bool playback_allocate(Playback *playback, const Scene *scene, Error *error) {
-    playback->bodies = scene->body_count + 1;
-    playback->frames_before = scene->bomb.frame;
-    playback->frames = scene->frames - scene->bomb.frame;
-    size_t before = (size_t)playback->frames_before * (size_t)scene->body_count;
-    size_t after = (size_t)playback->launch_count * (size_t)playback->frames * (size_t)playback->bodies;
-    if (before + after > PLAYBACK_MAX_STATES)
-        return error_input(error, "playback", "%d launches of scene %s are too many to record", playback->launch_count,
-                           scene->name);
-    playback->launches = calloc((size_t)playback->launch_count, sizeof *playback->launches);
-    playback->before = malloc((before + 1) * sizeof *playback->before);
-    playback->after = malloc((after + 1) * sizeof *playback->after);
-    if (playback->launches == NULL || playback->before == NULL || playback->after == NULL)
-        return error_memory(error, "playback");
-    return launches_for_training(scene, playback->launch_count, playback->launches, error);
-}
-
-/* Makes the recordings. */
-static bool playback_fill(Playback *playback, const Scene *scene, Error *error) {
+/* Makes room for the recordings, and makes them. */
+static bool fill(Playback *playback, const Scene *scene, Error *error) {
     Method method;
     Scene without = *scene;
     without.bomb.present = false;
-    if (!method_parse(&method, recorder, error)) return false;
+    playback->bodies = scene->body_count + 1;
+    playback->frames_before = scene->bomb.frame;
+    playback->frames = scene->frames - scene->bomb.frame;
+    const size_t launches = (size_t)playback->launch_count, size = (size_t)playback->frames * (size_t)playback->bodies,
+                 before = (size_t)playback->frames_before * (size_t)scene->body_count;
+    if (before + launches * size > PLAYBACK_MAX_STATES)
+        return error_input(error, "playback", "%d launches of scene %s are too many to record", playback->launch_count,
+                           scene->name);
+    playback->launches = calloc(launches, sizeof *playback->launches);
+    playback->before = malloc((before + 1) * sizeof *playback->before);
+    playback->after = malloc((launches * size + 1) * sizeof *playback->after);
+    if (playback->launches == NULL || playback->before == NULL || playback->after == NULL)
+        return error_memory(error, "playback");
+    if (!launches_for_training(scene, playback->launch_count, playback->launches, error) ||
+        !method_parse(&method, recorder, error))
+        return false;
     Stepper *stepper = stepper_create(&method, scene, error);
     World *start = scene_world(&without, error), *world = scene_world(&without, error);
     bool ok = stepper != NULL && start != NULL && world != NULL &&
-              record_launches(playback, stepper, scene, start, world, error);
+              record(stepper, start, scene, 1, playback->frames_before, playback->before, error);
+    for (size_t i = 0; ok && i < launches; i++) {
+        const Scene launched = launch_scene(scene, &playback->launches[i]);
+        ok = world_copy(world, start, error) && scene_add_bomb(&launched, world, error) &&
+             record(stepper, world, &launched, playback->frames_before + 1, scene->frames, playback->after + i * size,
+                    error);
+    }
     stepper_destroy(stepper);
     world_destroy(start);
     world_destroy(world);
     return ok;
 }
 
-static void *playback_create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Playback standard = {.launch_count = 100};
     Playback *playback = settings_make(chosen, settings, &standard, sizeof standard, "playback", error);
     if (playback == NULL) return NULL;
     bool ok = scene->bomb.present && scene->bomb.frame <= scene->frames;
     if (!ok) error_input(error, "playback", "scene %s has no bomb: nothing to play back", scene->name);
-    if (ok && playback_allocate(playback, scene, error) && playback_fill(playback, scene, error)) return playback;
-    playback_destroy(playback);
+    if (ok && fill(playback, scene, error)) return playback;
+    destroy(playback);
     return NULL;
 }
 
-static float playback_distance(const Launch *a, const Launch *b) {
+static float distance(const Launch *a, const Launch *b) {
     return fabsf(a->x - b->x) + fabsf(a->rotation - b->rotation) + fabsf(a->spin - b->spin) + fabsf(a->mass - b->mass);
 }
 
@@ -125,8 +115,7 @@ static const BodyVelocity *nearest(Playback *playback, const Launch *launch) {
         return playback->last_nearest;
     int best = 0;
     for (int i = 1; i < playback->launch_count; i++)
-        if (playback_distance(launch, &playback->launches[i]) < playback_distance(launch, &playback->launches[best]))
-            best = i;
+        if (distance(launch, &playback->launches[i]) < distance(launch, &playback->launches[best])) best = i;
     playback->last = *launch;
     playback->last_nearest = playback->after + (size_t)best * (size_t)playback->frames * (size_t)playback->bodies;
     return playback->last_nearest;
@@ -145,7 +134,7 @@ static const BodyVelocity *recorded(Playback *playback, const Step *which, int *
     return run + (size_t)(frame - 1) * (size_t)*bodies;
 }
 
-static bool playback_solve(void *state, BegunStep *begun, Error *error) {
+static bool solve(void *state, BegunStep *begun, Error *error) {
     (void)error;
     int bodies;
     const BodyVelocity *velocities = recorded(state, begun->step, &bodies);
@@ -165,6 +154,6 @@ const SteppingKind stepping_playback = {
                     .chart = METHOD_RUNS("launches=25", "launches=100"),
                     .chart_quick = METHOD_RUNS("launches=25"),
                     .stability = METHOD_NO_RUNS},
-    .create = playback_create,
-    .solve = playback_solve,
-    .destroy = playback_destroy};
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -58,18 +58,8 @@ void sain_answers_free(SainAnswers *answers) {
     *answers = (SainAnswers){0};
 }
 
-static bool sain_reserve(SainAnswers *answers, const SainNetwork *network, const SainView *view) {
-    const size_t bodies = (size_t)view->body_count + 1, rows = (size_t)view->row_count + 1,
-                 relation = network_batch_scratch(network->relation), object = network_batch_scratch(network->object);
-    return ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * SAIN_OUTPUTS),
-                               ARRAY_PART(answers->known, bodies), ARRAY_PART(answers->effects, rows * SAIN_EFFECTS),
-                               ARRAY_PART(answers->inputs, bodies * SAIN_OBJECT_INPUTS),
-                               ARRAY_PART(answers->columns, bodies * SAIN_OUTPUTS),
-                               ARRAY_PART(answers->scratch, relation > object ? relation : object));
-}
-
 /* A NaN counts as outside, and is moved to the lower end. */
-static bool sain_check(float *numbers, int stride, int count, const float *low, const float *high, bool clamp) {
+static bool into_range(float *numbers, int stride, int count, const float *low, const float *high, bool clamp) {
     bool inside = true;
     for (int i = 0; i < count; i++) {
         float *x = &numbers[i * stride];
@@ -80,45 +70,43 @@ static bool sain_check(float *numbers, int stride, int count, const float *low, 
     return inside;
 }
 
-static void check_ranges(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
-    for (int b = 0; b < view->body_count; b++) {
+bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
+    const size_t bodies = (size_t)view->body_count + 1, rows = (size_t)view->row_count + 1,
+                 relation = network_batch_scratch(network->relation), object = network_batch_scratch(network->object);
+    if (!ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * SAIN_OUTPUTS),
+                             ARRAY_PART(answers->known, bodies), ARRAY_PART(answers->effects, rows * SAIN_EFFECTS),
+                             ARRAY_PART(answers->inputs, bodies * SAIN_OBJECT_INPUTS),
+                             ARRAY_PART(answers->columns, bodies * SAIN_OUTPUTS),
+                             ARRAY_PART(answers->scratch, relation > object ? relation : object)))
+        return false;
+    const int count = view->body_count;
+    for (int b = 0; b < count; b++) {
         const SainBody *body = &view->bodies[b];
-        bool known = sain_check(view->body_inputs + b, view->body_count, SAIN_BODY_INPUTS, network->body_low,
-                                network->body_high, clamp);
+        bool known =
+            into_range(view->body_inputs + b, count, SAIN_BODY_INPUTS, network->body_low, network->body_high, clamp);
         for (int r = body->first; r < body->first + body->rows; r++)
-            known = sain_check(view->pair_inputs + r, view->row_count, SAIN_PAIR_INPUTS, network->pair_low,
+            known = into_range(view->pair_inputs + r, view->row_count, SAIN_PAIR_INPUTS, network->pair_low,
                                network->pair_high, clamp) &&
                     known;
         answers->known[b] = known;
     }
-}
+    if (count == 0) return true;
+    network_predict_batch(network->relation, view->pair_inputs, answers->scratch, answers->effects, view->row_count);
 
-/* Body inputs, and the sums of effects in the order of the rows. */
-static void fill_object_inputs(SainAnswers *answers, const SainView *view) {
-    const int bodies = view->body_count;
-    memcpy(answers->inputs, view->body_inputs, (size_t)bodies * SAIN_BODY_INPUTS * sizeof *answers->inputs);
+    /* The object network sees the body's inputs, and the sums of effects in the order of the rows. */
+    memcpy(answers->inputs, view->body_inputs, (size_t)count * SAIN_BODY_INPUTS * sizeof *answers->inputs);
     for (int e = 0; e < SAIN_EFFECTS; e++) {
         const float *effects = answers->effects + (ptrdiff_t)e * view->row_count;
-        float *sums = answers->inputs + (ptrdiff_t)(SAIN_BODY_INPUTS + e) * bodies;
-        for (int b = 0; b < bodies; b++) {
+        for (int b = 0; b < count; b++) {
             const SainBody *body = &view->bodies[b];
             float sum = 0;
             for (int r = body->first; r < body->first + body->rows; r++) sum += effects[r];
-            sums[b] = sum;
+            answers->inputs[(SAIN_BODY_INPUTS + e) * count + b] = sum;
         }
     }
-}
-
-bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
-    if (!sain_reserve(answers, network, view)) return false;
-    check_ranges(answers, network, view, clamp);
-    if (view->body_count == 0) return true;
-    network_predict_batch(network->relation, view->pair_inputs, answers->scratch, answers->effects, view->row_count);
-    fill_object_inputs(answers, view);
-    network_predict_batch(network->object, answers->inputs, answers->scratch, answers->columns, view->body_count);
-    for (int b = 0; b < view->body_count; b++)
-        for (int o = 0; o < SAIN_OUTPUTS; o++)
-            answers->outputs[b * SAIN_OUTPUTS + o] = answers->columns[o * view->body_count + b];
+    network_predict_batch(network->object, answers->inputs, answers->scratch, answers->columns, count);
+    for (int b = 0; b < count; b++)
+        for (int o = 0; o < SAIN_OUTPUTS; o++) answers->outputs[b * SAIN_OUTPUTS + o] = answers->columns[o * count + b];
     return true;
 }
 
@@ -190,7 +178,7 @@ static const SettingSpec settings[] = {
     {"net", "on|off: off is the engine alone (default: on)", SETTING_BOOL(Sain, predicts)},
     {0}};
 
-static void sain_destroy(void *state) {
+static void destroy(void *state) {
     Sain *solver = state;
     if (solver == NULL) return;
     sain_networks_destroy(&solver->own);
@@ -211,33 +199,28 @@ static Sain *make_sain(Error *error) {
     if (settings_parse(&of_engine, SAIN_ENGINE_SETTINGS, solver_engine.description.settings, "sain", error))
         solver->engine = solver_engine.create(&of_engine, error);
     if (solver->engine != NULL) return solver;
-    sain_destroy(solver);
+    destroy(solver);
     return NULL;
 }
 
-static bool read_form(const Settings *chosen, SainForm *form, Error *error) {
-    const char *name = settings_get(chosen, "engine");
-    if (name == NULL) return true;
-    NameList known = {0};
-    for (SainForm f = 0; f < SAIN_FORMS; f++) {
-        name_list_add(&known, sain_form_names[f]);
-        if (strcmp(sain_form_names[f], name) != 0) continue;
-        *form = f;
-        return true;
-    }
-    return error_unknown(error, "engine", name, "a form of sain", &known);
-}
-
-static void *sain_create(const Settings *chosen, Error *error) {
-    const char *path = method_network(chosen, NULL, "sain", error);
+static void *create(const Settings *chosen, Error *error) {
+    const char *path = method_network(chosen, NULL, "sain", error), *name = settings_get(chosen, "engine");
     Sain *solver = path != NULL ? make_sain(error) : NULL;
     if (solver == NULL) return NULL;
-    if (read_form(chosen, &solver->form, error) && settings_read(chosen, settings, solver, error) &&
-        sain_networks_read(&solver->own, path, error)) {
+    NameList known = {0};
+    bool found = name == NULL;
+    for (SainForm f = 0; f < SAIN_FORMS; f++) {
+        name_list_add(&known, sain_form_names[f]);
+        if (name == NULL || strcmp(sain_form_names[f], name) != 0) continue;
+        solver->form = f;
+        found = true;
+    }
+    if ((found || error_unknown(error, "engine", name, "a form of sain", &known)) &&
+        settings_read(chosen, settings, solver, error) && sain_networks_read(&solver->own, path, error)) {
         solver->network = &solver->own.forms[solver->form];
         return solver;
     }
-    sain_destroy(solver);
+    destroy(solver);
     return NULL;
 }
 
@@ -250,20 +233,9 @@ bool sain_make(ContactSolver *solver, const SainNetwork *network, SainForm form,
     return true;
 }
 
-/* All are finite and within the limits of the training data. */
-static bool is_usable(const float *outputs, const float *limit, const BodyVelocity *velocity) {
-    for (int o = 0; o < SAIN_OUTPUTS; o++)
-        if (!(fabsf(outputs[o]) <= limit[o])) return false;
-    return isfinite(velocity->linear.x) && isfinite(velocity->linear.y) && isfinite(velocity->angular);
-}
-
-/* N s: the momentum that the step's impulses do not account for. */
-static float created_momentum(const ProblemBody *body, const BodyVelocity *velocity, const BodyVelocity *by_impulses) {
-    const Vec2 change = vec2_sub(velocity->linear, by_impulses->linear);
-    return body->inv_mass > 0.0f ? sqrtf(vec2_dot(change, change)) / body->inv_mass : 0.0f;
-}
-
-static void sain_correct(Sain *solver, const ContactProblem *problem, ContactSolution *solution) {
+/* Adds the answers to the velocities of the bodies that they are usable for: finite, and within the limits of the
+   training data. */
+static void correct(Sain *solver, const ContactProblem *problem, ContactSolution *solution) {
     const SainView *view = &solver->view;
     bool all_known = true;
     for (int b = 0; b < view->body_count; b++) {
@@ -272,17 +244,21 @@ static void sain_correct(Sain *solver, const ContactProblem *problem, ContactSol
         const BodyVelocity velocity = sain_corrected(body, outputs), before = solution->velocities[body->body];
         all_known = all_known && solver->answers.known[b];
         if (!solver->answers.known[b] && solver->form != SAIN_ALONE) continue;
-        if (!is_usable(outputs, solver->network->limit, &velocity)) {
+        bool usable = isfinite(velocity.linear.x) && isfinite(velocity.linear.y) && isfinite(velocity.angular);
+        for (int o = 0; o < SAIN_OUTPUTS; o++) usable = usable && fabsf(outputs[o]) <= solver->network->limit[o];
+        if (!usable) {
             solution->fallbacks.not_finite++;
             continue;
         }
+        const Vec2 change = vec2_sub(velocity.linear, before.linear);
+        const float inv_mass = problem->bodies[body->body].inv_mass;
         solution->velocities[body->body] = velocity;
-        solution->momentum_error += created_momentum(&problem->bodies[body->body], &velocity, &before);
+        if (inv_mass > 0) solution->momentum_error += sqrtf(vec2_dot(change, change)) / inv_mass; /* no impulse's */
     }
     solution->fallbacks.beyond_training = !all_known;
 }
 
-static bool sain_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Sain *solver = state;
     const bool alone = solver->form == SAIN_ALONE && solver->predicts;
     if (alone)
@@ -295,7 +271,7 @@ static bool sain_solve(void *state, const ContactProblem *problem, ContactSoluti
         return error_memory(error, "sain");
     solution->momentum_error = 0;
     solution->fallbacks = (Fallbacks){0};
-    sain_correct(solver, problem, solution);
+    correct(solver, problem, solution);
     return true;
 }
 
@@ -309,6 +285,6 @@ const ContactSolverKind solver_sain = {
                     .chart = METHOD_RUNS("", "engine=off", "engine=shuffled", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = sain_create,
-    .solve = sain_solve,
-    .destroy = sain_destroy};
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -72,15 +72,6 @@ static void show_engine(SainView *view, const ContactProblem *problem, const Bod
     }
 }
 
-static void warm_up(SainView *view, const ContactProblem *problem) {
-    for (int i = 0; i < problem->body_count; i++) view->warmed[i] = velocity_before(&problem->bodies[i]);
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        contact_push(view->warmed, contact, problem->bodies,
-                     (ContactImpulse){contact->warm_normal, contact->warm_tangent});
-    }
-}
-
 /* Receivers in the order of the problem, with the numbers of their rows. */
 static void find_receivers(SainView *view, const ContactProblem *problem) {
     for (int i = 0; i < problem->body_count; i++) view->receivers[i] = 0;
@@ -132,18 +123,6 @@ static void add_row(SainView *view, const ContactProblem *problem, int first, in
     row.before = vec2_sub(velocity_at(&before_sender, arm), velocity_at(&before, row.at));
     row.after = vec2_sub(velocity_at(&view->changed[row.sender], arm), velocity_at(&body->base, row.at));
     view->rows[body->first + body->rows++] = row;
-}
-
-static void find_rows(SainView *view, const ContactProblem *problem) {
-    for (int first = 0, points; first < problem->contact_count; first += points) {
-        const ContactPoint *contact = &problem->contacts[first];
-        points = 1;
-        while (first + points < problem->contact_count && contact[points].a == contact->a &&
-               contact[points].b == contact->b)
-            points++;
-        add_row(view, problem, first, points, true);
-        add_row(view, problem, first, points, false);
-    }
 }
 
 /* What the engine did to a body, in the frame and with the radius of a receiver. */
@@ -251,20 +230,30 @@ static void fill_body(const SainView *view, const ContactProblem *problem, int b
     for (int i = 0; i < SAIN_BODY_INPUTS; i++) view->body_inputs[i * view->body_count + b] = inputs[i];
 }
 
-static bool sain_view_reserve(SainView *view, const ContactProblem *problem) {
-    const size_t bodies = (size_t)problem->body_count + 1, rows = 2 * (size_t)problem->contact_count + 1;
-    return ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->bodies, bodies), ARRAY_PART(view->changed, bodies),
-                               ARRAY_PART(view->warmed, bodies), ARRAY_PART(view->receivers, bodies),
-                               ARRAY_PART(view->rows, rows), ARRAY_PART(view->pair_inputs, rows * SAIN_PAIR_INPUTS),
-                               ARRAY_PART(view->body_inputs, bodies * SAIN_BODY_INPUTS));
-}
-
 bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form) {
-    if (!sain_view_reserve(view, problem)) return false;
+    const size_t bodies = (size_t)problem->body_count + 1, rows = 2 * (size_t)problem->contact_count + 1;
+    if (!ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->bodies, bodies), ARRAY_PART(view->changed, bodies),
+                             ARRAY_PART(view->warmed, bodies), ARRAY_PART(view->receivers, bodies),
+                             ARRAY_PART(view->rows, rows), ARRAY_PART(view->pair_inputs, rows * SAIN_PAIR_INPUTS),
+                             ARRAY_PART(view->body_inputs, bodies * SAIN_BODY_INPUTS)))
+        return false;
     show_engine(view, problem, engine, form);
-    warm_up(view, problem);
+    for (int i = 0; i < problem->body_count; i++) view->warmed[i] = velocity_before(&problem->bodies[i]);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        contact_push(view->warmed, contact, problem->bodies,
+                     (ContactImpulse){contact->warm_normal, contact->warm_tangent});
+    }
     find_receivers(view, problem);
-    find_rows(view, problem);
+    for (int first = 0, points; first < problem->contact_count; first += points) {
+        const ContactPoint *contact = &problem->contacts[first];
+        points = 1;
+        while (first + points < problem->contact_count && contact[points].a == contact->a &&
+               contact[points].b == contact->b)
+            points++;
+        add_row(view, problem, first, points, true);
+        add_row(view, problem, first, points, false);
+    }
     for (int b = 0; b < view->body_count; b++) find_pace(view, problem, form, &view->bodies[b]);
     for (int b = 0; b < view->body_count; b++) {
         const SainBody *body = &view->bodies[b];

@@ -51,10 +51,9 @@ typedef struct SainView {
     float *pair_inputs; /* [SAIN_PAIR_INPUTS, row_count] */
     float *body_inputs; /* [SAIN_BODY_INPUTS, body_count] */
     /* while it is made: */
-    BodyVelocity
-        *changed; /* [bodies of the problem] velocities after what the engine did, as far as the form shows it */
-    BodyVelocity *warmed; /* [bodies of the problem] velocities after the impulses of the step before */
-    int *receivers;       /* [bodies of the problem] index in bodies, or -1 */
+    BodyVelocity *changed; /* [bodies of the problem] after what the engine did, as far as the form shows it */
+    BodyVelocity *warmed;  /* [bodies of the problem] after the impulses of the step before */
+    int *receivers;        /* [bodies of the problem] index in bodies, or -1 */
     struct SainViewRow *rows;
     ArrayBlock arrays;
 } SainView;

@@ -39,17 +39,6 @@ void scene_view_free(SceneView *view) {
     *view = (SceneView){0};
 }
 
-static bool reserve_view(SceneView *view, const ContactProblem *problem) {
-    const size_t contacts = (size_t)problem->contact_count + 1, bodies = (size_t)problem->body_count;
-    if (!ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->state, bodies * SLOT_BODY_NUMBERS),
-                             ARRAY_PART(view->ones, contacts), ARRAY_PART(view->warm, 2 * contacts),
-                             ARRAY_PART(view->present, contacts), ARRAY_PART(view->impulses, 2 * contacts),
-                             ARRAY_PART(view->contacts, contacts), ARRAY_PART(view->base, contacts)))
-        return false;
-    for (size_t i = 0; i < contacts; i++) view->ones[i] = 1;
-    return true;
-}
-
 static void load_body(float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) {
     numbers[0] = body->position.x;
     numbers[1] = body->position.y;
@@ -78,18 +67,14 @@ static uint32_t turn_edges(uint32_t edges, int turns) {
     return turned;
 }
 
-static uint32_t turn_feature(uint32_t feature, bool of_a, int turns) {
-    const uint32_t a = feature & 0xffff, b = feature >> 16;
-    return of_a ? turn_edges(a, turns) | b << 16 : a | turn_edges(b, turns) << 16;
-}
-
 /* 0 .. 3 */
 static int turns_modulo_4(float turns) { return (int)(turns - 4 * floorf(turns / 4)); }
 
 /* With the bomb rotated back by so many quarter turns. */
 static uint32_t feature_of(const ContactProblem *problem, const ContactPoint *contact, int turns) {
     if (contact->a != problem->bomb && contact->b != problem->bomb) return contact->feature;
-    return turn_feature(contact->feature, contact->a == problem->bomb, turns);
+    const uint32_t a = contact->feature & 0xffff, b = contact->feature >> 16;
+    return contact->a == problem->bomb ? turn_edges(a, turns) | b << 16 : a | turn_edges(b, turns) << 16;
 }
 
 uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact) {
@@ -116,7 +101,13 @@ static void load_contact(SceneView *view, const SceneNet *network, const Contact
 }
 
 bool scene_view_take(SceneView *view, const SceneNet *network, const ContactProblem *problem) {
-    if (!reserve_view(view, problem)) return false;
+    const size_t contacts = (size_t)problem->contact_count + 1, bodies = (size_t)problem->body_count;
+    if (!ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->state, bodies * SLOT_BODY_NUMBERS),
+                             ARRAY_PART(view->ones, contacts), ARRAY_PART(view->warm, 2 * contacts),
+                             ARRAY_PART(view->present, contacts), ARRAY_PART(view->impulses, 2 * contacts),
+                             ARRAY_PART(view->contacts, contacts), ARRAY_PART(view->base, contacts)))
+        return false;
+    for (size_t i = 0; i < contacts; i++) view->ones[i] = 1;
     const ProblemBody *bomb = &problem->bodies[network->bomb];
     load_body(view->bomb, bomb);
     const float turns = turns_of(bomb);
@@ -127,12 +118,6 @@ bool scene_view_take(SceneView *view, const SceneNet *network, const ContactProb
     view->slots = (SceneNetView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
     for (int i = 0; i < problem->contact_count; i++) load_contact(view, network, problem, features_turn, i);
     return true;
-}
-
-static void free_prediction(ScenePrediction *prediction) {
-    scene_view_free(&prediction->view);
-    free(prediction->arrays.memory);
-    *prediction = (ScenePrediction){0};
 }
 
 /* *known: whether all inputs are within the range of the training data. The problem must have the network's bodies.
@@ -230,32 +215,17 @@ static void destroy_scene_net(void *state) {
     if (solver == NULL) return;
     scene_net_destroy(solver->own);
     momentum_free(&solver->momentum);
-    free_prediction(&solver->prediction);
+    scene_view_free(&solver->prediction.view);
+    free(solver->prediction.arrays.memory);
     free(solver->rest_factors);
     free(solver->half_factors);
     free(solver->more_factors);
     free(solver);
 }
 
-/* Learned factors are valid only for the number of sweeps they were learned for. */
-static void choose_factors(SceneNetSolver *solver) {
-    const SceneNet *network = solver->network;
-    bool learned = false;
-    for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
-    learned |= !solver->choice.predicts;
-    for (int s = 0; s < solver->choice.after; s++)
-        solver->after_factors[s] = solver->choice.after == network->sweeps && solver->choice.predicts
-                                       ? network->factors[s]
-                                   : learned ? momentum_factor_tuned(s, solver->choice.after)
-                                             : 0;
-}
-
 static SceneNetSolver *make_scene_net(const SceneNet *network, const SceneNetChoice *choice, Error *error) {
     SceneNetSolver *solver = calloc(1, sizeof *solver);
-    if (solver == NULL) {
-        error_memory(error, "scene-net");
-        return NULL;
-    }
+    if (solver == NULL) return error_memory(error, "scene-net"), NULL;
     solver->network = network;
     solver->choice = *choice;
     solver->half = (choice->rest + 1) / 2;
@@ -264,10 +234,15 @@ static SceneNetSolver *make_scene_net(const SceneNet *network, const SceneNetCho
     solver->more_factors = momentum_factors_make(solver->choice.rule.more);
     if (solver->rest_factors == NULL || solver->half_factors == NULL || solver->more_factors == NULL) {
         destroy_scene_net(solver);
-        error_memory(error, "scene-net");
-        return NULL;
+        return error_memory(error, "scene-net"), NULL;
     }
-    choose_factors(solver);
+    /* Learned factors are valid only for the number of sweeps they were learned for. */
+    bool learned = !choice->predicts;
+    for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
+    for (int s = 0; s < choice->after; s++)
+        solver->after_factors[s] = choice->after == network->sweeps && choice->predicts ? network->factors[s]
+                                   : learned ? momentum_factor_tuned(s, choice->after)
+                                             : 0;
     return solver;
 }
 
@@ -299,7 +274,7 @@ static bool scene_net_fits(const SceneNet *network, const ContactProblem *proble
                        network->bomb, problem->bomb);
 }
 
-static int scene_net_within(float speed) { return fabsf(speed) <= speed_max; }
+static int within(float speed) { return fabsf(speed) <= speed_max; }
 
 /* Checks velocities, and the effect of each impulse on the lightest body: large impulses that cancel each other leave
    rounding errors, too. */
@@ -308,33 +283,32 @@ static bool is_bounded(const Sweeps *sweeps) {
     float inverse = 0; /* 1/kg, of the lightest */
     for (int i = 0; i < sweeps->body_count; i++) {
         const SweepBody *body = &sweeps->bodies[i];
-        bounded &= scene_net_within(body->x) & scene_net_within(body->y) & scene_net_within(body->spin);
+        bounded &= within(body->x) & within(body->y) & within(body->spin);
         inverse = body->inv_mass > inverse ? body->inv_mass : inverse;
     }
     for (int i = 0; i < sweeps->pair_count; i++) {
         const ContactImpulse *sums = sweeps->pairs[i].sums;
-        for (int k = 0; k < 2; k++)
-            bounded &= scene_net_within(inverse * sums[k].normal) & scene_net_within(inverse * sums[k].tangent);
+        for (int k = 0; k < 2; k++) bounded &= within(inverse * sums[k].normal) & within(inverse * sums[k].tangent);
     }
     return bounded != 0;
 }
 
-static bool run_more(SceneNetSolver *solver, const StoppingRule *rule) {
-    return momentum_run_more(&solver->momentum, rule, solver->more_factors);
-}
-
-static bool run_scene_net(SceneNetSolver *solver, const ContactProblem *problem, Route route) {
+static bool run_sweeps(SceneNetSolver *solver, const ContactProblem *problem, Route route) {
     Momentum *momentum = &solver->momentum;
-    const StoppingRule *rule = &solver->choice.rule;
+    const SceneNetChoice *choice = &solver->choice;
+    const StoppingRule *rule = &choice->rule;
     const StoppingRule calm = {0, calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
     if (!momentum_begin(momentum, problem)) return false;
     switch (route) {
-    case ROUTE_CALM: return momentum_run(momentum, solver->half_factors, solver->half) && run_more(solver, &calm);
+    case ROUTE_CALM:
+        return momentum_run(momentum, solver->half_factors, solver->half) &&
+               momentum_run_more(momentum, &calm, solver->more_factors);
     case ROUTE_NETWORK:
-        return momentum_run(momentum, solver->after_factors, solver->choice.after) && run_more(solver, rule);
+        return momentum_run(momentum, solver->after_factors, choice->after) &&
+               momentum_run_more(momentum, rule, solver->more_factors);
     case ROUTE_MOMENTUM: break;
     }
-    return momentum_run(momentum, solver->rest_factors, solver->choice.rest);
+    return momentum_run(momentum, solver->rest_factors, choice->rest);
 }
 
 /* After the warm start. */
@@ -354,31 +328,26 @@ static bool choose_route(SceneNetSolver *solver, const ContactProblem *problem, 
     return true;
 }
 
-static bool solve_without(SceneNetSolver *solver, const ContactProblem *problem, ContactSolution *solution,
-                          Error *error) {
-    return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->choice.rest, solution, error);
-}
-
 static bool scene_net_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     SceneNetSolver *solver = state;
     Sweeps *sweeps = &solver->momentum.sweeps;
+    Route route;
     if (!scene_net_fits(solver->network, problem, error)) return false;
     if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return error_memory(error, "scene-net");
-    Route route;
     solution->fallbacks = (Fallbacks){0};
     if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
-    if (route == ROUTE_NETWORK && solver->choice.predicts) {
+    const bool predicts = route == ROUTE_NETWORK && solver->choice.predicts;
+    bool usable = true;
+    if (predicts) {
         predict_scene_net(&solver->prediction, solver->network, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->prediction.change);
-        if (!is_bounded(sweeps)) {
-            solution->fallbacks.not_finite++;
-            return solve_without(solver, problem, solution, error);
-        }
+        usable = is_bounded(sweeps);
     }
-    if (!run_scene_net(solver, problem, route)) return error_memory(error, "scene-net");
-    if (sweeps_end(sweeps, solution)) return true;
-    solution->fallbacks.not_finite += route == ROUTE_NETWORK && solver->choice.predicts;
-    return solve_without(solver, problem, solution, error);
+    if (usable && !run_sweeps(solver, problem, route)) return error_memory(error, "scene-net");
+    if (usable && sweeps_end(sweeps, solution)) return true;
+    /* Without the network. */
+    solution->fallbacks.not_finite += predicts;
+    return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->choice.rest, solution, error);
 }
 
 const ContactSolverKind solver_scene_net = {

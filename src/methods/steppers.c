@@ -32,44 +32,34 @@ void step_memory_free(StepMemory *memory) {
     *memory = (StepMemory){0};
 }
 
-static bool steppers_reserve(StepMemory *memory, size_t bodies, size_t contacts) {
-    return array_reserve((void **)&memory->bodies, &memory->body_capacity, bodies, sizeof *memory->bodies) &&
-           array_reserve((void **)&memory->contacts, &memory->contact_capacity, contacts, sizeof *memory->contacts) &&
-           array_reserve((void **)&memory->known, &memory->known_capacity, bodies, sizeof *memory->known) &&
-           array_reserve((void **)&memory->before, &memory->before_capacity, contacts, sizeof *memory->before);
-}
-
-/* A body has no padding: eleven floats. */
-static bool same_body(const Body *x, const Body *y) { return memcmp(x, y, sizeof *x) == 0; }
-
-static bool earlier(const KeptContact *kept, const ContactPoint *contact) {
-    return kept->a < contact->a || (kept->a == contact->a && kept->b < contact->b);
-}
-
-/* Both lists rise by (a, b). */
-static void match_contacts(StepMemory *memory, const ContactProblem *problem) {
+bool step_memory_match(StepMemory *memory, const World *world, const Step *step) {
+    const ContactProblem *problem = world_problem(world);
+    const Body *body = world_bodies(world);
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    if (step->frame == 1) memory->body_count = memory->contact_count = 0;
+    if (!step->scene->warm_starting) memory->contact_count = 0;
+    if (!array_reserve((void **)&memory->bodies, &memory->body_capacity, bodies, sizeof *memory->bodies) ||
+        !array_reserve((void **)&memory->contacts, &memory->contact_capacity, contacts, sizeof *memory->contacts) ||
+        !array_reserve((void **)&memory->known, &memory->known_capacity, bodies, sizeof *memory->known) ||
+        !array_reserve((void **)&memory->before, &memory->before_capacity, contacts, sizeof *memory->before))
+        return false;
+    for (int i = 0; i < problem->body_count; i++) /* a body has no padding: eleven floats */
+        memory->known[i] = i < memory->body_count && memcmp(&body[i], &memory->bodies[i], sizeof *body) == 0;
+    /* Both lists of contacts rise by (a, b). */
     for (int i = 0, first = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         memory->before[i] = -1;
         if (!memory->known[contact->a] || !memory->known[contact->b]) continue;
-        while (first < memory->contact_count && earlier(&memory->contacts[first], contact)) first++;
+        for (; first < memory->contact_count; first++) {
+            const KeptContact *kept = &memory->contacts[first];
+            if (kept->a > contact->a || (kept->a == contact->a && kept->b >= contact->b)) break;
+        }
         for (int j = first; j < memory->contact_count; j++) {
             const KeptContact *kept = &memory->contacts[j];
             if (kept->a != contact->a || kept->b != contact->b) break;
             if (kept->feature == contact->feature) memory->before[i] = j;
         }
     }
-}
-
-bool step_memory_match(StepMemory *memory, const World *world, const Step *step) {
-    const ContactProblem *problem = world_problem(world);
-    const Body *bodies = world_bodies(world);
-    if (step->frame == 1) memory->body_count = memory->contact_count = 0;
-    if (!step->scene->warm_starting) memory->contact_count = 0;
-    if (!steppers_reserve(memory, (size_t)problem->body_count, (size_t)problem->contact_count)) return false;
-    for (int i = 0; i < problem->body_count; i++)
-        memory->known[i] = i < memory->body_count && same_body(&bodies[i], &memory->bodies[i]);
-    match_contacts(memory, problem);
     return true;
 }
 

@@ -72,7 +72,7 @@ void subspace_pose_numbers(Vec2 size, Vec2 position, float angle, float numbers[
     numbers[3] = radius * turn.column1.x;
 }
 
-static void subspace_destroy(void *state) {
+static void destroy(void *state) {
     SubspaceStepper *method = state;
     if (method == NULL) return;
     subspace_free(&method->subspace);
@@ -113,34 +113,26 @@ static bool check_scene(const SubspaceNet *net, const Scene *scene, const char *
                        scene->name);
 }
 
-static bool subspace_prepare(SubspaceStepper *method, const char *path, const Scene *scene, Error *error) {
-    const int components = method->components;
-    if (components != 8 && components != 32 && components != 128)
-        return error_input(error, "subspace", "components must be 8, 32 or 128 (got %d)", components);
-    method->net = subspace_net_read(path, error);
-    if (method->net == NULL || !check_scene(method->net, scene, path, error) ||
-        !check_before(method->net, scene, path, error))
-        return false;
-    method->start = calloc(2 * SUBSPACE_POSE * (size_t)method->net->shape.bodies, sizeof *method->start);
-    if (method->start == NULL) return error_memory(error, "subspace");
-    return subspace_make(&method->subspace, method->net, subspace_net_choose(method->net, components), method->corrects,
-                         error);
-}
-
-static void *subspace_create(const Settings *chosen, const Scene *scene, Error *error) {
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     static const SubspaceStepper standard = {.components = 32, .corrects = true};
     const char *path = method_network(chosen, scene, "subspace", error);
     SubspaceStepper *method =
         path != NULL ? settings_make(chosen, settings, &standard, sizeof standard, "subspace", error) : NULL;
-    if (method == NULL || subspace_prepare(method, path, scene, error)) return method;
-    subspace_destroy(method);
+    if (method == NULL) return NULL;
+    const int components = method->components;
+    bool ok = components == 8 || components == 32 || components == 128 ||
+              error_input(error, "subspace", "components must be 8, 32 or 128 (got %d)", components);
+    ok = ok && (method->net = subspace_net_read(path, error)) != NULL && check_scene(method->net, scene, path, error) &&
+         check_before(method->net, scene, path, error);
+    if (ok) {
+        method->start = calloc(2 * SUBSPACE_POSE * (size_t)method->net->shape.bodies, sizeof *method->start);
+        ok = (method->start != NULL || error_memory(error, "subspace")) &&
+             subspace_make(&method->subspace, method->net, subspace_net_choose(method->net, components),
+                           method->corrects, error);
+    }
+    if (ok) return method;
+    destroy(method);
     return NULL;
-}
-
-/* Whether the world is, bit for bit, where the last step left it; a body has no padding. */
-static bool goes_on(const SubspaceStepper *method, const Body *bodies, int count, int frame) {
-    return frame > 1 && method->after_count == count &&
-           memcmp(method->after, bodies, (size_t)count * sizeof *bodies) == 0;
 }
 
 /* Projects the poses of the world and those one step before. */
@@ -157,41 +149,36 @@ static void start_subspace(SubspaceStepper *method, const Body *bodies, int coun
     subspace_start(&method->subspace, method->start, method->start + SUBSPACE_POSE * method->net->shape.bodies);
 }
 
-/* Bodies whose numbers are not finite stay where they are; returns how many. */
-static int pose_bodies(SubspaceStepper *method, const Body *bodies, int body_count) {
+/* Poses after a step in which the bomb is there. Bodies whose numbers are not finite stay where they are. */
+static Fallbacks predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
+                                const Step *which) {
+    const SceneSpan *mass = &which->scene->bomb.mass;
+    const size_t size = (size_t)problem->body_count * sizeof *bodies;
+    float launch[SUBSPACE_LAUNCH];
+    /* The run goes on if the world is, bit for bit, where the last step left it; a body has no padding. */
+    if (which->frame <= 1 || method->after_count != problem->body_count || memcmp(method->after, bodies, size) != 0)
+        start_subspace(method, bodies, problem->body_count, problem->dt);
+    subspace_launch(which->scene, launch);
+    const SubspaceReport report = subspace_step(&method->subspace, launch);
+    subspace_reconstruct(&method->subspace);
+    Fallbacks fallbacks = {.not_finite = report.not_finite,
+                                  .beyond_training =
+                                      report.beyond > 0 || mass->value < mass->from || mass->value > mass->to};
     const float *numbers = method->subspace.numbers;
-    int discarded = 0;
-    for (int i = 0; i < body_count; i++) {
+    for (int i = 0; i < problem->body_count; i++) {
         if (bodies[i].inv_mass == 0) continue;
         const BodyPose pose = {vec2(numbers[0], numbers[1]), turn_angle(numbers[2], numbers[3], bodies[i].angle)};
         if (isfinite(pose.position.x) && isfinite(pose.position.y) && isfinite(pose.angle))
             method->poses[i] = pose;
         else
-            discarded++;
+            fallbacks.not_finite++;
         numbers += SUBSPACE_POSE;
     }
-    return discarded;
-}
-
-/* Poses after a step in which the bomb is there. */
-static Fallbacks subspace_predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
-                                         const Step *which) {
-    Subspace *subspace = &method->subspace;
-    float launch[SUBSPACE_LAUNCH];
-    const Scene *scene = which->scene;
-    if (!goes_on(method, bodies, problem->body_count, which->frame))
-        start_subspace(method, bodies, problem->body_count, problem->dt);
-    subspace_launch(scene, launch);
-    const SubspaceReport report = subspace_step(subspace, launch);
-    subspace_reconstruct(subspace);
-    const SceneSpan *mass = &scene->bomb.mass;
-    const bool other_mass = mass->value < mass->from || mass->value > mass->to;
-    return (Fallbacks){.not_finite = report.not_finite + pose_bodies(method, bodies, problem->body_count),
-                              .beyond_training = report.beyond > 0 || other_mass};
+    return fallbacks;
 }
 
 /* Poses after a step before the bomb appears; after the end of the recorded run, its last. */
-static void subspace_repeat(SubspaceStepper *method, const Body *bodies, int body_count, int frame) {
+static void repeat(SubspaceStepper *method, const Body *bodies, int body_count, int frame) {
     const SubspaceShape *shape = &method->net->shape;
     if (shape->frames_before == 0) return;
     const int row = (frame <= shape->frames_before ? frame : shape->frames_before) - 1;
@@ -203,9 +190,28 @@ static void subspace_repeat(SubspaceStepper *method, const Body *bodies, int bod
     }
 }
 
-/* Velocities from the poses. */
-static void subspace_fill(const SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
-                          ContactSolution *solution) {
+static bool solve(void *state, BegunStep *begun, Error *error) {
+    SubspaceStepper *method = state;
+    const ContactProblem *problem = begun->problem;
+    ContactSolution *solution = begun->solution;
+    const Body *bodies = world_bodies(begun->world);
+    const size_t count = (size_t)problem->body_count;
+    if (!array_reserve((void **)&method->after, &method->after_capacity, count, sizeof *method->after) ||
+        !ARRAY_BLOCK_RESERVE(&method->arrays, ARRAY_PART(method->poses, count), ARRAY_PART(method->touched, count)))
+        return error_memory(error, "subspace");
+    /* The network's bodies must be those of the world: a caller may step any world of the scene. */
+    int moving = problem->bomb < 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        moving += bodies[i].inv_mass != 0;
+        method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
+    }
+    if (moving != method->net->shape.bodies)
+        return error_input(error, "subspace", "the world has %d bodies that move, with the bomb; the network is for %d",
+                           moving, method->net->shape.bodies);
+    if (problem->bomb >= 0)
+        solution->fallbacks = predict(method, bodies, problem, begun->step);
+    else
+        repeat(method, bodies, problem->body_count, begun->step->frame);
     const float rate = 1 / problem->dt;
     for (int i = 0; i < problem->body_count; i++) {
         const BodyPose *pose = &method->poses[i];
@@ -213,47 +219,16 @@ static void subspace_fill(const SubspaceStepper *method, const Body *bodies, con
                                                  rate * (pose->angle - bodies[i].angle)};
     }
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
-}
-
-static bool subspace_reserve(SubspaceStepper *method, size_t bodies, Error *error) {
-    return (array_reserve((void **)&method->after, &method->after_capacity, bodies, sizeof *method->after) &&
-            ARRAY_BLOCK_RESERVE(&method->arrays, ARRAY_PART(method->poses, bodies),
-                                ARRAY_PART(method->touched, bodies))) ||
-           error_memory(error, "subspace");
-}
-
-/* The network's bodies must be those of the world: a caller may step any world of the scene. */
-static bool check_world(const SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
-                        Error *error) {
-    int moving = problem->bomb < 0;
-    for (int i = 0; i < problem->body_count; i++) moving += bodies[i].inv_mass != 0;
-    return moving == method->net->shape.bodies ||
-           error_input(error, "subspace", "the world has %d bodies that move, with the bomb; the network is for %d",
-                       moving, method->net->shape.bodies);
-}
-
-static bool subspace_solve(void *state, BegunStep *begun, Error *error) {
-    SubspaceStepper *method = state;
-    const ContactProblem *problem = begun->problem;
-    const Body *bodies = world_bodies(begun->world);
-    if (!subspace_reserve(method, (size_t)problem->body_count, error) || !check_world(method, bodies, problem, error))
-        return false;
-    for (int i = 0; i < problem->body_count; i++) method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
-    if (problem->bomb >= 0)
-        begun->solution->fallbacks = subspace_predict(method, bodies, problem, begun->step);
-    else
-        subspace_repeat(method, bodies, problem->body_count, begun->step->frame);
-    subspace_fill(method, bodies, problem, begun->solution);
     begun->poses = method->poses;
     return true;
 }
 
-static void subspace_measure(void *state, const BegunStep *begun) {
+static void measure(void *state, const BegunStep *begun) {
     bool *touched = ((SubspaceStepper *)state)->touched;
     begun->solution->momentum_error = free_flight_momentum(begun->problem, begun->solution, touched);
 }
 
-static void subspace_keep(void *state, const World *world) {
+static void keep(void *state, const World *world) {
     SubspaceStepper *method = state;
     const ContactProblem *problem = world_problem(world);
     method->after_count = problem->bomb >= 0 ? problem->body_count : 0;
@@ -273,8 +248,8 @@ const SteppingKind stepping_subspace = {
                     .chart = METHOD_RUNS("", "components=8", "components=128", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
-    .create = subspace_create,
-    .solve = subspace_solve,
-    .measure = subspace_measure,
-    .keep = subspace_keep,
-    .destroy = subspace_destroy};
+    .create = create,
+    .solve = solve,
+    .measure = measure,
+    .keep = keep,
+    .destroy = destroy};

@@ -127,7 +127,11 @@ TEST(steps_without_a_solution_have_no_rows_and_are_counted) {
     int64_t unsolved = 0, row = 0;
     for (int launch = 0; launch < dataset->launches; launch++) {
         Steps steps = {.reference = {0}};
-        const Scene launched = dataset_launch(dataset, &scene, launch);
+        Launch own = launch_of(scene);
+        own.x = dataset->launch_x[launch];
+        own.rotation = dataset->launch_rotation[launch];
+        own.spin = dataset->launch_spin[launch];
+        const Scene launched = launch_scene(scene, &own);
         assert_ok(simulate_observed(&launched, &engine, &(StepObserver){solve_again, &steps}, &error), error);
         for (int frame = 1; frame <= 60; frame++) {
             const int64_t first = row;
