@@ -4,7 +4,7 @@
 #include "made.h"
 #include "files.h"
 
-enum { NET_ARRAYS_MAX = 40 };
+enum { NET_ARRAYS_MAX = 64 };
 
 typedef struct NetArrays {
     size_t count;
