@@ -18,7 +18,7 @@
 #include <string.h>
 
 /* The kind's option of that name ("--seed"), or -1. */
-static int train_find_option(const TrainKind *kind, const char *name) {
+static int find_option(const TrainKind *kind, const char *name) {
     for (int i = 0; kind->options[i].name != NULL; i++)
         if (strcmp(kind->options[i].name, name) == 0) return i;
     return -1;
@@ -34,7 +34,7 @@ bool train_read(const TrainRequest *request, void *options, Error *error) {
 }
 
 void train_set(TrainRequest *request, const char *option, const char *value) {
-    const int i = train_find_option(request->kind, option);
+    const int i = find_option(request->kind, option);
     assert(i >= 0);
     request->values[i] = value;
 }
@@ -54,10 +54,10 @@ void train_describe(const TrainRequest *request, char *command, size_t size) {
     }
 }
 
-typedef struct TrainPairNetOptions {
+typedef struct PairNetOptions {
     TrainingOptions training;
     const char *from; /* NET.npz, or NULL */
-} TrainPairNetOptions;
+} PairNetOptions;
 
 static OptionRead read_layers, read_laws;
 
@@ -65,32 +65,32 @@ static const Option pair_net_options[] = {
     {"--layers", 0, "WIDTHS",
      "Widths of the layers. 10-10-2: change of relative velocity, min-max outputs, as in the paper's 3.2. With two "
      "hidden layers and all six changes: 10-8-8-6, standardised outputs, as in its 3.1",
-     OPTION_READ(read_layers, TrainPairNetOptions, training), .standard = "10-10-2"},
+     OPTION_READ(read_layers, PairNetOptions, training), .standard = "10-10-2"},
     {"--optimizer", 0, "NAME", "adam, bfgs, gd (gradient descent) or lm (Levenberg-Marquardt)",
-     OPTION_TEXT(TrainPairNetOptions, training.optimizer), .standard = "adam"},
-    {"--iterations", 0, "N", "Full-batch steps", OPTION_INT(TrainPairNetOptions, training.iterations, 0, 1000000),
+     OPTION_TEXT(PairNetOptions, training.optimizer), .standard = "adam"},
+    {"--iterations", 0, "N", "Full-batch steps", OPTION_INT(PairNetOptions, training.iterations, 0, 1000000),
      .standard = "2000"},
-    {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(TrainPairNetOptions, training.seed), .standard = "1"},
+    {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(PairNetOptions, training.seed), .standard = "1"},
     {"--from", 0, "NET.npz",
      "Continue from the weights of this network, such as one cut short by Ctrl-C. If NET.npz of -o has a smaller "
      "held-out error than the result, it is kept (exit status 1)",
-     OPTION_PATH(TrainPairNetOptions, from)},
+     OPTION_PATH(PairNetOptions, from)},
     {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
-     OPTION_TEXT(TrainPairNetOptions, training.hidden)},
+     OPTION_TEXT(PairNetOptions, training.hidden)},
     {"--output-activation", 0, "NAME", "sigmoid or linear (default: sigmoid for two outputs, linear for six)",
-     OPTION_TEXT(TrainPairNetOptions, training.output_activation)},
+     OPTION_TEXT(PairNetOptions, training.output_activation)},
     {"--scale", 0, "NAME",
      "Scale of the outputs: minmax or, with linear outputs, standard (default: minmax with sigmoid, standard with "
      "linear)",
-     OPTION_TEXT(TrainPairNetOptions, training.scale)},
+     OPTION_TEXT(PairNetOptions, training.scale)},
     {"--loss", 0, "NAME",
      "Loss of the outputs: mse (default), or smooth-l1, which is linear beyond 0.3 m/s, so that rare impacts weigh "
      "less",
-     OPTION_TEXT(TrainPairNetOptions, training.loss)},
+     OPTION_TEXT(PairNetOptions, training.loss)},
     {"--laws", 0, "NAME=W,...",
      "Weights of physical laws in the loss of six outputs: momentum, energy, approach, cone. Needs a dataset recorded "
      "with --context",
-     OPTION_READ(read_laws, TrainPairNetOptions, training.laws)},
+     OPTION_READ(read_laws, PairNetOptions, training.laws)},
     {0}};
 
 static bool read_laws(const Option *option, const char *text, void *value, Error *error) {
@@ -123,21 +123,8 @@ static void print_score(void *context, const TrainingScore *score) {
     fflush(stdout);
 }
 
-static Network *train_network(const Dataset *dataset, TrainingOptions *training, Error *error) {
-    training->on_score = print_score;
-    printf("iteration   test score  train score  constant test  constant train\n");
-    Network *network = training_run(dataset, training, progress_bar_begin("training"), error);
-    progress_bar_end();
-    return network;
-}
-
 /* The held-out error as a share of that of always predicting the mean, so that networks of different scales compare. */
 static double share(const TrainingScore *score) { return score->test / score->constant_test; }
-
-static void print_verdict(const TrainingScore *score) {
-    printf("verdict: held-out error %.6f, %.4g of the constant predictor's%s\n", score->test, share(score),
-           share(score) < 1 ? "" : ": no better than the constant");
-}
 
 /* False, without an error, if a network would be replaced by a worse one. Only training that continues may: a new one
    is begun on purpose. */
@@ -159,35 +146,33 @@ static bool may_replace(const Dataset *dataset, const TrainRequest *request, con
     return false;
 }
 
-static bool train_store(Network *network, const Dataset *dataset, const TrainRequest *request,
-                        const TrainingOptions *training, Error *error) {
+static bool pair_net_run(const TrainRequest *request, Error *error) {
+    PairNetOptions given = {.from = NULL};
+    TrainingOptions *training = &given.training;
     TrainingScore score;
-    train_describe(request, network->command, sizeof network->command);
-    if (!training_score(dataset, network, training->loss, &score, error) ||
-        !may_replace(dataset, request, training, &score, error) || !network_write(network, request->output, error))
-        return false;
-    printf("%s%d parameters -> %s\n", interrupt_requested() ? "stopped early; " : "", network_parameter_count(network),
-           request->output);
-    print_verdict(&score);
-    return true;
-}
-
-static bool train_and_store(const Dataset *dataset, const TrainRequest *request, TrainingOptions *training,
-                            Error *error) {
-    Network *network = train_network(dataset, training, error);
-    bool ok = network != NULL && train_store(network, dataset, request, training, error);
-    network_destroy(network);
-    return ok;
-}
-
-static bool train_run(const TrainRequest *request, Error *error) {
-    TrainPairNetOptions given = {.from = NULL};
     if (!train_read(request, &given, error)) return false;
-    Network *start = NULL;
-    if (given.from != NULL && (start = network_read(given.from, error)) == NULL) return false;
-    given.training.start = start;
-    Dataset *dataset = dataset_read(request->input, error);
-    bool ok = dataset != NULL && train_and_store(dataset, request, &given.training, error);
+    Network *start = given.from != NULL ? network_read(given.from, error) : NULL, *network = NULL;
+    Dataset *dataset = given.from == NULL || start != NULL ? dataset_read(request->input, error) : NULL;
+    if (dataset != NULL) {
+        training->start = start;
+        training->on_score = print_score;
+        printf("iteration   test score  train score  constant test  constant train\n");
+        network = training_run(dataset, training, progress_bar_begin("training"), error);
+        progress_bar_end();
+    }
+    bool ok = network != NULL;
+    if (ok) {
+        train_describe(request, network->command, sizeof network->command);
+        ok = training_score(dataset, network, training->loss, &score, error) &&
+             may_replace(dataset, request, training, &score, error) && network_write(network, request->output, error);
+    }
+    if (ok) {
+        printf("%s%d parameters -> %s\n", interrupt_requested() ? "stopped early; " : "",
+               network_parameter_count(network), request->output);
+        printf("verdict: held-out error %.6f, %.4g of the constant predictor's%s\n", score.test, share(&score),
+               share(&score) < 1 ? "" : ": no better than the constant");
+    }
+    network_destroy(network);
     dataset_destroy(dataset);
     network_destroy(start);
     return ok;
@@ -201,7 +186,7 @@ const TrainKind train_pair_net = {
         "beside that of always predicting the mean",
     .file_kind = "network",
     .options = pair_net_options,
-    .train = train_run};
+    .train = pair_net_run};
 
 #define TRAIN_KIND_ENTRY(name) &train_##name,
 const TrainKind *const train_kinds[] = {TRAIN_KINDS(TRAIN_KIND_ENTRY) NULL};
@@ -222,7 +207,7 @@ typedef struct HelpTexts {
     const char *names[KINDS + 1]; /* ended by NULL */
 } HelpTexts;
 
-static bool train_remember(const Option *option, const char *text, void *value, Error *error) {
+static bool remember(const Option *option, const char *text, void *value, Error *error) {
     (void)error;
     Options *options = value;
     options->values[option - options->rows] = text != NULL ? text : "";
@@ -238,24 +223,11 @@ static void add_row(Options *options, Option row) {
 static NameList name_kinds(const char *option) {
     NameList names = {0};
     for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++)
-        if (option == NULL || train_find_option(*kind, option) >= 0) name_list_add(&names, (*kind)->name);
+        if (option == NULL || find_option(*kind, option) >= 0) name_list_add(&names, (*kind)->name);
     return names;
 }
 
-static void add_kind(Options *options, HelpTexts *texts, int k) {
-    const TrainKind *kind = train_kinds[k];
-    text_add(texts->usage, sizeof texts->usage, "%s%s%s%s", k == 0 ? "" : "\n--kind ", k == 0 ? "" : kind->name,
-             k == 0 || kind->input == NULL ? "" : " ", kind->input != NULL ? kind->input : "");
-    snprintf(texts->headings[k], TEXT_SIZE, "%s%s: %s.", kind->name, k == 0 ? " (default)" : "", kind->summary);
-    add_row(options, (Option){.help = texts->headings[k]});
-    for (const Option *option = kind->options; option->name != NULL; option++) {
-        Option row = *option;
-        row.read = train_remember;
-        row.at = 0;
-        add_row(options, row);
-    }
-}
-
+/* The rows of the command: its own, then a heading and the options of each kind. */
 static void make_table(Options *options, HelpTexts *texts) {
     snprintf(texts->kind, TEXT_SIZE, "What to train: %s", name_kinds(NULL).text);
     add_row(options, (Option){"--output", 'o', "NET.npz", "File that the network is written to",
@@ -263,20 +235,27 @@ static void make_table(Options *options, HelpTexts *texts) {
     for (int k = 0; k < KINDS; k++) texts->names[k] = train_kinds[k]->name;
     add_row(options, (Option){"--kind", 0, "NAME", texts->kind, OPTION_TEXT(Options, kind), .names = texts->names,
                               .standard = train_kinds[0]->name});
-    for (int k = 0; k < KINDS; k++) add_kind(options, texts, k);
-}
-
-static const TrainKind *find_kind(const char *name, Error *error) {
-    for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++)
-        if (strcmp((*kind)->name, name) == 0) return *kind;
-    const NameList known = name_kinds(NULL);
-    return error_unknown(error, "--kind", name, "a kind", &known), NULL;
+    for (int k = 0; k < KINDS; k++) {
+        const TrainKind *kind = train_kinds[k];
+        text_add(texts->usage, sizeof texts->usage, "%s%s%s%s", k == 0 ? "" : "\n--kind ", k == 0 ? "" : kind->name,
+                 k == 0 || kind->input == NULL ? "" : " ", kind->input != NULL ? kind->input : "");
+        snprintf(texts->headings[k], TEXT_SIZE, "%s%s: %s.", kind->name, k == 0 ? " (default)" : "", kind->summary);
+        add_row(options, (Option){.help = texts->headings[k]});
+        for (const Option *option = kind->options; option->name != NULL; option++) {
+            Option row = *option;
+            row.read = remember;
+            row.at = 0;
+            add_row(options, row);
+        }
+    }
 }
 
 static bool make_request(const Options *options, TrainRequest *request, Error *error) {
-    *request =
-        (TrainRequest){.kind = find_kind(options->kind, error), .input = options->input, .output = options->output};
-    if (request->kind == NULL) return false;
+    *request = (TrainRequest){.input = options->input, .output = options->output};
+    for (int k = 0; k < KINDS; k++)
+        if (strcmp(train_kinds[k]->name, options->kind) == 0) request->kind = train_kinds[k];
+    const NameList known = name_kinds(NULL);
+    if (request->kind == NULL) return error_unknown(error, "--kind", options->kind, "a kind", &known);
     if ((request->input == NULL) != (request->kind->input == NULL))
         return request->input == NULL
                    ? error_input(error, request->kind->name, "a file to train on is needed: %s", request->kind->input)
@@ -286,7 +265,7 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
     for (int i = 0; i < options->row_count; i++) {
         if (options->values[i] == NULL) continue;
         const char *name = options->rows[i].name;
-        const int option = train_find_option(request->kind, name);
+        const int option = find_option(request->kind, name);
         if (option < 0)
             return error_input(error, name, "is an option of %s, not of %s", name_kinds(name).text,
                                request->kind->name);
@@ -295,30 +274,25 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
     return true;
 }
 
-/* Reads the scene of a kind that learns from one. */
-static bool train_on_scene(TrainRequest *request, Error *error) {
-    if (!request->kind->reads_scene) return request->kind->train(request, error);
-    Scene *scene = scene_read(request->input, error);
-    request->scene = scene;
-    const bool ok = scene != NULL && scene_check_strike(scene, error) && request->kind->train(request, error);
-    scene_destroy(scene);
-    return ok;
-}
-
-/* Gives a kind that keeps its state on disk the name of it, and the command that continues. */
-static bool train_kind(TrainRequest *request, Error *error) {
+/* Trains, with the scene of a kind that learns from one; a kind that keeps its state on disk has the name of it, and the
+   command that continues. */
+static bool train(TrainRequest *request, Error *error) {
     const TrainKind *kind = request->kind;
     char state[4096], command[TRAIN_COMMAND_SIZE];
-    if (kind->result == NULL) return train_on_scene(request, error);
-    if (path_is_standard(request->output))
-        return error_input(error, "-o", "%s keeps its state beside the %s; give the %s a name", kind->name,
-                           kind->result, kind->result);
-    if (!file_path(state, sizeof state, error, "%s.part", request->output)) return false;
-    train_describe(request, command, kind->command_size);
-    request->state = state;
-    request->command = command;
-    const bool ok = train_on_scene(request, error);
-    request->state = request->command = NULL;
+    if (kind->result != NULL) {
+        if (path_is_standard(request->output))
+            return error_input(error, "-o", "%s keeps its state beside the %s; give the %s a name", kind->name,
+                               kind->result, kind->result);
+        if (!file_path(state, sizeof state, error, "%s.part", request->output)) return false;
+        train_describe(request, command, kind->command_size);
+        request->state = state;
+        request->command = command;
+    }
+    Scene *scene = kind->reads_scene ? scene_read(request->input, error) : NULL;
+    request->scene = scene;
+    const bool ok =
+        (!kind->reads_scene || (scene != NULL && scene_check_strike(scene, error))) && kind->train(request, error);
+    scene_destroy(scene);
     return ok;
 }
 
@@ -342,5 +316,5 @@ bool command_train(int argc, char **argv, Error *error) {
     char command[TRAIN_COMMAND_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);
-    return train_kind(&request, error);
+    return train(&request, error);
 }

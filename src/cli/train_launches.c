@@ -133,18 +133,7 @@ typedef struct Report {
     HybridLaunch sum;
 } Report;
 
-static void print_report(Report *report, int number, const HybridMemory *memory) {
-    const HybridLaunch *sum = &report->sum;
-    progress_bar_clear();
-    printf("%8d  %6d  %7.1f%%  %6d  %6d", number, sum->asked, sum->asked > 0 ? 100.0 * sum->answered / sum->asked : 0,
-           sum->grown, sum->added);
-    if (memory != NULL) printf("  %7d  %8.3f", memory->entry_count, (double)hybrid_memory_bytes(memory) / MEBIBYTE);
-    if (sum->checked > 0) printf("  %.4f", sum->error / sum->checked);
-    printf("%s\n", sum->full > 0 ? "  full" : "");
-    fflush(stdout);
-    *report = (Report){.launches = report->launches};
-}
-
+/* Prints the sums over some launches. */
 static void add_launch(void *context, const HybridLaunch *launch) {
     Report *report = context;
     HybridLaunch *sum = &report->sum;
@@ -156,8 +145,16 @@ static void add_launch(void *context, const HybridLaunch *launch) {
     sum->checked += launch->checked;
     sum->error += launch->error;
     const int every = (report->launches + REPORTS - 1) / REPORTS;
-    if (launch->number % every == 0 || launch->number == report->launches)
-        print_report(report, launch->number, launch->memory);
+    if (launch->number % every != 0 && launch->number != report->launches) return;
+    const HybridMemory *memory = launch->memory;
+    progress_bar_clear();
+    printf("%8d  %6d  %7.1f%%  %6d  %6d", launch->number, sum->asked,
+           sum->asked > 0 ? 100.0 * sum->answered / sum->asked : 0, sum->grown, sum->added);
+    if (memory != NULL) printf("  %7d  %8.3f", memory->entry_count, (double)hybrid_memory_bytes(memory) / MEBIBYTE);
+    if (sum->checked > 0) printf("  %.4f", sum->error / sum->checked);
+    printf("%s\n", sum->full > 0 ? "  full" : "");
+    fflush(stdout);
+    *report = (Report){.launches = report->launches};
 }
 
 static bool hybrid_run(const TrainRequest *request, Error *error) {

@@ -62,8 +62,8 @@ x, y, angle, vx, vy, omega = json.load(open("stop-run.json"))["frames"][1]["stat
 assert abs(vy) < 1e-6 and abs(vx) < 1e-6 and abs(y - 0.499) < 1e-6, (y, vy)
 PYTHON
 
-# Layers that do not fit each other, or the inputs that LIKE names. (Arrays of another type, shape or value: tests/nets/test_file.c,
-# test_scene_net_file.c.)
+# Layers that do not fit each other, or the inputs that LIKE names. (Arrays of another type, shape or value:
+# tests/learning/test_network_files.c.)
 python <<'PYTHON'
 import numpy
 numpy.savez("chain.npz", weights_0=numpy.ones((4, 10)), biases_0=numpy.ones(4), weights_1=numpy.ones((2, 5)), biases_1=numpy.ones(2))
