@@ -149,14 +149,6 @@ static void fill_particles(GnsExample *example, int i, const BodyPose poses[GNS_
     }
 }
 
-static void fill_body(GnsExample *example, int i, const GnsRuns *runs, int launch, int body, int frame) {
-    const BodyDef own = definition(runs, launch, body);
-    BodyPose poses[GNS_HISTORY + 1];
-    example->particles.body[i] = (GnsBody){own.size, own.mass, is_bomb(runs, body)};
-    for (int k = 0; k <= GNS_HISTORY; k++) poses[k] = pose_at(runs, launch, body, frame - GNS_HISTORY + k);
-    fill_particles(example, i, poses, runs->scene->dt);
-}
-
 /* Targets of a body that is filled, and then its noise; whole: 1 if it is displaced as a whole, too, else 0. */
 static void fill_target(GnsExample *example, int i, const BodyPose *pose, float noise, float whole, uint64_t *random) {
     const GnsRuns *runs = example->from;
@@ -184,25 +176,21 @@ static void fill_target(GnsExample *example, int i, const BodyPose *pose, float 
     }
 }
 
-/* How far a body's next position is off its free flight, squared. */
-static float activity(const GnsRuns *runs, int launch, int body, int frame) {
-    const Vec2 before = pose_at(runs, launch, body, frame - 1).position,
-               now = pose_at(runs, launch, body, frame).position;
-    const Vec2 off = vec2_sub(vec2_sub(pose_at(runs, launch, body, frame + 1).position, now), vec2_sub(now, before));
-    return vec2_dot(off, off);
-}
-
 static int body_of(const GnsRuns *runs, int i) {
     return i < runs->moving_count ? runs->moving[i] : runs->runs.bodies - 1;
 }
 
-/* The most active of a few, so that examples show more than boxes at rest. */
+/* The most active of a few, so that examples show more than boxes at rest; tries: 1 where rest is to be shown, too. */
 static int choose_middle(const GnsRuns *runs, int launch, int frame, int count, int tries, uint64_t *random) {
     int best = -1;
     float most = -1;
     for (int i = 0; i < tries; i++) {
         const int body = body_of(runs, below(random, count));
-        const float active = activity(runs, launch, body, frame);
+        const Vec2 before = pose_at(runs, launch, body, frame - 1).position,
+                   at = pose_at(runs, launch, body, frame).position,
+                   next = pose_at(runs, launch, body, frame + 1).position;
+        const Vec2 off = vec2_sub(vec2_sub(next, at), vec2_sub(at, before));
+        const float active = vec2_dot(off, off); /* how far it is off its free flight */
         if (!(active > most)) continue;
         most = active;
         best = body;
@@ -229,16 +217,6 @@ static int choose_bodies(const GnsRuns *runs, int launch, int frame, int count, 
         chosen[place] = body;
     }
     return used;
-}
-
-/* *tries: boxes to choose the middle from; 1 where rest is to be shown, too. */
-static int choose_frame(const GnsRuns *runs, int launch, int *tries, uint64_t *random) {
-    const int last = runs->runs.frames - 2;
-    const int kind = below(random, 4);
-    *tries = kind == 1 ? 1 : TOURNAMENT;
-    int frame = below(random, kind == 0 ? FIRST_FRAMES : last + 1);
-    if (kind >= 2) frame = runs->touch[launch] - BEFORE_TOUCH + below(random, AFTER_TOUCH);
-    return frame < 0 ? 0 : frame > last ? last : frame;
 }
 
 /* 0 to 1, mostly small. */
@@ -277,8 +255,10 @@ static void fill_flight(GnsExample *example, int launch, float noise, uint64_t *
 bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t number) {
     uint64_t random = examples->seed + number * UINT64_C(0x632be59bd9b4e019);
     const GnsRuns *runs = example->from = &examples->scenes[below(&random, examples->count)];
-    int tries;
-    const int launch = below(&random, runs->runs.count), frame = choose_frame(runs, launch, &tries, &random);
+    const int launch = below(&random, runs->runs.count), last = runs->runs.frames - 2, kind = below(&random, 4);
+    int frame = below(&random, kind == 0 ? FIRST_FRAMES : last + 1);
+    if (kind >= 2) frame = runs->touch[launch] - BEFORE_TOUCH + below(&random, AFTER_TOUCH);
+    frame = frame < 0 ? 0 : frame > last ? last : frame;
     if (below(&random, FLIGHT_ONE_IN) == 0) {
         if (!reserve(example, 1)) return false;
         example->particles.bodies = 1;
@@ -286,7 +266,7 @@ bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t
         return true;
     }
     const int count = runs->moving_count + (frame >= runs->scene->bomb.frame ? 1 : 0);
-    const int middle = choose_middle(runs, launch, frame, count, tries, &random);
+    const int middle = choose_middle(runs, launch, frame, count, kind == 1 ? 1 : TOURNAMENT, &random);
     int chosen[GNS_CROP];
     float distances[GNS_CROP];
     const int bodies = choose_bodies(runs, launch, frame, count, middle, chosen, distances);
@@ -296,7 +276,11 @@ bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t
     const float whole = (float)below(&random, 2);
     example->particles.bodies = bodies;
     for (int i = 0; i < bodies; i++) {
-        fill_body(example, i, runs, launch, chosen[i], frame);
+        const BodyDef own = definition(runs, launch, chosen[i]);
+        BodyPose poses[GNS_HISTORY + 1];
+        example->particles.body[i] = (GnsBody){own.size, own.mass, is_bomb(runs, chosen[i])};
+        for (int k = 0; k <= GNS_HISTORY; k++) poses[k] = pose_at(runs, launch, chosen[i], frame - GNS_HISTORY + k);
+        fill_particles(example, i, poses, runs->scene->dt);
         const BodyPose next = pose_at(runs, launch, chosen[i], frame + 1);
         fill_target(example, i, &next, examples->noise, whole, &random);
         example->counts[i] = bodies == count || distances[i] <= reach * reach ? 1.0f : 0.0f;

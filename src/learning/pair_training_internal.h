@@ -87,7 +87,7 @@ void loss_residuals(Loss *loss, const Samples *samples, const double *parameters
 /* Forward pass on block b of the samples. */
 void loss_forward(NetworkBlock *block, const Samples *samples, int64_t b, const double *parameters);
 
-/* The optimiser interface and the table of optimisers. A new one is one file and one line. */
+/* The optimiser interface and the table of optimisers (optimizers.c). A new one is one function and one line. */
 
 /* One training in progress. */
 typedef struct Trainer {

@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-static int gns_net_take(int *next, int count) {
+static int take(int *next, int count) {
     const int at = *next;
     *next += count;
     return at;
@@ -17,12 +17,12 @@ static GnsMlp make_mlp(int *next, int inputs, int width, int outputs, bool norma
     GnsMlp mlp = {.inputs = inputs, .width = width, .outputs = outputs, .gain = -1, .offset = -1};
     const int widths[4] = {inputs, width, width, outputs};
     for (int l = 0; l < 3; l++) {
-        mlp.weights[l] = gns_net_take(next, widths[l] * widths[l + 1]);
-        mlp.biases[l] = gns_net_take(next, widths[l + 1]);
+        mlp.weights[l] = take(next, widths[l] * widths[l + 1]);
+        mlp.biases[l] = take(next, widths[l + 1]);
     }
     if (normalised) {
-        mlp.gain = gns_net_take(next, outputs);
-        mlp.offset = gns_net_take(next, outputs);
+        mlp.gain = take(next, outputs);
+        mlp.offset = take(next, outputs);
     }
     return mlp;
 }

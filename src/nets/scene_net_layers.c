@@ -83,17 +83,6 @@ static size_t lay_out(SceneNet *network) {
     return used;
 }
 
-/* The first slot of each pair. */
-static void index_pairs(SceneNet *network) {
-    const int pairs = network->body_count * network->body_count;
-    for (int pair = 0, slot = 0; pair <= pairs; pair++) {
-        while (slot < network->slot_count &&
-               network->slots[slot].a * network->body_count + network->slots[slot].b < pair)
-            slot++;
-        network->pair_slots[pair] = slot;
-    }
-}
-
 /* A network of the shape's sizes without arrays. */
 static SceneNet sizes_of(const SceneNetShape *shape) {
     const int slots = shape->slot_count, inputs = ROW_LANES + shape->state + shape->present + shape->warm;
@@ -114,7 +103,14 @@ static bool allocate(SceneNet *network, const Slot *slots, Error *error) {
     if (network->block == NULL) return error_memory(error, "scene-net");
     lay_out(network);
     memcpy(network->slots, slots, (size_t)network->slot_count * sizeof *slots);
-    index_pairs(network);
+    /* The first slot of each pair. */
+    const int pairs = network->body_count * network->body_count;
+    for (int pair = 0, slot = 0; pair <= pairs; pair++) {
+        while (slot < network->slot_count &&
+               network->slots[slot].a * network->body_count + network->slots[slot].b < pair)
+            slot++;
+        network->pair_slots[pair] = slot;
+    }
     return true;
 }
 

@@ -28,7 +28,7 @@ bool subspace_shape_check(const SubspaceShape *shape, const char *where, Error *
 }
 
 /* Takes `count` numbers from the block; before there is one, only counts them. */
-static float *subspace_net_take(SubspaceNet *net, size_t *used, size_t count) {
+static float *take(SubspaceNet *net, size_t *used, size_t count) {
     float *at = net->block != NULL ? net->block + *used : NULL;
     *used += count;
     return at;
@@ -36,8 +36,7 @@ static float *subspace_net_take(SubspaceNet *net, size_t *used, size_t count) {
 
 static SubspaceLayer take_layer(SubspaceNet *net, size_t *used, int from, int to) {
     const size_t lanes = (size_t)subspace_lanes(to);
-    return (SubspaceLayer){from, (int)lanes, subspace_net_take(net, used, (size_t)from * lanes),
-                           subspace_net_take(net, used, lanes)};
+    return (SubspaceLayer){from, (int)lanes, take(net, used, (size_t)from * lanes), take(net, used, lanes)};
 }
 
 static size_t lay_out(SubspaceNet *net) {
@@ -45,15 +44,15 @@ static size_t lay_out(SubspaceNet *net) {
     const size_t numbers = (size_t)subspace_lanes(SUBSPACE_POSE * shape->bodies),
                  components = (size_t)shape->components;
     size_t used = 0;
-    net->rest = subspace_net_take(net, &used, numbers);
-    net->basis = subspace_net_take(net, &used, components * numbers);
-    net->low = subspace_net_take(net, &used, components);
-    net->high = subspace_net_take(net, &used, components);
-    net->before = subspace_net_take(net, &used, (size_t)shape->frames_before * (size_t)(shape->bodies - 1) * POSE);
+    net->rest = take(net, &used, numbers);
+    net->basis = take(net, &used, components * numbers);
+    net->low = take(net, &used, components);
+    net->high = take(net, &used, components);
+    net->before = take(net, &used, (size_t)shape->frames_before * (size_t)(shape->bodies - 1) * POSE);
     for (int i = 0; i < shape->predictor_count; i++) {
         SubspacePredictor *predictor = &net->predictors[i];
         const int count = predictor->components = shape->predictors[i];
-        predictor->linear = subspace_net_take(net, &used, 2 * (size_t)subspace_lanes(count));
+        predictor->linear = take(net, &used, 2 * (size_t)subspace_lanes(count));
         predictor->first = take_layer(net, &used, 2 * count + SUBSPACE_LAUNCH, shape->hidden);
         predictor->second = take_layer(net, &used, shape->hidden, shape->hidden);
         predictor->last = take_layer(net, &used, shape->hidden, count);
@@ -62,7 +61,7 @@ static size_t lay_out(SubspaceNet *net) {
 }
 
 /* The shape is set. */
-static bool subspace_net_allocate(void *of, Error *error) {
+static bool allocate(void *of, Error *error) {
     SubspaceNet *net = of;
     net->block = calloc(lay_out(net), sizeof *net->block);
     if (net->block == NULL) return error_memory(error, "subspace");
@@ -74,7 +73,7 @@ SubspaceNet *subspace_net_create(const SubspaceShape *shape, Error *error) {
     SubspaceNet *net = calloc(1, sizeof *net);
     if (net == NULL) return error_memory(error, "subspace"), NULL;
     net->shape = *shape;
-    if (!subspace_net_allocate(net, error)) return free(net), NULL;
+    if (!allocate(net, error)) return free(net), NULL;
     return net;
 }
 
@@ -95,7 +94,7 @@ const SubspacePredictor *subspace_net_choose(const SubspaceNet *net, int compone
 
 enum { SIZES = 3 }; /* bodies, hidden, frames_before */
 
-static NetField *subspace_net_put(NetField *at, const char *name, int predictor, int rows, int width, float *numbers) {
+static NetField *put(NetField *at, const char *name, int predictor, int rows, int width, float *numbers) {
     *at = (NetField){.type = NPZ_FLOAT32,
                      .rank = rows > 0 ? 2 : 1,
                      .shape = {rows > 0 ? rows : width, width},
@@ -110,8 +109,8 @@ static NetField *subspace_net_put(NetField *at, const char *name, int predictor,
 
 static NetField *put_layer(NetField *at, const char *rows, const char *biases, int predictor,
                            const SubspaceLayer *layer) {
-    at = subspace_net_put(at, rows, predictor, layer->from, layer->lanes, layer->rows);
-    return subspace_net_put(at, biases, predictor, 0, layer->lanes, layer->biases);
+    at = put(at, rows, predictor, layer->from, layer->lanes, layer->rows);
+    return put(at, biases, predictor, 0, layer->lanes, layer->biases);
 }
 
 static int list_fields(void *of, NetField *fields) {
@@ -126,14 +125,14 @@ static int list_fields(void *of, NetField *fields) {
         {"predictors", NPZ_INT32, 1, {shape->predictor_count}, .data = shape->predictors, .known = true}};
     NetField *at = fields + sizeof first / sizeof *first;
     memcpy(fields, first, sizeof first);
-    at = subspace_net_put(at, "rest", -1, 0, lanes, net->rest);
-    at = subspace_net_put(at, "basis", -1, shape->components, lanes, net->basis);
-    at = subspace_net_put(at, "low", -1, 0, shape->components, net->low);
-    at = subspace_net_put(at, "high", -1, 0, shape->components, net->high);
-    at = subspace_net_put(at, "before", -1, 0, POSE * shape->frames_before * (shape->bodies - 1), net->before);
+    at = put(at, "rest", -1, 0, lanes, net->rest);
+    at = put(at, "basis", -1, shape->components, lanes, net->basis);
+    at = put(at, "low", -1, 0, shape->components, net->low);
+    at = put(at, "high", -1, 0, shape->components, net->high);
+    at = put(at, "before", -1, 0, POSE * shape->frames_before * (shape->bodies - 1), net->before);
     for (int i = 0; i < shape->predictor_count; i++) {
         const SubspacePredictor *predictor = &net->predictors[i];
-        at = subspace_net_put(at, "linear", i, 2, predictor->last.lanes, predictor->linear);
+        at = put(at, "linear", i, 2, predictor->last.lanes, predictor->linear);
         at = put_layer(at, "first_rows", "first_biases", i, &predictor->first);
         at = put_layer(at, "second_rows", "second_biases", i, &predictor->second);
         at = put_layer(at, "last_rows", "last_biases", i, &predictor->last);
@@ -166,8 +165,7 @@ static bool check_ranges(void *of, const char *path, Error *error) {
     return true;
 }
 
-static const NetFileKind kind = {SUBSPACE_KIND, SUBSPACE_VERSION,      list_fields,
-                                 read_sizes,    subspace_net_allocate, check_ranges};
+static const NetFileKind kind = {SUBSPACE_KIND, SUBSPACE_VERSION, list_fields, read_sizes, allocate, check_ranges};
 
 bool subspace_net_write(const SubspaceNet *net, const char *path, Error *error) {
     return net_file_write(&kind, net, path, error);
@@ -224,7 +222,7 @@ static void run_layer(const RowKernels *kernels, const SubspaceLayer *layer, con
 }
 
 /* next += N(...) */
-static void subspace_net_correct(Subspace *subspace, const float launch[SUBSPACE_LAUNCH]) {
+static void correct(Subspace *subspace, const float launch[SUBSPACE_LAUNCH]) {
     const SubspacePredictor *predictor = subspace->predictor;
     const RowKernels *kernels = subspace->kernels;
     const int components = predictor->components, hidden = subspace->net->shape.hidden;
@@ -248,7 +246,7 @@ SubspaceReport subspace_step(Subspace *subspace, const float launch[SUBSPACE_LAU
     float *next = subspace->next;
     SubspaceReport report = {0, 0};
     if (subspace->corrects)
-        subspace_net_correct(subspace, launch);
+        correct(subspace, launch);
     else
         memset(next, 0, (size_t)predictor->last.lanes * sizeof *next);
     for (int k = 0; k < predictor->components; k++) {
