@@ -13,7 +13,7 @@
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "learning/launches.h"
-#include "learning/learning.h"
+#include "learning/principal.h"
 #include "methods/hybrid.h"
 #include "methods/hybrid_memory.h"
 #include "methods/pair.h"

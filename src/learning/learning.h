@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What trainings share: principal components, Adam, and a training's state on disk, progress and interruption.
+/* What trainings share: Adam, and a training's state on disk, progress and interruption.
 
        Fit fit;
        fit_init(&fit, command, "net.npz.part", progress);
@@ -12,22 +12,6 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
-
-typedef struct PrincipalRows {
-    const float *numbers; /* [count, columns] */
-    size_t count;
-    int columns;
-    size_t group; /* rows that one part of the sums takes together; 0: 1 */
-} PrincipalRows;
-
-void principal_mean(const PrincipalRows *rows, double *mean);
-
-/* Eigenvectors of the sum over the rows of u u^T, u a row less the centre[columns]: values[columns] falling,
-   vectors[columns, columns]: row i belongs to value i, has length 1, and its largest entry is positive. By GSL, in a
-   time that grows with the cube of the columns: 1,300 take some ten seconds. The same bits for any number of threads;
-   another version of GSL may have others. ERROR_INPUT where a number is NaN or infinite. */
-bool principal_components(const PrincipalRows *rows, const double *centre, double *values, double *vectors,
-                          Error *error);
 
 /* Adam: each weight steps by its mean slope, divided by the root of its mean squared slope. Same bits on every machine.
    Source: Kingma, Ba, "Adam: A Method for Stochastic Optimization" (2015). */

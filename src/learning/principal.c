@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Principal components: second moments of rows, and their eigenvectors by GSL. */
+#include "learning/principal.h"
+
 #include "base/base.h"
-#include "learning/learning.h"
 
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>

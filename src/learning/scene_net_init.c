@@ -2,7 +2,7 @@
 /* The first network of scene-net, from samples: its slots, projections, scales and weights. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "learning/learning.h"
+#include "learning/principal.h"
 #include "learning/scene_net_fit.h"
 #include "methods/scene_net.h"
 #include "nets/kinds.h"

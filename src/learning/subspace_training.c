@@ -7,6 +7,7 @@
 #include "engine/engine.h"
 #include "learning/launches.h"
 #include "learning/learning.h"
+#include "learning/principal.h"
 #include "methods/methods.h"
 #include "methods/subspace.h"
 #include "nets/kinds.h"

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "engine/uniform.h"
-#include "learning/learning.h"
+#include "learning/principal.h"
 
 #include <omp.h>
 

@@ -190,24 +190,6 @@ static void assert_derivatives(const ContactProblem *problem, int sweeps, uint32
     assert_int_equal(of_factors.moved, sweeps > 0 ? sweeps - 1 : 0);
 }
 
-/* At the bomb's first touch. */
-static bool derive_impact(void *context, int frame, const World *world, Error *error) {
-    (void)frame, (void)error;
-    bool *met = context;
-    if (*met) return true;
-    const ContactProblem *problem = world_problem(world);
-    uint32_t seed = 3;
-    for (int i = 0; i < problem->contact_count && !*met; i++) *met = problem->contacts[i].b == problem->bomb;
-    for (int sweeps = 0; *met && sweeps <= SWEEPS; sweeps += 4) assert_derivatives(problem, sweeps, &seed);
-    return true;
-}
-
-TEST(derivatives_match_differences_at_an_impact_of_the_stack) {
-    bool met = false;
-    observe_scene("stack", derive_impact, &met);
-    assert_true(met);
-}
-
 TEST(derivatives_match_differences_on_random_problems) {
     uint32_t seed = 5;
     for (int run = 0; run < 8; run++) {
@@ -248,19 +230,6 @@ TEST(without_sweeps_the_derivative_is_that_of_an_impulse) {
     }
 }
 
-/* A pulling start is clamped to 0, so neither of its impulses has an effect. */
-TEST(a_start_that_pulls_has_no_effect) {
-    uint32_t seed = 15;
-    RandomProblem random;
-    double by_start[NUMBERS_MAX];
-    make_random(&random, &seed, 10, 0.2f, 1);
-    OWN(Case) given = make_case(&random.problem, 0, &seed);
-    for (int i = 0; i < 2 * random.problem.contact_count; i++) given.start[i] = i % 2 == 0 ? -1 : i % 3 - 1;
-    run_case(&given);
-    unrolled_back(&given.unrolled, &given.rows, given.weights, by_start, NULL);
-    for (int i = 0; i < 2 * random.problem.contact_count; i++) assert_near(by_start[i], 0, 0);
-}
-
 /* Impulses are equal and opposite: without static bodies, no start and no factor changes the sum of m v. */
 TEST(total_momentum_is_conserved) {
     uint32_t seed = 11;
@@ -276,29 +245,6 @@ TEST(total_momentum_is_conserved) {
     unrolled_back(&given.unrolled, &given.rows, mass, by_start, by_factors);
     for (int i = 0; i < 2 * random.problem.contact_count; i++) assert_near(by_start[i], 0, 1e-9);
     for (int s = 0; s < SWEEPS; s++) assert_near(by_factors[s], 0, 1e-9);
-}
-
-/* Earlier, larger problems and earlier backward passes do not change the result. */
-TEST(a_reused_work_space_gives_the_same_bits) {
-    uint32_t seed = 13;
-    RandomProblem large, small;
-    double by_start[2][NUMBERS_MAX];
-    make_random(&large, &seed, 30, 0.2f, 1);
-    make_random(&small, &seed, 8, 0.3f, 1);
-    Case other = make_case(&large.problem, SWEEPS, &seed), given = make_case(&small.problem, 7, &seed);
-    run_case(&given);
-    unrolled_back(&given.unrolled, &given.rows, given.weights, by_start[0], NULL);
-    unrolled_free(&given.unrolled);
-    run_case(&other);
-    given.unrolled = other.unrolled;
-    unrolled_back(&given.unrolled, &other.rows, other.weights, by_start[1], NULL);
-    run_case(&given);
-    for (int twice = 0; twice < 2; twice++) {
-        unrolled_back(&given.unrolled, &given.rows, given.weights, by_start[1], NULL);
-        assert_memory_equal(by_start[0], by_start[1], 2 * (size_t)small.problem.contact_count * sizeof(double));
-    }
-    unrolled_problem_free(&other.rows);
-    free_case(&given);
 }
 
 RUN_TESTS(NULL, NULL)
