@@ -225,7 +225,7 @@ void subspace_reconstruct(Subspace *subspace);
    impulses less the warm start. A slot is a possible contact of the scene: two bodies and a feature that occurred in
    training. In each step some of the slots are present.
 
-       x  = bomb's state; projections (learning/scene_net_fit.h) of the other bodies' state, of which slots
+       x  = bomb's state; projections (learning/principal.h) of the other bodies' state, of which slots
             are present, and of their warm-start impulses
        h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
        (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]

@@ -4,7 +4,7 @@
 
 #include "methods/kernels.h"
 #include "methods/random_problem.h"
-#include "learning/scene_net_fit.h"
+#include "learning/unrolled.h"
 
 static const double factors[20] = {9,   0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.8, 0.8, 0.9,
                                    0.9, 0.9, 0.9, 0,   0.9, 0.9, 0.9, 0.9, 0.9, 0.9};
