@@ -26,7 +26,6 @@
     COMMAND(train, "train the network of a method", "Learn")                                 \
     COMMAND(dataset, "record what the engine's solver does to each touching pair", NULL)     \
     COMMAND(paper, "reproduce the paper, from seed to report", "For research on the method") \
-    COMMAND(merge, "join what the shards of a study did", NULL)                              \
     COMMAND(solve, "solve the contact problem of one step with many methods", NULL)
 
 typedef struct Command {

@@ -14,7 +14,6 @@
 
 typedef struct Options {
     PaperOptions study;
-    const char *shard; /* or NULL */
 } Options;
 
 static const Option option_table[] = {
@@ -26,7 +25,7 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, study.scenes)},
     {"--quick", 0, NULL, "Fewer networks, launches and iterations: under a minute", OPTION_FLAG(Options, study.quick)},
     {"--seed", 0, "N", "Seed of launches, splits and initial weights (default: 1)", OPTION_SEED(Options, study.seed)},
-    {OPTION_SHARD(Options, shard)},
+    {OPTION_SHARD(Options, study.shard)},
     {0}};
 
 static const CommandSpec spec = {
@@ -53,14 +52,12 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
 
 bool command_paper(int argc, char **argv, Error *error) {
     Options options = {.study = {.scenes = installed_path("scenes"), .seed = 1, .draw = draw_and_report}};
-    PiecesRun run;
     Pieces pieces = {0};
     if (!options_parse(&spec, argc, argv, &options, error) ||
-        !shard_option_take(&run, options.shard, argc, argv, error) || !output_check_folder(options.study.folder, error))
+        !output_check_folder(options.study.folder, error))
         return false;
-    options.study.run = &run;
     const bool ok = paper_run(&options.study, &pieces, progress_bar_begin("paper"), error);
     progress_bar_end();
-    if (ok && pieces.mode == PIECES_SHARD) shard_option_print(&pieces, options.study.folder);
+    if (ok && options.study.shard.count > 0) shard_option_print(&pieces);
     return ok;
 }

@@ -1,135 +1,176 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox stability: the cells of its maps, the runs that show them, the command. */
+/* twinbox stability: the command, and its tables for the terminal. */
 #include "base/base.h"
-#include "base/file.h"
-#include "base/machine.h"
+#include "base/csv.h"
 #include "cli/cli.h"
 #include "cli/common_options.h"
 #include "cli/installed.h"
-#include "cli/larger_commands.h"
 #include "cli/options.h"
 #include "cli/output_checks.h"
-#include "cli/panels.h"
 #include "cli/progress_bar.h"
-#include "pictures/picture.h"
-#include "pictures/render.h"
+#include "methods/methods.h"
+#include "methods/names.h"
 #include "runs/pieces.h"
-#include "runs/trajectory.h"
 #include "runs/verdict.h"
-#include "scenes/scenes.h"
 #include "studies/contenders.h"
 #include "studies/stability.h"
 
-#include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-const MapCell *stability_cell_holder(const CsvTable *table, const MapCell *row) {
-    for (int i = 0; i < table->count; i++) {
-        const MapCell *other = map_cell(table, i);
-        if (strcmp(other->map, row->map) == 0 && other->x == row->x && other->y == row->y &&
-            other->verdict < VERDICTS && verdict_holds((Verdict)other->verdict))
-            return other;
+enum { LABEL_SIZE = 512, VALUE_SIZE = 32, LINE_WIDTH = 79, LABEL_WIDTH = 24 };
+
+/* A number as the tables have it. */
+typedef struct Value {
+    char text[VALUE_SIZE];
+} Value;
+
+static Value show(double number) {
+    Value value = {"-"};
+    if (!isnan(number)) snprintf(value.text, sizeof value.text, "%.9g", number);
+    return value;
+}
+
+/* "14 | 15 falls"; without a value on one side: "40 | - moves". */
+static void describe(const BorderRow *row, char text[LABEL_SIZE]) {
+    const char *verdict = verdict_words[row->verdict];
+    if (isnan(row->holds_at) && isnan(row->fails_at))
+        snprintf(text, LABEL_SIZE, "%s", verdict);
+    else
+        snprintf(text, LABEL_SIZE, "%s | %s %s", show(row->holds_at).text, show(row->fails_at).text, verdict);
+}
+
+static void write_label(char label[LABEL_SIZE], const char *method, const char *setting) {
+    const MethodDescription *description = method_describe(method);
+    char whole[LABEL_SIZE];
+    snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
+    if (description != NULL && description->external)
+        method_name(label, LABEL_SIZE, whole); /* the setting `name` */
+    else
+        strcpy(label, whole);
+}
+
+/* The borders of one method, from row i on, in as many lines as needed. Returns the row after them. */
+static int print_method(const CsvTable *table, int i) {
+    const BorderRow *row = border_row(table, i);
+    char label[LABEL_SIZE], border[LABEL_SIZE];
+    write_label(label, row->method, row->setting);
+    int next = i, width = printf("  %-*s", LABEL_WIDTH, label);
+    do {
+        describe(border_row(table, next), border);
+        if (next > i) width += printf(";");
+        if (next > i && width + (int)strlen(border) + 2 > LINE_WIDTH) width = printf("\n  %-*s", LABEL_WIDTH, "") - 1;
+        width += printf(" %s", border);
+        next++;
+    } while (next < table->count && border_same_study(border_row(table, next), row) &&
+             border_same_method(border_row(table, next), row));
+    printf("\n");
+    return next;
+}
+
+static bool print_borders(const char *folder, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &border_layout, error)) return false;
+    for (int i = 0; i < table.count;) {
+        const BorderRow *row = border_row(&table, i);
+        if (i == 0 || !border_same_study(row, row - 1)) {
+            const StabilityStudy *study = stability_study_find(row->study);
+            printf("%s: %s%s%s, %s", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "", row->unit,
+                   border_is_struck(&table, i) ? "agrees with the reference | differs; reference: stands | falls"
+                                               : "holds | fails");
+            if (study != NULL && study->rigid != NULL && strcmp(study->parameter, row->parameter) == 0)
+                printf(" (rigid boxes: %.4g)", study->rigid());
+            printf("\n");
+        }
+        i = print_method(&table, i);
     }
-    return NULL;
-}
-
-/* s that are shown after the frame that decided the verdict. */
-static const double shown_after = 3;
-
-/* Hz: a scene with more steps per second is thinned to this rate. */
-static const double shown_rate = 60;
-
-typedef struct Making {
-    CellRuns *runs;
-    const CellMap *map;
-    const char *input;
-    const Progress *progress;
-} Making;
-
-static Scene *read_scene(const Making *making, Error *error) {
-    SceneSetting settings[2] = {{.value = making->runs->rows[0]->x}, {.value = making->runs->rows[0]->y}};
-    snprintf(settings[0].name, sizeof settings[0].name, "%s", making->map->x_parameter);
-    snprintf(settings[1].name, sizeof settings[1].name, "%s", making->map->y_parameter);
-    return scene_read_with(making->map->scene, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
-}
-
-/* "falls at 4.22 s (0.53 m, body 7)" */
-static void cell_note(char note[CELL_NOTE_SIZE], const MapCell *cell, double dt) {
-    snprintf(note, CELL_NOTE_SIZE, "%s", verdict_words[cell->verdict]);
-    if (verdict_holds((Verdict)cell->verdict) || isnan(cell->frame)) return;
-    text_add(note, CELL_NOTE_SIZE, " at %.2f s", cell->frame * dt);
-    if (isnan(cell->value)) return;
-    text_add(note, CELL_NOTE_SIZE, " (%.3g %s", cell->value, cell->unit);
-    if (!isnan(cell->body) && cell->body >= 0) text_add(note, CELL_NOTE_SIZE, ", body %.0f", cell->body);
-    text_add(note, CELL_NOTE_SIZE, ")");
-}
-
-static bool add_run(const Making *making, const Scene *scene, const MapCell *row, Error *error) {
-    Panels *panels = &making->runs->panels;
-    char method[MAP_METHOD_SIZE], note[CELL_NOTE_SIZE];
-    map_cell_method(method, row);
-    if (!panels_add_watched(panels, scene, method, making->input, making->progress, error)) return false;
-    Trajectory *run = panels->runs[panels->count - 1];
-    cell_note(note, row, (double)scene->dt);
-    trajectory_judge(run, note, !isnan(row->frame) && row->frame < run->frames ? (int)row->frame : -1,
-                     !isnan(row->body) && row->body < run->bodies ? (int)row->body : -1);
+    csv_table_free(&table);
     return true;
 }
 
-/* After an explosion, states may become NaN or infinite in the seconds that follow: then these are left out. */
-static bool run_row(const Making *making, Scene *scene, const MapCell *row, int shown, Error *error) {
-    Error failure = {0};
-    int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
-    scene->frames = row->verdict >= VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
-    if (add_run(making, scene, row, &failure)) return true;
-    if (row->verdict != VERDICT_EXPLODES || failure.failure == FAILURE_NONE || decided >= shown)
-        return *error = failure, false;
-    scene->frames = decided;
-    return add_run(making, scene, row, error);
+static bool same_study(const RunRow *a, const RunRow *b) { return strcmp(a->study, b->study) == 0; }
+
+static bool same_method(const RunRow *a, const RunRow *b) {
+    return same_study(a, b) && strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
 }
 
-static bool run_all(const Making *making, Error *error) {
-    CellRuns *runs = making->runs;
-    Scene *scene = read_scene(making, error);
-    if (scene == NULL) return false;
-    const MapCell *own = runs->rows[runs->count - 1];
-    double shown = (isnan(own->frame) ? scene->frames : own->frame) + ceil(shown_after / (double)scene->dt);
-    runs->dt = (double)scene->dt;
-    bool ok = true;
-    for (int i = 0, frames = scene->frames; ok && i < runs->count; i++)
-        ok = run_row(making, scene, runs->rows[i], shown < frames ? (int)shown : frames, error);
-    scene_destroy(scene);
-    return ok;
+/* "11 creeps, 0.154 m, -0.217 J": the last value at which the method holds, or else the first. */
+static int print_method_at_rest(const RunRow *rows, int count, int i) {
+    char label[LABEL_SIZE];
+    int next = i, shown = i;
+    for (; next < count && same_method(&rows[next], &rows[i]); next++)
+        if (rows[next].verdict < VERDICTS && verdict_holds((Verdict)rows[next].verdict)) shown = next;
+    const RunRow *row = &rows[shown];
+    write_label(label, row->method, row->setting);
+    printf("  %-*s %s %s", LABEL_WIDTH, label, show(row->value).text, verdict_words[row->verdict]);
+    if (!isnan(row->drift)) printf(", %s m", show(row->drift).text);
+    if (!isnan(row->energy)) printf(", %s J", show(row->energy).text);
+    printf("\n");
+    return next;
 }
 
-static bool thin_out(CellRuns *runs, Error *error) {
-    int every = (int)(1 / (shown_rate * runs->dt) + 0.01);
-    for (int i = 0; every > 1 && i < runs->panels.count; i++) {
-        Trajectory *thin = trajectory_every(runs->panels.runs[i], every, error);
-        if (thin == NULL) return false;
-        trajectory_destroy(runs->panels.runs[i]);
-        runs->panels.runs[i] = thin;
+static bool print_rest(const char *folder, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &rest_layout, error)) return false;
+    const RunRow *rows = table.rows;
+    for (int i = 0; i < table.count;) {
+        if (i == 0 || !same_study(&rows[i], &rows[i - 1]))
+            printf("%s: the last %s that holds, drift and energy after %d falls\n", rows[i].study, rows[i].parameter,
+                   VERDICT_CREEP_FROM);
+        i = print_method_at_rest(rows, table.count, i);
     }
+    csv_table_free(&table);
     return true;
 }
 
-bool cell_runs_make(CellRuns *runs, const CellMap *map, const MapCell *holder, const MapCell *cell, const char *input,
-                    const Progress *progress, Error *error) {
-    const Making making = {runs, map, input, progress};
-    *runs = (CellRuns){.count = 0};
-    if (holder != NULL && !verdict_holds((Verdict)cell->verdict)) runs->rows[runs->count++] = holder;
-    runs->rows[runs->count++] = cell;
-    return run_all(&making, error) && thin_out(runs, error);
+/* A line a study or map, in the order of the table. */
+static bool print_unconverged(const char *folder, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &unconverged_layout, error)) return false;
+    printf("steps of the reference that did not converge%s -> %s/unconverged.csv\n", table.count == 0 ? ": none" : "",
+           folder);
+    for (int i = 0; i < table.count; i++) {
+        const char *study = map_cell(&table, i)->map;
+        char text[UNCONVERGED_TEXT_SIZE];
+        if (i > 0 && strcmp(study, map_cell(&table, i - 1)->map) == 0) continue;
+        stability_unconverged(&table, study, text);
+        printf("  %-*s %s\n", LABEL_WIDTH, study, text);
+    }
+    csv_table_free(&table);
+    return true;
 }
 
-void cell_runs_free(CellRuns *runs) { panels_free(&runs->panels); }
+/* If there is such a table. */
+static bool print_engines(const char *folder, Error *error) {
+    CsvTable table;
+    char path[CSV_PATH_SIZE];
+    if (!csv_table_path(path, folder, &engine_layout, error)) return false;
+    if (access(path, F_OK) != 0) return true;
+    if (!csv_table_read_from(&table, folder, &engine_layout, error)) return false;
+    for (int i = 0; i < table.count; i++) {
+        const EngineRow *row = (const EngineRow *)table.rows + i;
+        char label[LABEL_SIZE];
+        write_label(label, row->method, row->setting);
+        printf("%s: %s is %s %s", row->study, label, row->engine[0] != '\0' ? row->engine : "unknown", row->version);
+        if (row->failed > 0) printf("; the adapter failed in %d of %d runs: %s", row->failed, row->runs, row->reason);
+        if (!isnan(row->differs)) printf("; not deterministic: two runs at %s differ", show(row->differs).text);
+        printf("\n");
+    }
+    csv_table_free(&table);
+    printf("programs and their failures -> %s\n", path);
+    return true;
+}
 
-const CellMap *cell_map_find(const CellMap *maps, int count, const char *name, Error *error) {
-    for (int i = 0; i < count; i++)
-        if (strcmp(maps[i].name, name) == 0) return &maps[i];
-    return error_input(error, "--pages", "map %s has no scene", name), NULL;
+static bool print_tables(const char *folder, Error *error) {
+    if (!print_borders(folder, error) || !print_rest(folder, error) || !print_engines(folder, error)) return false;
+    printf("borders -> %s/stability.csv; maps -> %s/maps.csv\n", folder, folder);
+    printf("their figures -> %s/borders.png, %s/map-NAME.png\n", folder, folder);
+    printf("links to live pages -> %s/stability.html\n", folder);
+    printf("why methods do not apply -> %s/refusals.csv\n", folder);
+    printf("discarded outputs of networks, steps that fell back -> %s/fallbacks.csv\n", folder);
+    printf("drift and energy at rest -> %s/rest.csv\n", folder);
+    return print_unconverged(folder, error);
 }
 
 /* One parameter more than can be varied, which stability_own_make() then refuses. */
@@ -137,8 +178,6 @@ enum { VARY_TEXTS = STABILITY_MAX_VARY + 1 };
 
 typedef struct Options {
     StabilityOptions study;
-    bool pages, plan;
-    const char *shard; /* or NULL */
     const char *scene; /* or NULL */
     int vary_count;
     const char *vary[VARY_TEXTS];
@@ -157,7 +196,7 @@ static void list_names(void) {
 static const Option option_table[] = {
     {"--output", 'o', "DIR",
      "Folder for stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv, unconverged.csv and the figures",
-     OPTION_TEXT(Options, study.folder)},
+     OPTION_TEXT(Options, study.folder), .needed = "-o DIR is needed"},
     {"--methods", 0, "LIST",
      "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "
      "does not report as left out)",
@@ -173,12 +212,7 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, study.scenes)},
     {"--quick", 0, NULL, "Few studies, small maps: under two minutes; of SCENE: few values",
      OPTION_FLAG(Options, study.quick)},
-    {"--pages", 0, NULL,
-     "Also write stability.html: borders and maps whose failing cells link to pages that play what happened there",
-     OPTION_FLAG(Options, pages)},
-    {OPTION_SHARD(Options, shard)},
-    {"--plan", 0, NULL, "Only measure some of the pieces, and print what all take on 1 to 100,000 cores; needs no -o",
-     OPTION_FLAG(Options, plan)},
+    {OPTION_SHARD(Options, study.shard)},
     {0}};
 
 static const CommandSpec spec = {
@@ -193,88 +227,38 @@ static const CommandSpec spec = {
         "continues where it stopped.\n"
         "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "
         "of every method and about ten more for each border, a map 100, each as long as the scene's frames.\n"
-        "With --pages, the first failing value of each border and up to 8 failing cells of each method in each map "
-        "get a page, which shows at most nine seconds of the run beside the first method that holds there; all pages "
-        "together take at most 256 MB.\v"
+        "The verdicts in stability.html link into a live page of each scene, which steps it with the values of that "
+        "place.\v"
         "Example: twinbox stability -o out/stability\n"
         "         twinbox new wall.yaml --like wall\n"
         "         twinbox stability wall.yaml --vary pairs --vary bomb_mass -o out/wall\n"
         "         twinbox stability stack --vary iterations --quick -o out/borders\n"
         "         twinbox stability --study stack_height --methods engine -o out/height"};
 
-/* Frees with free_maps(), also after a failure. */
-typedef struct CellMaps {
-    CellMap *items; /* [count] */
-    int count;
-    char (*paths)[STABILITY_PATH_SIZE];
-} CellMaps;
-
-static void free_maps(CellMaps *maps) {
-    free(maps->paths);
-    free(maps->items);
-}
-
-static bool list_maps(CellMaps *maps, const Options *options, Error *error) {
-    const StabilityOwn *own = options->study.own;
-    const StabilityMap *table = own != NULL ? own->maps : stability_maps;
-    maps->count = own != NULL ? own->map_count : stability_map_count;
-    maps->paths = malloc(((size_t)maps->count + 1) * sizeof *maps->paths);
-    maps->items = malloc(((size_t)maps->count + 1) * sizeof *maps->items);
-    if (maps->paths == NULL || maps->items == NULL) return error_memory(error, "maps");
-    for (int i = 0; i < maps->count; i++) {
-        const StabilityMap *map = &table[i];
-        const StabilityPlace place = {options->study.scenes, map->scene, map->file};
-        if (!stability_path(maps->paths[i], &place, error)) return false;
-        maps->items[i] = (CellMap){map->name, maps->paths[i], map->x.parameter, map->y.parameter};
-    }
-    return true;
-}
-
-static bool write_pages(const Options *options, uint64_t key, Error *error) {
-    CellMaps maps = {0};
-    bool ok = list_maps(&maps, options, error);
-    const StabilityPages pages = {&options->study, maps.items, maps.count};
-    ok = ok && stability_pages_write(&pages, key, error);
-    free_maps(&maps);
-    return ok;
-}
-
-static bool stability_draw(void *context, uint64_t key, Error *error) {
-    const Options *options = context;
-    const bool drawn =
-        stability_figures_write(options->study.folder, options->study.own, progress_bar_begin("maps"), error);
+static bool draw(const StabilityOptions *options, Error *error) {
+    const bool drawn = stability_figures_write(options->folder, options->own, progress_bar_begin("maps"), error);
     progress_bar_end();
-    return drawn && (!options->pages || write_pages(options, key, error));
+    return drawn;
 }
 
-static bool stability_study(const StabilityOptions *options, Error *error) {
+static bool run_study(const StabilityOptions *options, Error *error) {
     Pieces pieces = {0};
-    bool ok = stability_run(options, &pieces, progress_bar_begin("stability"), error);
+    const bool ok = stability_run(options, &pieces, progress_bar_begin("stability"), error);
     progress_bar_end();
-    if (ok && pieces.mode == PIECES_SHARD) {
-        shard_option_print(&pieces, options->folder);
+    if (!ok) return false;
+    if (options->shard.count > 0) {
+        shard_option_print(&pieces);
         return true;
     }
-    ok = ok && stability_print(options->folder, error);
+    if (!print_tables(options->folder, error)) return false;
     const NameList left_out = contenders_left_out(STUDY_STABILITY);
-    if (ok && options->methods == NULL && left_out.text[0] != '\0')
+    if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
-    return ok;
-}
-
-static bool estimate(const StabilityOptions *options, Error *error) {
-    PiecesEstimate result;
-    const bool ok = stability_estimate(options, &result, progress_bar_begin("plan"), error);
-    progress_bar_end();
-    if (ok) stability_plan_print(&result);
-    return ok;
+    return true;
 }
 
 /* SCENE and --vary go together, and neither with what chooses studies of the table. */
 static bool check_options(const Options *options, Error *error) {
-    if (options->study.folder == NULL && !options->plan) return error_input(error, "-o", "-o DIR is needed");
-    if (options->plan && (options->pages || options->shard != NULL))
-        return error_input(error, "--plan", "writes nothing; it cannot be combined with --pages or --shard");
     if (options->scene == NULL)
         return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
     if (options->vary_count == 0)
@@ -286,9 +270,8 @@ static bool check_options(const Options *options, Error *error) {
 }
 
 bool command_stability(int argc, char **argv, Error *error) {
-    Options options = {.study = {.scenes = installed_path("scenes"), .draw = stability_draw}};
+    Options options = {.study = {.scenes = installed_path("scenes"), .draw = draw}};
     StabilityOwn own;
-    PiecesRun run;
     list_names();
     if (!options_parse(&spec, argc, argv, &options, error) || !check_options(&options, error)) return false;
     if (options.scene != NULL) {
@@ -296,9 +279,5 @@ bool command_stability(int argc, char **argv, Error *error) {
             return false;
         options.study.own = &own;
     }
-    options.study.draw_context = &options;
-    options.study.run = &run;
-    if (options.plan) return estimate(&options.study, error);
-    if (!shard_option_take(&run, options.shard, argc, argv, error)) return false;
-    return output_check_folder(options.study.folder, error) && stability_study(&options.study, error);
+    return output_check_folder(options.study.folder, error) && run_study(&options.study, error);
 }

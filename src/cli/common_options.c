@@ -2,14 +2,12 @@
 /* Options that several commands have. */
 #include "base/base.h"
 #include "cli/common_options.h"
-#include "cli/notes.h"
 #include "cli/options.h"
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
 
 #include <inttypes.h>
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool camera_option_read(const Option *option, const char *text, void *value, Error *error) {
@@ -56,45 +54,25 @@ bool frames_option_read(const Option *option, const char *text, void *value, Err
     return true;
 }
 
-/* What is given to shard_option_take() by the merge. */
-static const PiecesRun *merging;
-
-void shard_option_merge(const PiecesRun *run) { merging = run; }
-
-/* The arguments that all shards have: without --shard, whose value differs. They last as long as the program. */
-static bool keep_arguments(PiecesRun *run, int argc, char **argv, Error *error) {
-    static char **kept;
-    free(kept);
-    kept = calloc((size_t)argc + 1, sizeof *kept);
-    if (kept == NULL) return error_memory(error, argv[0]);
-    run->argv = kept;
-    for (int i = 0; i < argc; i++) {
-        if (strncmp(argv[i], "--sha", strlen("--sha")) != 0)
-            kept[run->argc++] = argv[i];
-        else if (strchr(argv[i], '=') == NULL)
-            i++;
-    }
+bool shard_option_read(const Option *option, const char *text, void *value, Error *error) {
+    int64_t numbers[2];
+    const char *rest;
+    if (!parse_leading_int(text, 0, INT32_MAX, &numbers[0], &rest) || *rest != '/' ||
+        !parse_int(rest + 1, 0, INT32_MAX, &numbers[1]))
+        return error_input(error, option->name, "'%s' is not K/N, such as 3/16", text);
+    if (numbers[1] < 1 || numbers[1] > SHARDS_MAX)
+        return error_input(error, option->name, "'%s': N must be from 1 to %d", text, SHARDS_MAX);
+    if (numbers[0] < 1 || numbers[0] > numbers[1])
+        return error_input(error, option->name, "'%s': K must be from 1 to N", text);
+    *(Shard *)value = (Shard){(int)numbers[0], (int)numbers[1]};
     return true;
 }
 
-bool shard_option_take(PiecesRun *run, const char *option, int argc, char **argv, Error *error) {
-    *run = (PiecesRun){0};
-    if (merging != NULL) {
-        *run = *merging;
-        return true;
-    }
-    if (!shard_request(&run->request, option, error) || !keep_arguments(run, argc, argv, error)) return false;
-    if (run->request.source[0] != '\0')
-        note_print("shard %d of %d, by %s; --shard 1/1 does all", run->request.shard.number, run->request.shard.count,
-                   run->request.source);
-    return true;
-}
-
-void shard_option_print(const Pieces *pieces, const char *output) {
+void shard_option_print(const Pieces *pieces) {
     printf("shard %d of %d: %" PRId64 " pieces, %" PRId64 " of them done before -> %s\n", pieces->shard.number,
-           pieces->shard.count, pieces->own - pieces->waiting, pieces->kept, pieces->folder);
-    if (pieces->waiting > 0)
-        printf("    %" PRId64 " more need pieces of other shards: run this shard again when those are done\n",
-               pieces->waiting);
-    printf("    this is one part of %d; when all shards are done: twinbox merge %s\n", pieces->shard.count, output);
+           pieces->shard.count, pieces->own - pieces->left, pieces->kept, pieces->folder);
+    if (pieces->left > 0)
+        printf("    left to the command without --shard, as they are timed or need others: %" PRId64 "\n",
+               pieces->left);
+    printf("    the same command without --shard does what is missing and writes the results\n");
 }

@@ -32,19 +32,16 @@ bool camera_option_read(const Option *option, const char *text, void *view, Erro
 /* Reads the run of --view-from, which the caller destroys; NULL if there is no `path`. ERROR_INPUT beside a view. */
 bool camera_option_load(const char *path, const CameraView *view, Trajectory **run, Error *error);
 
-/* The option --shard of commands whose work can be done in pieces (runs/pieces.h). */
+/* The option --shard of commands whose work is done in pieces (runs/pieces.h). */
 
-/* The row of a command's table; member: a text, NULL if it is not given. */
-#define OPTION_SHARD(T, member)                                                                                      \
-    "--shard", 0, "I/N", "Do share I of N only; 'twinbox merge' joins them (default: as Slurm or MPI says, or all)", \
-        OPTION_TEXT(T, member)
+/* The row of a command's table; member: a Shard. */
+#define OPTION_SHARD(T, member)                                                                                 \
+    "--shard", 0, "K/N",                                                                                        \
+        "Do every N-th piece of the work from the K-th on, and stop; the same command without it does what is " \
+        "missing and writes the results",                                                                       \
+        OPTION_READ(shard_option_read, T, member)
 
-/* How the command is to run: as a merge, a shard or the whole. A note tells what the environment says. argv must
-   last. */
-bool shard_option_take(PiecesRun *run, const char *option, int argc, char **argv, Error *error);
+OptionRead shard_option_read;
 
-/* The result of a shard: "shard 3 of 16: 30 pieces ...". output: as given to pieces_open(). */
-void shard_option_print(const Pieces *pieces, const char *output);
-
-/* The next command that runs is a merge. */
-void shard_option_merge(const PiecesRun *run);
+/* The result of a shard: "shard 3 of 16: 30 pieces ...". */
+void shard_option_print(const Pieces *pieces);

@@ -1,25 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of the larger commands: compare, simulate, stability, train. */
+/* The parts of the larger commands: compare, simulate, train. */
 #pragma once
 #include "base/base.h"
-#include "base/csv.h"
 #include "base/json.h"
-#include "base/machine.h"
 #include "cli/cli.h"
 #include "cli/json_output.h"
 #include "cli/options.h"
-#include "cli/panels.h"
 #include "methods/methods.h"
 #include "regression/limits.h"
 #include "regression/mask.h"
 #include "regression/regression.h"
 #include "regression/report.h"
-#include "runs/pieces.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
-#include "studies/stability.h"
 
 /* twinbox compare: its options and results. */
 
@@ -125,61 +120,6 @@ typedef struct CheckRunOptions {
 
 /* Prints the verdict and figures. False also, without an error, if the run is beyond a limit. */
 bool check_run(const CheckRunOptions *options, Error *error);
-
-/* The tables of a study of stability, for the terminal. */
-
-/* Prints the borders of folder/stability.csv and what folder/rest.csv has, a block a study, a line a method; then where
-   the tables are, and where the reference did not converge. */
-bool stability_print(const char *folder, Error *error);
-
-/* "twinbox stability --plan": pieces, what they take, and how long 10, 1,000 and 100,000 cores need. */
-void stability_plan_print(const PiecesEstimate *estimate);
-
-/* The runs that show what happened in a cell of a stability map. */
-
-/* The origin of a map's runs. */
-typedef struct CellMap {
-    const char *name;                      /* as in maps.csv */
-    const char *scene;                     /* path of the scene file */
-    const char *x_parameter, *y_parameter; /* of the scene; y "": only one is set */
-} CellMap;
-
-/* First the method that holds, if there is one, which is not the cell's own. */
-typedef struct CellRuns {
-    const MapCell *rows[2];
-    int count;
-    double dt; /* s, of a step */
-    Panels panels;
-} CellRuns;
-
-enum { CELL_NOTE_SIZE = 160 };
-
-/* Runs the cell's method and, unless it holds, that of `holder`, if not NULL, until three seconds after the frame that
-   decided the cell's verdict, at most 60 frames per second. The runs have the verdicts of the cells. `progress` NULL:
-   each run has a bar. Errors name `input`. cell_runs_free() also after a failure. */
-bool cell_runs_make(CellRuns *runs, const CellMap *map, const MapCell *holder, const MapCell *cell, const char *input,
-                    const Progress *progress, Error *error);
-void cell_runs_free(CellRuns *runs);
-
-/* The map of that name; NULL with error set if there is none. */
-const CellMap *cell_map_find(const CellMap *maps, int count, const char *name, Error *error);
-
-/* The first method that holds in the same cell, or NULL. */
-const MapCell *stability_cell_holder(const CsvTable *table, const MapCell *row);
-
-/* The pages of stability: each plays what happened in a cell of a map, or where a border fails, beside the first method
-   that holds there. */
-
-typedef struct StabilityPages {
-    const StabilityOptions *study; /* whose folder has the tables */
-    const CellMap *maps;           /* [map_count] */
-    int map_count;
-} StabilityPages;
-
-/* Runs cells again (studies/stability.h tells which) and writes folder/pages/MAP-METHOD-X_Y.html, map_pages.csv and
-   stability.html. A page begins six seconds before the verdict was decided. key: of the study (runs/pieces.h). Prints
-   how many pages there are, and what was left out. */
-bool stability_pages_write(const StabilityPages *pages, uint64_t key, Error *error);
 
 /* The kinds of network that `twinbox train` trains. To add a kind, define train_NAME (train_launches.c has those that
    learn from launches of scenes), and add one line KIND(NAME) here. */

@@ -132,31 +132,19 @@ static bool find_key(const PaperPlan *plan, StudyKey *key, Error *error) {
     return true;
 }
 
-/* A report whose columns of times are partly empty would state what it did not measure. */
-static bool check_times(const Pieces *pieces, Error *error) {
-    return !pieces->cpus_differ || pieces->mode != PIECES_MERGE ||
-           error_input(error, pieces->folder,
-                       "times were measured on different processors, on %s and on others; a report needs times of one: "
-                       "delete those pieces, and run their shard again",
-                       pieces->cpu);
-}
-
 /* What follows from the parts, once all are there. */
 static bool paper_finish(const PaperPlan *plan, Error *error) {
     const PaperOptions *options = plan->options;
-    return check_times(plan->pieces, error) && folder_reserve(options->folder, error) && write_tables(plan, error) &&
-           options->draw(options, error) && pieces_end(plan->pieces, error);
+    return write_tables(plan, error) && options->draw(options, error) && pieces_end(plan->pieces, error);
 }
 
-/* Shards share a folder; a whole study has it to itself. */
 static bool do_parts(PaperPlan *plan, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
     const PaperOptions *options = plan->options;
     plan->pieces = pieces;
-    return pieces_open(pieces, options->folder, key, options->run, error) &&
-           (pieces->mode != PIECES_WHOLE || folder_reserve(options->folder, error)) &&
-           (pieces->mode == PIECES_MERGE || file_make_directory(plan->networks_folder, error)) &&
+    return pieces_open(pieces, options->folder, key, &options->shard, error) &&
+           file_make_directory(plan->networks_folder, error) &&
            pieces_do(pieces, &plan->plan, progress, error) &&
-           (pieces->mode == PIECES_SHARD || paper_finish(plan, error));
+           (options->shard.count > 0 || paper_finish(plan, error));
 }
 
 bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
@@ -166,7 +154,6 @@ bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *prog
     const bool ok = paper_plan_make(plan, options, error) && find_key(plan, &key, error) &&
                     do_parts(plan, pieces, &key, progress, error);
     pieces->plan = NULL;
-    study_key_free(&key);
     paper_plan_free(plan);
     free(plan);
     return ok;

@@ -19,7 +19,7 @@ typedef struct PaperOptions {
     const char *folder; /* created if missing */
     bool quick;         /* fewer networks, launches, iterations */
     uint64_t seed;
-    const PiecesRun *run; /* whole, a shard, or a merge */
+    Shard shard;
     /* Draws what the tables show, and writes the report. */
     bool (*draw)(const struct PaperOptions *study, Error *error);
 } PaperOptions;

@@ -178,7 +178,6 @@ struct PaperPlan {
     char networks_folder[PAPER_PATH_SIZE];
     PaperNetwork *networks;
     int network_count;
-    int64_t first_timed;  /* parts that are timed are done by one shard, so that times of a report are of one machine */
     const Pieces *pieces; /* to be set: what the plan is done by */
 };
 

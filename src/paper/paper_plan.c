@@ -121,7 +121,6 @@ static void describe(void *context, int64_t piece, PieceInfo *info) {
     info->weight = part->weight;
     info->alone = true;
     info->timed = part->timed;
-    if (part->timed) info->with = plan->first_timed;
 }
 
 static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
@@ -134,7 +133,7 @@ static bool ready(void *context, int64_t piece) {
     const PaperPlan *plan = context;
     bool done = true;
     for (int i = 0; done && plan->parts[piece].needs_networks && i < plan->network_count; i++)
-        done = pieces_find(plan->pieces, i, &done, NULL, &(Error){0}) && done;
+        done = pieces_find(plan->pieces, i, &done, &(Error){0}) && done;
     return done;
 }
 
@@ -159,7 +158,6 @@ bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error)
         !paper_datasets_begin(&plan->datasets, options->scenes, &plan->size->data, options->seed, error) ||
         !add_networks(plan, error) || !add_outlook(plan, error) || !add_systems(plan, error))
         return false;
-    while (!plan->parts[plan->first_timed].timed) plan->first_timed++;
     plan->plan = (PiecePlan){.count = (int64_t)plan->count,
                              .describe = describe,
                              .work = work,

@@ -1,37 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of this room: pieces that are missing, arrays and rows of runs, checks of verdicts. */
+/* The parts of this room: arrays and rows of runs, checks of verdicts. */
 #pragma once
 #include "base/base.h"
 #include "base/npz.h"
 #include "engine/engine.h"
-#include "runs/pieces.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-
-/* The pieces that a merge does not find, and the shards that are to do them. */
-
-enum { MISSING_NAMED = 5 };
-
-/* Begin with the first two members; pieces_missing_free(). */
-typedef struct PiecesMissing {
-    const Pieces *pieces;
-    const PiecePlan *plan;
-    int64_t count;
-    char names[MISSING_NAMED][PIECE_NAME_SIZE]; /* the first of them */
-    unsigned char *shards; /* [shards of the study] whether it has missing pieces; NULL: no memory */
-} PiecesMissing;
-
-void pieces_missing_add(PiecesMissing *missing, const PieceInfo *info);
-void pieces_missing_free(PiecesMissing *missing);
-
-/* ERROR_INCOMPLETE if there are any. */
-bool pieces_missing_refuse(const PiecesMissing *missing, Error *error);
-
-/* "3,17-20": these shards, or the ids that a job array gave them; to be freed. NULL when memory is short. */
-char *pieces_shard_list(const unsigned char *shards, int count, const JobArray *array);
 
 /* What a run's CSV states above its header, and the file of sizes. Part of csv_run. */
 

@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/machine.h"
+#include "pictures/page.h"
 #include "runs/pieces.h"
 #include "scenes/scenes.h"
 #include "studies/chart.h"
@@ -13,7 +14,9 @@
 #include "studies/piece_tables.h"
 #include "studies/scene_study.h"
 #include "studies/stepper_pool.h"
+#include "studies/study_page.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -185,6 +188,7 @@ static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
             steps[protocol] += scores->steps[protocol][phase].count;
             if (protocol != PROTOCOL_CLOSED) continue;
             row->error_worst = scores->worst[phase];
+            row->worst_launch = scores->worst_launch[phase];
             scene_row_measures(row, scores->measures, study->launch_count);
         }
     /* The same of all, but of programs that fail or run whole scenes. */
@@ -238,8 +242,7 @@ static bool add_times(const Assembly *assembly, ChartRow *rows, char cpu[CPU_NAM
     char *text = pieces_read(assembly->pieces, piece, &size, cpu, error);
     MethodTimes *times = text != NULL ? scene_times_read(study, path, text, size, error) : NULL;
     const bool ok = times != NULL;
-    for (int i = 0; ok && pieces_keep_times(assembly->pieces, cpu) && i < study->contender_count; i++)
-        add_costs(rows + (size_t)i * ROWS_EACH, &times[i], cpu);
+    for (int i = 0; ok && i < study->contender_count; i++) add_costs(rows + (size_t)i * ROWS_EACH, &times[i], cpu);
     free(times);
     free(text);
     return ok;
@@ -281,6 +284,7 @@ typedef struct Run {
     ChartRow *rows;             /* of all scenes */
     int row_count;
     char (*cpus)[CPU_NAME_SIZE]; /* [scenes of the plan] */
+    StudyPage *pages;            /* the same */
 } Run;
 
 /* Hashes everything that determines the result: the program, the options and the files. */
@@ -328,10 +332,73 @@ static bool assemble_chart(Run *run, const Pieces *pieces, Error *error) {
         *summary = chart_summarise(run, &scene->study);
         if (!chart_assemble(pieces, scene, run->rows + run->row_count, run->cpus[i], &summary->solves, error))
             return false;
-        summary->timed = pieces_keep_times(pieces, run->cpus[i]);
         run->row_count += summary->contenders * ROWS_EACH;
     }
     return true;
+}
+
+/* What a page sets to play a launch; nothing where the launch has another rotation, spin or frame than the scene's. */
+static void launch_settings(const SceneStudy *study, int launch, char *set, size_t size) {
+    const Launch own = launch_of(study->scene), *other = &study->launches[launch];
+    set[0] = '\0';
+    if (other->rotation != own.rotation || other->spin != own.spin || other->frame != own.frame) return;
+    text_add(set, size, "bomb_x=%.9g", (double)other->x);
+    if (other->mass != own.mass) text_add(set, size, ",bomb_mass=%.9g", (double)other->mass);
+}
+
+static void put_method(FILE *out, const SceneStudy *study, const StudyPage *page, const ChartRow *rows) {
+    html_print(out, "<tr><td>%s</td><td>%s</td>", rows->method, rows->setting);
+    for (int phase = PHASE_IMPACT; phase <= PHASE_AFTER; phase++) {
+        const ChartRow *row = &rows[PROTOCOL_CLOSED * PHASES + phase];
+        char set[64], error[32];
+        if (isnan(row->us_solver))
+            fputs("<td></td><td>", out);
+        else
+            fprintf(out, "<td>%.3g</td><td>", row->us_solver);
+        snprintf(error, sizeof error, "%.3g", row->error_mean);
+        if (!isnan(row->error_worst)) {
+            launch_settings(study, row->worst_launch, set, sizeof set);
+            study_link_put(out, page, set, row->method, row->setting, error);
+        }
+        fputs("</td>", out);
+    }
+    fputs("</tr>\n", out);
+}
+
+/* chart.html: the points of the charts as tables. */
+static void print_html(FILE *out, const void *context) {
+    const Run *run = context;
+    const ChartRow *rows = run->rows;
+    house_page_begin(out, "Speed and accuracy", "figure { margin: 0; background: #fff; } img { width: 100%; }\n");
+    fputs(
+        "<h1>Speed and accuracy</h1>\n<p class=\"soft\">An error opens the scene with the launch that was worst for "
+        "the method, stepped in the browser with the same bits, beside interior. A launch with another rotation, spin "
+        "or frame than the scene's is not set there: then the launch is the scene's.</p>\n",
+        out);
+    for (int i = 0; i < run->plan.count; i++) {
+        const SceneStudy *study = &run->plan.scenes[i].study;
+        html_print(out, "<h2>%s</h2>\n<figure><img alt=\"The table as a chart\" src=\"chart-", study->scene->name);
+        html_put_address(out, study->scene->name);
+        fputs(".svg\"></figure>\n<div class=\"scroll\"><table>\n<tr><th>method</th><th>setting</th>"
+              "<th>time at the impact, µs</th><th>error, m/s</th><th>time after it, µs</th><th>error, m/s</th></tr>\n",
+              out);
+        for (int k = 0; k < study->contender_count; k++, rows += ROWS_EACH)
+            put_method(out, study, &run->pages[i], rows);
+        fputs("</table></div>\n", out);
+    }
+    house_page_end(out);
+}
+
+static bool write_pages(Run *run, Error *error) {
+    const SpeedAccuracyOptions *options = run->options;
+    char path[CSV_PATH_SIZE];
+    run->pages = calloc((size_t)run->plan.count + 1, sizeof *run->pages);
+    if (run->pages == NULL) return error_memory(error, "study");
+    for (int i = 0; i < run->plan.count; i++)
+        if (!study_page_write(&run->pages[i], options->scenes[i], &run->contenders, options->folder, error))
+            return false;
+    return file_path(path, sizeof path, error, "%s/chart.html", options->folder) &&
+           file_write_text(path, print_html, run, error);
 }
 
 /* What follows from the pieces, once all are there. */
@@ -339,9 +406,8 @@ static bool chart_finish(Run *run, const Pieces *pieces, Error *error) {
     const SpeedAccuracyOptions *options = run->options;
     char path[CSV_PATH_SIZE];
     return csv_table_path(path, options->folder, &chart_layout, error) && assemble_chart(run, pieces, error) &&
-           folder_reserve(options->folder, error) &&
            csv_table_write(path, &chart_layout, run->rows, run->row_count, error) &&
-           options->draw(options, run->scenes, pieces->key, error) && pieces_end(pieces, error);
+           options->draw(options, run->scenes, error) && write_pages(run, error) && pieces_end(pieces, error);
 }
 
 bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, const Progress *progress,
@@ -354,13 +420,14 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
                               speed_accuracy_size(options->quick), error);
     if (ok) chart_tell(&run);
     ok = ok && find_key(options, &run.contenders, &key, error) &&
-         study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
-         (pieces->mode == PIECES_SHARD || chart_finish(&run, pieces, error));
+         pieces_open(pieces, options->folder, &key, &options->shard, error) &&
+         pieces_do(pieces, &run.plan.plan, progress, error) &&
+         (options->shard.count > 0 || chart_finish(&run, pieces, error));
     pieces->plan = NULL;
     chart_plan_free(&run.plan);
-    study_key_free(&key);
     contenders_free(&run.contenders);
     free(run.rows);
     free(run.cpus);
+    free(run.pages);
     return ok;
 }

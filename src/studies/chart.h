@@ -33,16 +33,14 @@ typedef struct SpeedAccuracyOptions {
     int scene_count;
     const char *methods; /* contenders_parse(); NULL: all */
     LaunchChoice launches;
-    bool quick;           /* fewer launches, settings, steps and repetitions */
-    const char *folder;   /* created if missing */
-    bool pages;           /* for draw() */
-    ChartLook look;       /* likewise */
-    const PiecesRun *run; /* whole, a shard, or a merge */
+    bool quick;         /* fewer launches, settings, steps and repetitions */
+    const char *folder; /* created if missing */
+    ChartLook look;     /* for draw() */
+    Shard shard;
     /* Is told of each scene before the work; NULL: nothing is. */
     void (*begin)(const SpeedAccuracyScene *scene);
-    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result. */
-    bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
-                 Error *error);
+    /* Draws folder/chart.csv; scenes[scene_count]. */
+    bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, Error *error);
 } SpeedAccuracyOptions;
 
 struct SpeedAccuracyScene {
@@ -50,7 +48,6 @@ struct SpeedAccuracyScene {
     int contenders, launches, striking; /* striking: launches that strike a box */
     NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
     SceneSolves solves;
-    bool timed; /* not if a merge leaves out its times */
 };
 
 const StudySize *speed_accuracy_size(bool quick);

@@ -43,18 +43,11 @@ bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {
     return false;
 }
 
-/* A row has both a time and an error, or its phase did not occur. */
-static bool is_left_out(const ChartRow *row) {
-    const MethodDescription *method = method_describe(row->method);
-    return isnan(row->us_solver) && !isnan(row->error_mean) && (method == NULL || !method->external);
-}
-
 void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count) {
     const char *cpu = NULL;
-    bool left_out = false, others = false;
+    bool others = false;
     int times = 0, vary = 0;
     for (int i = 0; i < count; i++) {
-        left_out |= is_left_out(&rows[i]);
         times += !isnan(rows[i].us_solver);
         vary += rows[i].us_varies > 0;
         if (rows[i].cpu[0] == '\0') continue;
@@ -63,19 +56,9 @@ void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int cou
     }
     note[0] = '\0';
     if (cpu == NULL) return;
-    snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.%s", cpu, others ? " and others" : "",
-             left_out ? " Those of other processors are left out." : "");
+    snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.", cpu, others ? " and others" : "");
     if (vary > 0)
         text_add(note, CHART_TIMES_SIZE, " %d of %d vary more than the others, also when measured again.", vary, times);
-}
-
-bool chart_scene_untimed(const ChartRow *rows, int count, const char *scene) {
-    bool known = false;
-    for (int i = 0; i < count; i++) {
-        if (strcmp(rows[i].scene, scene) == 0 && !isnan(rows[i].us_solver)) return false;
-        known |= rows[i].cpu[0] != '\0';
-    }
-    return known;
 }
 
 static const char *const protocol_words[] = {"frozen", "closed", NULL};

@@ -44,6 +44,7 @@ typedef struct ChartRow {
        has. */
     double signorini, cone, dissipation;
     double rollout_mse; /* m^2: as in RunMeasures, mean over the launches */
+    int worst_launch;   /* of error_worst, of the study's; not in the table */
 } ChartRow;
 
 /* The header is exact, but that the last columns, from cpu on, may be missing. Refused: a median time outside its
@@ -68,9 +69,6 @@ void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]);
 /* True if the boxes drifted by half a metre before the bomb came: the method was scored on another scene. */
 bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row);
 
-/* "Times measured on PROCESSOR.", whether those of others are left out (twinbox merge --times first), and how many vary
+/* "Times measured on PROCESSOR.", and how many vary
    (us_varies); "" if no row names one. */
 void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count);
-
-/* Whether the times of a scene are left out: rows of other scenes have times, and name their processor. */
-bool chart_scene_untimed(const ChartRow *rows, int count, const char *scene);

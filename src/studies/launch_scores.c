@@ -78,7 +78,7 @@ void launch_scores_write(FILE *results, const LaunchScores *scores, int count, i
 }
 
 static bool launch_scores_refuse(const StoredScores *stored, Error *error) {
-    return error_input(error, stored->path, "is no result of a launch; delete it, and its shard does it again");
+    return error_input(error, stored->path, "is no result of a launch; delete it, and run the command again");
 }
 
 /* The first byte of a method's part; of the number of methods, the end of all. */
@@ -167,8 +167,11 @@ static bool append_all(MethodScores *scores, const StoredScores *stored, const P
             if (!are_scores(steps->error + before, count, INFINITY) || !are_scores(steps->share + before, count, 1))
                 return launch_scores_refuse(stored, error);
             bytes += 2 * sizeof(double) * (size_t)count;
-            if (protocol == PROTOCOL_CLOSED) /* ignores NaN */
-                scores->worst[phase] = fmax(scores->worst[phase], statistics_mean(steps->error + before, count));
+            if (protocol != PROTOCOL_CLOSED) continue;
+            const double mean = statistics_mean(steps->error + before, count);
+            if (!(mean > scores->worst[phase]) && !isnan(scores->worst[phase])) continue;
+            scores->worst[phase] = mean;
+            scores->worst_launch[phase] = scores->launches;
         }
     return true;
 }

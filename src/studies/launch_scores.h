@@ -52,7 +52,8 @@ typedef struct PhaseScores {
 /* A method on several launches. Zero-initialise. */
 typedef struct MethodScores {
     PhaseScores steps[PROTOCOLS][PHASES];
-    double worst[PHASES];  /* m/s: largest mean error of a launch in closed loop; NaN without a scored step */
+    double worst[PHASES]; /* m/s: largest mean error of a launch in closed loop; NaN without a scored step */
+    int worst_launch[PHASES];
     RunMeasures *measures; /* [launches] */
     int launches;
     int64_t unconverged; /* steps in closed loop, as in Rollout */

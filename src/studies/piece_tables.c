@@ -19,12 +19,6 @@ bool study_key_add_scene(StudyKey *key, const char *path, Error *error) {
     return study_key_add_file(key, path, error);
 }
 
-bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const PiecesRun *run, const PiecePlan *plan,
-              const Progress *progress, Error *error) {
-    return pieces_open(pieces, folder, key, run, error) &&
-           (pieces->mode != PIECES_WHOLE || folder_reserve(folder, error)) && pieces_do(pieces, plan, progress, error);
-}
-
 bool piece_tables_print(FILE *results, const CsvLayout *layout, int section, const void *row, Error *error) {
     if (section < 0)
         fprintf(results, "%s:", layout->name);

@@ -13,10 +13,6 @@
 /* Hashes a scene's file and its networks. A missing network is an error only of the method that needs it. */
 bool study_key_add_scene(StudyKey *key, const char *path, Error *error);
 
-/* Opens the pieces of a study in its folder and does them. Shards share a folder; a whole study has it to itself. */
-bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const PiecesRun *run, const PiecePlan *plan,
-              const Progress *progress, Error *error);
-
 /* Tables from the pieces of a study (runs/pieces.h). The results of a piece are lines "TABLE:row", or
    "TABLE/SECTION:row"; the rows of a table are put together in the order of the pieces. Lines that begin with "#" are
    the study's own notes, which no table has. */

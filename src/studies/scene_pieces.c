@@ -232,7 +232,7 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
         whole = is_cost(cost) && (stored[6] == 0 || stored[6] == 1);
     }
     if (whole) return times;
-    error_input(error, path, "is no result of times; delete it, and its shard does it again");
+    error_input(error, path, "is no result of times; delete it, and run the command again");
     free(times);
     return NULL;
 }

@@ -62,8 +62,6 @@ static void stability_describe(void *context, int64_t piece, PieceInfo *info) {
     snprintf(info->name, sizeof info->name, "%s %d-%d", plan->groups[group].name, first_item(plan, group, i) + 1,
              first_item(plan, group, i + 1));
     info->weight = plan->groups[group].weight;
-    /* The methods of a study share its converged runs, a third of the work. */
-    if (plan->groups[group].scan.study != NULL) info->near = plan->pieces[group].first;
 }
 
 /* The context of a group is made by the first of its pieces. */
@@ -336,12 +334,38 @@ static bool write_tables(const Run *run, const Pieces *pieces, Error *error) {
     return piece_tables_write(pieces, run->options->folder, layouts, count, run->plan.pieces, run->plan.count, error);
 }
 
+/* A live page for each scene, and the tables that link to them. */
+static bool write_pages(const Run *run, Error *error) {
+    const StabilityOptions *options = run->options;
+    const int count = run->study_count + run->map_count;
+    StudyPlace *places = calloc((size_t)count + 1, sizeof *places);
+    bool ok = places != NULL || error_memory(error, "stability");
+    for (int i = 0; ok && i < count; i++) {
+        const StabilityStudy *study = i < run->study_count ? run->studies[i] : NULL;
+        const StabilityMap *map = study == NULL ? run->maps[i - run->study_count] : NULL;
+        const StabilityPlace where = study != NULL ? (StabilityPlace){options->scenes, study->scene, study->file}
+                                                   : (StabilityPlace){options->scenes, map->scene, map->file};
+        StudyPlace *place = &places[i];
+        place->name = study != NULL ? study->name : map->name;
+        place->fixed = study != NULL ? &study->fixed : NULL;
+        ok = stability_path(place->path, &where, error);
+        int same = 0;
+        while (ok && strcmp(places[same].path, place->path) != 0) same++;
+        if (same < i)
+            place->page = places[same].page;
+        else
+            ok = ok && study_page_write(&place->page, place->path, &run->methods, options->folder, error);
+    }
+    ok = ok && stability_html_write(options->folder, places, error);
+    free(places);
+    return ok;
+}
+
 /* What follows from the pieces, once all are there. */
 static bool stability_finish(const Run *run, const Pieces *pieces, Error *error) {
     const StabilityOptions *options = run->options;
-    return folder_reserve(options->folder, error) && write_tables(run, pieces, error) &&
-           (options->draw == NULL || options->draw(options->draw_context, pieces->key, error)) &&
-           pieces_end(pieces, error);
+    return write_tables(run, pieces, error) && (options->draw == NULL || options->draw(options, error)) &&
+           write_pages(run, error) && pieces_end(pieces, error);
 }
 
 static bool stability_begin(Run *run, const StabilityOptions *options, Error *error) {
@@ -363,18 +387,10 @@ bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progre
     Run run;
     StudyKey key = {0};
     const bool ok = stability_begin(&run, options, error) && find_key(&run, &key, error) &&
-                    study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
-                    (pieces->mode == PIECES_SHARD || stability_finish(&run, pieces, error));
+                    pieces_open(pieces, options->folder, &key, &options->shard, error) &&
+                    pieces_do(pieces, &run.plan.plan, progress, error) &&
+                    (options->shard.count > 0 || stability_finish(&run, pieces, error));
     pieces->plan = NULL;
-    study_key_free(&key);
-    stability_end(&run);
-    return ok;
-}
-
-bool stability_estimate(const StabilityOptions *options, PiecesEstimate *estimate, const Progress *progress,
-                        Error *error) {
-    Run run;
-    const bool ok = stability_begin(&run, options, error) && pieces_estimate(estimate, &run.plan.plan, progress, error);
     stability_end(&run);
     return ok;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stability: cases, searches for borders, scans, maps, tables, pages. */
+/* Stability: cases, searches for borders, scans, maps, tables. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -359,10 +359,6 @@ bool border_same_study(const BorderRow *a, const BorderRow *b);
 enum { MAP_METHOD_SIZE = CSV_NAME_SIZE + STABILITY_SETTING_SIZE };
 void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell);
 
-/* What files of a cell are called, without ending: "MAP-METHOD-X_Y", or without y "MAP-METHOD-X". */
-enum { MAP_NAME_SIZE = CSV_NAME_SIZE + MAP_METHOD_SIZE + 40 };
-void map_cell_name(char name[MAP_NAME_SIZE], const MapCell *cell);
-
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
 /* "engine:k=10,warm=off", of a program its `name` (methods/methods.h); for figures the same, plain; and
@@ -387,25 +383,15 @@ typedef struct StabilityOptions {
     int name_count;      /* of studies and maps to run; 0: all */
     const char *names[STABILITY_MAX_NAMES];
     const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
-    const PiecesRun *run;    /* whole, a shard, or a merge */
-    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables. */
-    bool (*draw)(void *context, uint64_t key, Error *error);
-    void *draw_context;
+    Shard shard;
+    /* Draws the tables in the folder; NULL: nothing is drawn. */
+    bool (*draw)(const struct StabilityOptions *options, Error *error);
 } StabilityOptions;
 
 /* Runs the studies and maps, writes the tables and draws; a shard does its pieces only. An interrupted run is resumed
    at the unfinished pieces. The tables do not depend on the number of threads. ERROR_INPUT also for an unknown name,
    ERROR_INTERRUPTED if progress stops the run. *pieces tells what was done; it has no plan any more. */
 bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error);
-
-/* Runs the row's method once more, unshifted, at a value of its study's parameter; `scenes` as above. The cell points
-   into the study and the row. */
-bool stability_run_cell(const StabilityStudy *study, const char *scenes, const BorderRow *row, double value,
-                        MapCell *cell, Error *error);
-
-/* What the run takes, from some of its pieces; nothing is written. */
-bool stability_estimate(const StabilityOptions *options, PiecesEstimate *estimate, const Progress *progress,
-                        Error *error);
 
 /* The figure of a stability map: one panel per method, one tile per cell. */
 
@@ -438,38 +424,3 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
    drawn. ERROR_INTERRUPTED if progress, which may be NULL, requests a stop;
    figures already drawn stay. */
 bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error);
-
-/* map_pages.csv: which cells of the maps, and which failing sides of borders, have a page that plays what happened
-   there. */
-
-/* Of a method in a map. */
-enum { MAP_PAGES_EACH = 8 };
-
-typedef struct MapPage {
-    const char *map, *method, *setting; /* of the cell, as in maps.csv; of a border `map` is the study, */
-    double x, y;                        /* x is fails_at, and y the fixed parameter or NAN */
-    double time;                        /* s: when the verdict was decided */
-    int frame, body;                    /* in the run; body -1: none */
-    const char *page;                   /* "pages/NAME.html#t=0.55&body=7&run=1"; empty: left out */
-    int bytes;
-} MapPage;
-
-extern const CsvLayout map_page_layout;
-
-/* Places in a map; x, y: indices of its values. */
-typedef struct MapPlace {
-    int x, y;
-} MapPlace;
-
-/* The cells of a method that get a page: those that fail beside one that holds, at a border, are the ones that tell
-   why; at most MAP_PAGES_EACH of them, evenly. Without a border, the first that fails. Returns their number. */
-int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_EACH]);
-
-/* The row of a cell; NULL: none. */
-const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int panel, MapPlace place);
-
-/* stability.html: borders and maps as tables, whose letters link to pages of runs. */
-
-/* Writes folder/stability.html from the tables there: stability.csv, maps.csv, map_pages.csv, and engines.csv if it is
-   there. */
-bool stability_html_write(const char *folder, Error *error);

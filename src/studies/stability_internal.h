@@ -9,6 +9,7 @@
 #include "scenes/scenes.h"
 #include "studies/contenders.h"
 #include "studies/stability.h"
+#include "studies/study_page.h"
 
 #include <stdio.h>
 
@@ -83,6 +84,19 @@ enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
    ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or BORDERS_MAX_STUDIES studies. */
 bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged, const StabilityOwn *own,
                              PlotPage *page, Error *error);
+
+/* stability.html: borders and maps as tables. */
+
+/* A study or map, and the live page of its scene. */
+typedef struct StudyPlace {
+    const char *name;
+    const SceneSetting *fixed; /* set beside what varies; NULL: nothing */
+    char path[STABILITY_PATH_SIZE];
+    StudyPage page;
+} StudyPlace;
+
+/* Writes folder/stability.html of stability.csv and maps.csv there, whose studies and maps are among the places. */
+bool stability_html_write(const char *folder, const StudyPlace *places, Error *error);
 
 /* Writes the run's row of the table "unconverged", if a step of its converged runs did not converge; fills it in. */
 bool unconverged_print(FILE *results, int section, MapCell *row, const Convergence *convergence, Error *error);

@@ -152,37 +152,6 @@ static bool holds(const MapPanels *map, int panel, int x, int y) {
     return look < VERDICTS && verdict_holds((Verdict)look);
 }
 
-static bool is_at_border(const MapPanels *map, int panel, int x, int y) {
-    return fails(map, panel, x, y) && (holds(map, panel, x - 1, y) || holds(map, panel, x + 1, y) ||
-                                       holds(map, panel, x, y - 1) || holds(map, panel, x, y + 1));
-}
-
-int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_EACH]) {
-    MapPlace first = {-1, -1};
-    int count = 0, seen = 0, chosen = 0;
-    for (int y = 0; y < map->y_count; y++)
-        for (int x = 0; x < map->x_count; x++) {
-            if (first.x < 0 && fails(map, panel, x, y)) first = (MapPlace){x, y};
-            count += is_at_border(map, panel, x, y);
-        }
-    if (count == 0 && first.x >= 0) places[chosen++] = first;
-    const int wanted = count < MAP_PAGES_EACH ? count : MAP_PAGES_EACH;
-    for (int y = 0; y < map->y_count; y++)
-        for (int x = 0; chosen < wanted && x < map->x_count; x++) {
-            if (!is_at_border(map, panel, x, y)) continue;
-            if (seen++ == (wanted > 1 ? chosen * (count - 1) / (wanted - 1) : 0)) places[chosen++] = (MapPlace){x, y};
-        }
-    return chosen;
-}
-
-const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int panel, MapPlace place) {
-    const MapCell *cell = map->methods[panel], *end = map_cell(table, table->count);
-    for (; cell < end && strcmp(cell->map, map->first->map) == 0 && map_cell_same_method(cell, map->methods[panel]);
-         cell++)
-        if (cell->x == map->x[place.x] && cell->y == map->y[place.y]) return cell;
-    return NULL;
-}
-
 /* Blues, then orange to red to black: hues that the colour-blind can distinguish. In studies of struck scenes what
    agrees is green, and a bar or a cross says that too few or too many fall. */
 const VerdictLook verdict_looks[VERDICT_LOOKS] = {

@@ -79,27 +79,6 @@ static MapCell cell_at(const StabilityStudy *study, double value, const char *un
                      .y = study->fixed.name[0] != '\0' ? study->fixed.value : NAN};
 }
 
-bool stability_run_cell(const StabilityStudy *study, const char *scenes, const BorderRow *row, double value,
-                        MapCell *cell, Error *error) {
-    const StabilityScan scan = {study, scenes, NULL};
-    ConvergedRuns converged = {0};
-    VerdictReading reading;
-    Method method;
-    char text[MAP_METHOD_SIZE];
-    *cell = cell_at(study, value, row->unit, row->method, row->setting);
-    map_cell_method(text, cell);
-    const bool ok =
-        method_parse(&method, text, error) && stability_scan_run(&scan, &method, value, 0, &converged, &reading, error);
-    converged_runs_free(&converged);
-    if (!ok) return false;
-    cell->verdict = (int)reading.verdict;
-    cell->frame = reading.frame;
-    cell->body = reading.body;
-    cell->value = reading.value;
-    cell->unit = reading.unit;
-    return true;
-}
-
 typedef struct ProbeContext {
     Run *run;
     const Method *method;

@@ -21,14 +21,6 @@ void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
     snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
 }
 
-void map_cell_name(char name[MAP_NAME_SIZE], const MapCell *cell) {
-    char method[MAP_METHOD_SIZE];
-    map_cell_method(method, cell);
-    snprintf(name, MAP_NAME_SIZE, "%s-%s-%.4g", cell->map, method, cell->x);
-    if (!isnan(cell->y)) text_add(name, MAP_NAME_SIZE, "_%.4g", cell->y);
-    file_name_clean(name);
-}
-
 bool map_cell_same_method(const MapCell *a, const MapCell *b) {
     return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
 }
@@ -260,19 +252,6 @@ static const CsvColumn engine_columns[] = {
     NUMBER(EngineRow, differs, CSV_OPTIONAL, -LARGEST, LARGEST, VALUE_DIGITS),
 };
 
-static const CsvColumn page_columns[] = {
-    NAME(MapPage, map),
-    NAME(MapPage, method),
-    TEXT(MapPage, setting, STABILITY_SETTING_SIZE),
-    NUMBER(MapPage, x, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
-    NUMBER(MapPage, y, CSV_OPTIONAL, -INFINITY, INFINITY, VALUE_DIGITS),
-    NUMBER(MapPage, time, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
-    COUNT(MapPage, frame, 0),
-    COUNT(MapPage, body, -1),
-    TEXT(MapPage, page, CSV_PATH_SIZE),
-    COUNT(MapPage, bytes, 0),
-};
-
 const CsvLayout map_layout =
     CSV_LAYOUT("maps", map_columns, MapCell, .max_rows = STABILITY_MAX_CELLS, .check = check_cells);
 const CsvLayout border_layout =
@@ -283,5 +262,3 @@ const CsvLayout refusal_layout = CSV_LAYOUT("refusals", refusal_columns, Refusal
 const CsvLayout rest_layout = CSV_LAYOUT("rest", rest_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
 const CsvLayout fallback_layout = CSV_LAYOUT("fallbacks", fallback_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
 const CsvLayout engine_layout = CSV_LAYOUT("engines", engine_columns, EngineRow, .max_rows = STABILITY_MAX_RUNS);
-const CsvLayout map_page_layout =
-    CSV_LAYOUT("map_pages", page_columns, MapPage, .max_rows = STABILITY_MAX_CELLS, .header = CSV_EXACT);

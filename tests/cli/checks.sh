@@ -10,8 +10,6 @@ checks=0
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-# A scheduler that runs the tests does not mean their commands.
-unset SLURM_ARRAY_TASK_ID PMI_RANK PMI_SIZE OMPI_COMM_WORLD_RANK OMPI_COMM_WORLD_SIZE SLURM_PROCID SLURM_NTASKS
 
 fail() {
     echo "FAILED: $*"

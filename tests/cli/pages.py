@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of --pages share: links of an HTML page, and the data of the player's pages."""
-import html
+"""Links of an HTML page, and the data of the player's pages."""
 import html.parser
 import json
 import os
@@ -9,26 +8,28 @@ import urllib.parse
 
 
 class Links(html.parser.HTMLParser):
-    """The targets of all links, and the sources of all pictures, in order; strict about what is open."""
+    """The targets of all links, in order; strict about what is open."""
 
     def __init__(self, path):
         super().__init__()
-        self.targets, self.pictures, self.names = [], [], {}
+        self.targets = []
         self.feed(open(path).read())
 
     def handle_starttag(self, tag, attributes):
-        attributes = dict(attributes)
         if tag == "script":
             raise AssertionError("a script")
         if tag == "a":
-            self.targets.append(attributes["href"])
-            self.names[attributes["href"]] = attributes.get("aria-label") or attributes.get("title")
-        if tag == "img":
-            self.pictures.append(urllib.parse.unquote(attributes["src"]))
+            self.targets.append(dict(attributes)["href"])
+
+
+def parts(target):
+    """The file and the words of a link."""
+    path, fragment = target.split("#")
+    return path, {key: values[0] for key, values in urllib.parse.parse_qs(fragment, keep_blank_values=True).items()}
 
 
 def moment(target):
-    """pages/NAME.html, seconds, body (-1: none) of a link."""
+    """NAME.html, seconds, body (-1: none) of a link."""
     path, t, body, _ = re.fullmatch(r"([^#]+)#t=([0-9.e+-]+)(?:&body=(\d+))?(&run=\d+)?", target).groups()
     return path, float(t), -1 if body is None else int(body)
 

@@ -25,11 +25,6 @@ twinbox=$folder/second/bin/twinbox
 mkdir elsewhere
 cd elsewhere || exit 1
 
-for script in slurm parallel mpirun; do
-    cmp -s ../second/share/twinbox/scenes/cluster/$script.sh "$scenes/cluster/$script.sh" || fail "no $script.sh is installed"
-    [ -x ../second/share/twinbox/scenes/cluster/$script.sh ] || fail "$script.sh cannot be run"
-done
-
 # A scene by its name, wherever it is.
 for name in stack scenes/stack.yaml; do
     run 0 simulate $name --method pair-net --hash run.hash

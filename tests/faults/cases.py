@@ -21,7 +21,7 @@ PREPARED = {
     "report": "compare expected actual --report report",
     "charts": "chart SCENES/single.yaml SCENES/stack.yaml -o charts --quick --methods engine:k=10,momentum:k=20",
     "study": "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o study",
-    "sharded": f"{SHARDED} -o sharded --shard 1/2 && {SHARDED} -o sharded --shard 2/2",
+    "sharded": f"{SHARDED} -o sharded --shard 1/2",
     # Short scenes for the paper: 60 frames of each.
     "small": "sh mkdir small; cp -r SCENES/networks small; for name in single stack pyramid; do "
              "sed 's/^frames: .*/frames: 60/' SCENES/$name.yaml >small/$name.yaml; done; "
@@ -102,13 +102,10 @@ CASES = [
     render("render-output", f"a.npz -o out --frames 40:42 {SMALL} --video -", most=0),
     Case("chart", QUICK_CHART, "", "out/parts-*", most=16),
     Case("chart-draw", "chart charts/chart.csv -o out", "charts", most=16),
-    Case("chart-pages", f"{QUICK_CHART} --pages", "", "out/parts-*", most=16),
     Case("stability", "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o out", "", "out/parts-*", most=16),
     Case("stability-renew", "stability --scenes SCENES --study heavy_on_one --methods engine:k=5 -o study", "study",
          "study/parts-*", most=12),
-    Case("shard", f"{SHARDED} -o out --shard 1/2", "", "out/shards/*", most=20),
-    Case("merge", "merge sharded", "sharded", most=16),
-    Case("stability-pages", "stability --scenes SCENES --quick --study speed_thickness --methods engine -o out --pages", "",
-         "out/parts-*", most=12),
+    Case("shard", f"{SHARDED} -o out --shard 1/2", "", "out/parts-*", most=20),
+    Case("after-shard", f"{SHARDED} -o sharded", "sharded", "sharded/parts-*", most=16),
     Case("paper", "paper -o out --quick --scenes small", "small", "out/parts-*", sample=300, most=6),
 ]

@@ -30,7 +30,6 @@
     TARGET(dataset)          \
     TARGET(problem)          \
     TARGET(piece)            \
-    TARGET(record)           \
     TARGET(scores)           \
     TARGET(times)
 

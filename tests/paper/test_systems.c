@@ -25,7 +25,7 @@ static void score(CsvTable *scores, bool end) {
     static PaperPlan whole = {.size = &size, .datasets.scenes = {SOURCE_DIR "/scenes/single.yaml"}};
     static const CsvLayout *const layouts[] = {&system_score_layout};
     const PiecePlan plan = {.count = 1, .describe = describe, .work = work, .context = &whole};
-    assert_ok(pieces_open(&done, folder(), &(StudyKey){.value = 1}, NULL, &error), error);
+    assert_ok(pieces_open(&done, folder(), &(StudyKey){.value = 1}, &(Shard){0}, &error), error);
     assert_ok(pieces_do(&done, &plan, NULL, &error), error);
     assert_ok(piece_tables_write(&done, folder(), layouts, 1, NULL, 0, &error), error);
     if (end) assert_ok(pieces_end(&done, &error), error);

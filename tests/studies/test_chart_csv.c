@@ -30,7 +30,8 @@ static const ChartRow full = {"stack",
                               0.5,
                               0.25,
                               0.75,
-                              0.125};
+                              0.125,
+                              0};
 
 static ChartRow bare(void) {
     return (ChartRow){"stack",      "playback", "",  PROTOCOL_FROZEN,
@@ -39,7 +40,7 @@ static ChartRow bare(void) {
                       NAN,          NAN,        NAN, NAN,
                       NAN,          NAN,        NAN, NAN,
                       "",           1.25,       NAN, NAN,
-                      NAN,          NAN,        NAN};
+                      NAN,          NAN,        NAN, 0};
 }
 
 TEST(rows_are_written_in_the_order_of_the_header) {

@@ -101,8 +101,8 @@ bool __wrap_method_parse(Method *method, const char *text, Error *error) {
 #define A_2_US "known:a=1000,b=2000,c=4000"
 #define A_6_US "known:a=12000,b=3000,c=6000"
 
-static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, uint64_t key, Error *error) {
-    (void)options, (void)scenes, (void)key, (void)error;
+static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *scenes, Error *error) {
+    (void)options, (void)scenes, (void)error;
     return true;
 }
 
@@ -116,14 +116,12 @@ static void assert_known_row(const ChartRow *row, double us, double unit) {
 
 TEST(a_chart_of_known_work_has_known_times) {
     static const char *const scenes[] = {SOURCE_DIR "/scenes/single.yaml"};
-    const PiecesRun run = {0};
     const SpeedAccuracyOptions options = {.scenes = scenes,
                                           .scene_count = 1,
                                           .methods = A_2_US "," A_6_US,
                                           .launches = {.count = 2},
                                           .quick = true,
                                           .folder = temporary_path("chart"),
-                                          .run = &run,
                                           .draw = draw};
     Pieces pieces = {0};
     SpeedAccuracyScene summary;
