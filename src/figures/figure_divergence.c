@@ -5,6 +5,7 @@
 #include "base/machine.h"
 #include "figures/figure.h"
 #include "figures/figures_internal.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"

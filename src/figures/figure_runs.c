@@ -4,6 +4,7 @@
 #include "engine/engine.h"
 #include "figures/figure.h"
 #include "figures/figures_internal.h"
+#include "figures/labels.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"

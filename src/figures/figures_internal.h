@@ -3,6 +3,7 @@
 #pragma once
 #include "base/base.h"
 #include "figures/figure.h"
+#include "figures/labels.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"

@@ -2,6 +2,7 @@
 /* Plots: panels with axes, series and legends; plot_draw() for those that differ in their data only. */
 #include "base/base.h"
 #include "base/file.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"

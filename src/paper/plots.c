@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/machine.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "learning/pair_training.h"
 #include "paper/paper_report.h"

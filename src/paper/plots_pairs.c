@@ -2,6 +2,7 @@
 /* The plots of the study's networks: their errors by factor, transfer, and runs in closed loop. */
 #include "base/base.h"
 #include "base/csv.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/pair.h"
 #include "paper/paper_tables.h"

@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "base/csv.h"
 #include "engine/engine.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "methods/pair.h"

@@ -2,6 +2,7 @@
 /* The borders figure: a table of studies and methods, whose cells show which part of the study's range holds. */
 #include "base/base.h"
 #include "base/csv.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "pixels/type.h"
 #include "runs/verdict.h"

@@ -2,6 +2,8 @@
 /* A chart in progress: panels, names, the picture. */
 #pragma once
 #include "base/base.h"
+#include "figures/labels.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "pixels/png.h"
 #include "studies/chart_data.h"

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names of the curves in a chart, where there is room beside them, and the lines through the engine as shipped, which
    they interrupt. */
+#include "figures/labels.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "pixels/type.h"
 #include "studies/chart_data.h"

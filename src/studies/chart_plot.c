@@ -3,6 +3,8 @@
    reaches is shaded. */
 #include "base/base.h"
 #include "base/file.h"
+#include "figures/labels.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pixels/png.h"

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "runs/verdict.h"

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/machine.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pixels/png.h"

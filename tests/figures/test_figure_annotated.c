@@ -3,6 +3,7 @@
 
 #include "figures/run_figure.h"
 #include "pictures/mesa.h"
+#include "figures/labels.h"
 #include "figures/sketch.h"
 #include "pixels/type.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "made.h"
 
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "figures/run_figure.h"
 

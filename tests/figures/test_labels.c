@@ -2,6 +2,7 @@
 /* Placement of labels. */
 #include "owned.h"
 
+#include "figures/labels.h"
 #include "figures/sketch.h"
 
 static LabelField *field_10_by_10(void) {

@@ -2,6 +2,7 @@
 /* Axes, ticks, series and legends of plots. */
 #include "testing.h"
 
+#include "figures/plot.h"
 #include "figures/sketch.h"
 
 #include "pixels/type.h"

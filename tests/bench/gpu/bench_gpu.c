@@ -6,6 +6,7 @@
 #include "report.h"
 
 #include "base/file.h"
+#include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/pair_net.h"
 #include "nets/kernels.h"
