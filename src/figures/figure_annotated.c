@@ -6,6 +6,7 @@
 #include "engine/engine.h"
 #include "figures/figure.h"
 #include "figures/figures_internal.h"
+#include "figures/labels.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"
@@ -15,6 +16,157 @@
 #include "runs/trajectory.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+#define NORMAL_RINGS 3.1 /* length of a normal on either side / radius of the point's mark */
+
+static const double min_arrow = 1;     /* mm */
+static const double long_arrow = 3;    /* mm; the number is at its tip, else at its point */
+static const double crowd = 5;         /* mm; numbers of points nearer than this to each other stand apart from them */
+static const double large_share = 0.3; /* impulses above this share of the largest get a number even far away */
+
+enum { MAX_NUMBERS = 600 };
+
+/* How contacts are drawn. */
+typedef struct ContactLook {
+    double ring;        /* mm, radius of a point's mark */
+    double arrow_scale; /* mm per N s */
+    double largest;     /* N s, largest impulse of all panels */
+    double points;      /* font size */
+} ContactLook;
+
+/* A contact in page coordinates. */
+typedef struct ShownContact {
+    Point at;
+    Vec2 normal, impulse; /* N s, on the body with the higher number */
+    double size;          /* magnitude of the impulse */
+} ShownContact;
+
+static Vec2 impulse_of(const TrajectoryContact *contact) {
+    Vec2 tangent = vec2(contact->normal.y, -contact->normal.x);
+    return vec2_add(vec2_scale(contact->normal_impulse, contact->normal),
+                    vec2_scale(contact->tangent_impulse, tangent));
+}
+
+static double impulse_magnitude(const TrajectoryContact *contact) {
+    return vec2_distance(impulse_of(contact), vec2(0, 0));
+}
+
+/* False for NaN or infinity, which a damaged file may contain. */
+static bool contact_is_finite(const TrajectoryContact *contact) {
+    Vec2 impulse = impulse_of(contact);
+    return isfinite(impulse.x) && isfinite(impulse.y) && isfinite(contact->point.x) && isfinite(contact->point.y);
+}
+
+static int by_size(const void *a, const void *b) {
+    const ShownContact *p = a, *q = b;
+    if (p->size != q->size) return p->size < q->size ? 1 : -1;
+    /* a total order, so that every qsort gives the same result */
+    if (p->at.y != q->at.y) return p->at.y < q->at.y ? 1 : -1;
+    return (p->at.x > q->at.x) - (p->at.x < q->at.x);
+}
+
+/* The contacts inside the cell, largest impulse first. NULL if out of memory. */
+static ShownContact *gather_contacts(const Trajectory *run, int step, const View *view, int *count) {
+    int64_t first = run->contact_start[step], end = run->contact_start[step + 1];
+    ShownContact *shown = malloc((size_t)(end - first + 1) * sizeof *shown);
+    *count = 0;
+    for (int64_t i = first; shown != NULL && i < end; i++) {
+        const TrajectoryContact *contact = &run->contacts[i];
+        Point at = view_place(view, contact->point);
+        if (!contact_is_finite(contact) || at.x < view->low.x || at.x > view->high.x || at.y < view->low.y ||
+            at.y > view->high.y)
+            continue;
+        Vec2 impulse = impulse_of(contact);
+        shown[(*count)++] = (ShownContact){at, contact->normal, impulse, impulse_magnitude(contact)};
+    }
+    if (shown != NULL) qsort(shown, (size_t)*count, sizeof *shown, by_size);
+    return shown;
+}
+
+static Point arrow_tip(const ContactLook *look, const ShownContact *contact) {
+    return (Point){contact->at.x + look->arrow_scale * (double)contact->impulse.x,
+                   contact->at.y + look->arrow_scale * (double)contact->impulse.y};
+}
+
+/* The point and its normal, `normal` long on either side. */
+static void draw_contact_point(Sketch *sketch, Point at, Point normal, double ring) {
+    const Pen circle = {0xFFFFFF, 1, ACCENT, 1.4, NULL}, thin = pen_line(INK_SOFT, 1.3, NULL);
+    sketch_line(sketch, (Point){at.x - normal.x, at.y - normal.y}, (Point){at.x + normal.x, at.y + normal.y}, &thin);
+    sketch_dot(sketch, at, ring, &circle);
+}
+
+/* Three significant digits, or "0", outside the pile of contacts, whose middle is at `middle`: beside the arrow's tip, or
+   beside the point, with a line to it if it is not near. False if there is no room. */
+static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field,
+                        double middle, bool crowded) {
+    const double points = SMALL_TYPE * look->points, em = points * MM_PER_POINT, value = contact->size;
+    const double farthest = value >= large_share * look->largest ? 30 : 12;
+    const bool arrow = value * look->arrow_scale >= long_arrow;
+    const Point tip = arrow_tip(look, contact);
+    char text[32];
+    PageBox box;
+    Segment leader;
+    bool led = false;
+    snprintf(text, sizeof text, "%.*f", value < 0.005 || value >= 99.95 ? 0 : value >= 9.995 ? 1 : 2, value);
+    LabelWish wish = {.x = contact->at.x,
+                      .y = contact->at.y,
+                      .clear = look->ring,
+                      .nearest = crowded ? crowd : 0,
+                      .farthest = farthest,
+                      .width = type_width(text, points) + 0.4 * em,
+                      .height = 1.15 * em,
+                      .left = contact->at.x < middle,
+                      .shelf = true};
+    if ((!arrow || !label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, false, &box)) &&
+        !label_place_led(field, &wish, &box, &leader, &led)) {
+        wish.nearest = 0;
+        if (!label_place_led(field, &wish, &box, &leader, &led)) return false;
+    }
+    const Pen thin = pen_line(ACCENT, 0.8, NULL);
+    if (led) draw_leader(sketch, &leader, &box, &thin);
+    sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
+                &(TextStyle){points, TEXT_CENTER, ACCENT, 0, true}, "%s", text);
+    return true;
+}
+
+/* Draws the contacts of a step inside the view, over a picture of its bodies: points, normals, and impulses as arrows and
+   numbers. *numbered of *count have their impulse as a number; for the others there was no room. */
+static bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
+                          int *count, int *numbered, Error *error) {
+    ShownContact *contacts = gather_contacts(run, step, view, count);
+    LabelField *field = calloc(1, sizeof *field);
+    const bool done = (contacts != NULL && field != NULL) || error_memory(error, "figure");
+    const double ring = look->ring;
+    double middle = 0;
+    *numbered = 0;
+    if (done) field->frame = (PageBox){view->low.x + 0.3, view->low.y + 0.3, view->high.x - 0.3, view->high.y - 0.3};
+    for (int i = *count - 1; done && i >= 0; i--) {
+        const ShownContact *contact = &contacts[i];
+        const Point at = contact->at, tip = arrow_tip(look, contact);
+        const double x = NORMAL_RINGS * ring * (double)contact->normal.x,
+                     y = NORMAL_RINGS * ring * (double)contact->normal.y;
+        draw_contact_point(sketch, at, (Point){x, y}, ring);
+        label_add_box(field, (PageBox){at.x - ring, at.y - ring, at.x + ring, at.y + ring});
+        label_add_segment(field, (Segment){at.x - x, at.y - y, at.x + x, at.y + y});
+        if (contact->size * look->arrow_scale < min_arrow) continue;
+        sketch_arrow(sketch, at, tip, ACCENT, 2.4);
+        label_add_segment(field, (Segment){at.x, at.y, tip.x, tip.y});
+    }
+    for (int i = 0; done && i < *count; i++) middle += contacts[i].at.x;
+    middle /= fmax(*count, 1);
+    for (int i = 0; done && i < *count && i < MAX_NUMBERS && !run->no_impulses; i++) {
+        /* Another contact is so near that a number between them could belong to either. */
+        bool crowded = false;
+        for (int k = 0; k < *count; k++)
+            crowded |=
+                k != i && hypot(contacts[k].at.x - contacts[i].at.x, contacts[k].at.y - contacts[i].at.y) < crowd;
+        *numbered += draw_number(look, sketch, &contacts[i], field, middle, crowded);
+    }
+    free(contacts);
+    free(field);
+    return done;
+}
 
 static const double annotated_gap = 2;               /* mm: between cells */
 static const double max_ring = 0.55, min_ring = 0.3; /* mm */
@@ -94,8 +246,14 @@ static int annotated_legend(const Annotated *figure, Sketch *sketch) {
     const double width = spec->width - PAGE_EDGE - figure->start;
     Flow flow = {.first = {figure->start, figure->foot - 0.7 * line_height(points)}, .width = width, .points = points};
     run_cells_flow_scale_bar(&figure->cells, sketch, &flow);
-    Point at = flow_place(&flow, contact_sample_width(&figure->look), 1);
-    if (sketch != NULL) draw_contact_sample(sketch, at, &figure->look);
+    const char *contact = "contact, normal";
+    const double reach = NORMAL_RINGS * figure->look.ring;
+    Point at = flow_place(&flow, 2 * reach + 1 + type_width(contact, points), 1);
+    if (sketch != NULL) {
+        draw_contact_point(sketch, (Point){at.x + reach, at.y}, (Point){reach, 0}, figure->look.ring);
+        sketch_text(sketch, (Point){at.x + 2 * reach + 1, at.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s",
+                    contact);
+    }
     if (largest > 0) {
         const double shown = round_down(largest), arrow = shown * figure->look.arrow_scale, gap = number_gap(points);
         const WrappedText words =

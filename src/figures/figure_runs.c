@@ -300,7 +300,10 @@ static bool lay_out_cells(Strip *strip, Error *error) {
                            "%.1f x %g mm are needed at a font size of %g",
                            strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, narrowest,
                            least, spec->points);
-    if (spec->height > 0) run_window_fill(&window, width / height);
+    if (spec->height > 0) {
+        run_window_widen(&window, width / height);
+        window.height = fmax(window.height, window.width / (width / height));
+    }
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
     if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
     const double used = strip->left + PAGE_EDGE + strip->count * strip->cells.width + (strip->count - 1) * strip_gap;
@@ -368,11 +371,14 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
 
 static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
-    bool done = run_colours(spec, strip.colours, error) && run_check_worlds(spec, error) &&
-                run_check_bodies(spec, error) && run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error);
-    if (!done) return false;
+    if (!run_colours(spec, strip.colours, error) || !run_check_worlds(spec, error)) return false;
+    for (int i = 0; i < spec->body_count; i++)
+        if (spec->bodies[i] >= spec->runs[0]->bodies)
+            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
+                               spec->runs[0]->bodies);
+    if (!run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error)) return false;
     /* Names stand beside their rows if all have room there. */
-    done = lay_out_lines(&strip, error);
+    bool done = lay_out_lines(&strip, error);
     if (!done && error->kind == ERROR_INPUT) {
         run_cells_free(&strip.cells);
         *error = (Error){0};
@@ -384,9 +390,12 @@ static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
         for (int column = 0; done && column < strip.count; column++) {
             const Point low = cell_corner(&strip, row, column);
             const WrappedText note = note_of(&strip, row, column);
-            done = run_cells_draw(&strip.cells, sketch, low, spec->runs[row], strip.frames[column], &strip.colours[row],
-                                  error);
+            Image *image = run_cells_render(&strip.cells, spec->runs[row], strip.frames[column], &strip.colours[row],
+                                            STILL_ALL, error);
+            done = image != NULL;
             if (!done) break;
+            sketch_image(sketch, image, low, strip.cells.width);
+            image_destroy(image);
             run_cells_frame(&strip.cells, sketch, low);
             if (note.lines > 0)
                 draw_wrapped(sketch, (Point){low.x, low.y - 0.6 * line_height(note.points)}, INK_SOFT, &note);

@@ -56,9 +56,8 @@ void draw_leader(Sketch *sketch, const Segment *leader, const PageBox *label, co
    frames[FIGURE_MOMENTS_MAX]. ERROR_INPUT for times outside a run. `after`: number of frames that must follow. */
 bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int *count, Error *error);
 
-/* ERROR_INPUT for runs with different worlds or time steps; and for bodies that the first run does not have. */
+/* ERROR_INPUT for runs with different worlds or time steps. */
 bool run_check_worlds(const FigureSpec *spec, Error *error);
-bool run_check_bodies(const FigureSpec *spec, Error *error);
 
 /* A part of the world, m. */
 typedef struct WorldWindow {
@@ -71,9 +70,6 @@ WorldWindow run_window(const FigureSpec *spec, const int *frames, int count);
 
 /* Widens the window on both sides to this aspect ratio (width / height), if it is narrower. */
 void run_window_widen(WorldWindow *window, double shape);
-
-/* Widens the window on both sides, or raises its top, to this aspect ratio. */
-void run_window_fill(WorldWindow *window, double shape);
 
 /* Whether a body is there with its centre outside the window; and the number of such dynamic bodies. */
 bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window);
@@ -96,10 +92,6 @@ void run_cells_free(RunCells *cells);
 /* Renders part of a frame into a new image of a cell's size. */
 Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, const RunColours *colours, StillParts parts,
                         Error *error);
-
-/* Renders a frame onto the page, lower left corner at `low`. */
-bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame,
-                    const RunColours *colours, Error *error);
 
 /* The mapping from metres to the page in a cell. */
 View run_cells_view(const RunCells *cells, Point low);
@@ -125,30 +117,6 @@ RunName run_method_name(const FigureSpec *spec, const Trajectory *run);
 
 /* The runs' colours, FIGURE_RUNS_MAX of them. */
 bool run_colours(const FigureSpec *spec, RunColours *colours, Error *error);
-
-/* Draws the contacts of a step over a picture of its bodies: points, normals, and impulses as arrows and numbers. */
-
-typedef struct ContactLook {
-    double ring;        /* mm, radius of a point's mark */
-    double arrow_scale; /* mm per N s */
-    double largest;     /* N s, largest impulse of all panels */
-    double points;      /* font size */
-} ContactLook;
-
-/* In N s. */
-double impulse_magnitude(const TrajectoryContact *contact);
-
-/* False for NaN or infinity, which a damaged file may contain. */
-bool contact_is_finite(const TrajectoryContact *contact);
-
-/* Draws the contacts inside the view. *numbered of *count have their impulse as a number; for the others there was
-   no room. */
-bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
-                   int *count, int *numbered, Error *error);
-
-/* A sample for the legend: a contact's mark with its label; and its width, mm. */
-void draw_contact_sample(Sketch *sketch, Point left, const ContactLook *look);
-double contact_sample_width(const ContactLook *look);
 
 /* Text for LaTeX. */
 
@@ -209,12 +177,6 @@ TextPlace text_place(const Sketch *sketch, const SketchMark *mark);
 
 /* Halo thickness on each side / em. */
 #define HALO_SHARE 0.14
-
-static inline bool has_alpha(const Image *image) {
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        if (image->pixels[4 * i + 3] != 255) return true;
-    return false;
-}
 
 /* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. drawn: of lines and text alone,
    which take a tenth to a quarter less room without filters. */

@@ -58,8 +58,6 @@ static int crossed(const LabelField *field, const PageBox *box) {
     return count;
 }
 
-bool label_fits(const LabelField *field, const PageBox *box) { return is_free(field, box) && crossed(field, box) == 0; }
-
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
                  PageBox *place) {
     /* Right, left, above, below, then the corners. -1, 0, 1: the side of the mark. */

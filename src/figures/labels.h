@@ -30,9 +30,6 @@ typedef struct LabelField {
 void label_add_box(LabelField *field, PageBox box);
 void label_add_segment(LabelField *field, Segment segment);
 
-/* Whether a label here covers no box and crosses no line. */
-bool label_fits(const LabelField *field, const PageBox *box);
-
 /* Finds the box for a label of this size near (x, y), at least `distance` away: the nearest that covers no box and
    crosses no line. False if there is none; with `must`, the one that crosses the fewest lines. Adds the box to the
    field. */

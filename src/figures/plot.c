@@ -127,13 +127,6 @@ PlotLook plot_look_dashed(const char *name) {
 
 PlotLook plot_look_guide(void) { return (PlotLook){.style = {.colour = 0xC8C8C8, .ink = 0xC8C8C8}, .line = 0.6}; }
 
-PlotLook plot_look_thin(PlotLook look) {
-    look.line = 0.6;
-    look.style.dashes = NULL;
-    look.marks = false;
-    return look;
-}
-
 void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *look) {
     const Pen pen = pen_line(look->style.colour, look->line, look->style.dashes);
     for (int i = 0, end; i < count; i = end + 1) {
@@ -255,7 +248,9 @@ static void draw_series(Plotter *plotter, int index, int series, Pass pass) {
     if (count == 0 || (pass == PASS_SEEDS ? !look.seeds : look.above != (pass == PASS_ABOVE))) return;
     if (pass == PASS_SEEDS) {
         qsort(points, (size_t)count, sizeof *points, by_group);
-        look = plot_look_thin(look);
+        look.line = 0.6;
+        look.style.dashes = NULL;
+        look.marks = false;
     } else if (look.seeds || look.medians) {
         count = to_medians(points, count);
     }

@@ -163,9 +163,6 @@ PlotLook plot_look_marks(int i, const char *name);
 PlotLook plot_look_dashed(const char *name);
 PlotLook plot_look_guide(void);
 
-/* The same series as a thin line without marks, for one of several equivalent ones. */
-PlotLook plot_look_thin(PlotLook look);
-
 /* A line through points of the page, and marks on them; a point that is NaN interrupts the line. */
 void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *look);
 

@@ -27,7 +27,8 @@ void pixel_over(uint8_t *pixel, const uint8_t colour[3], int alpha) {
 static bool write_png(FILE *file, const Image *image, double dpi, bool drawn) {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png != NULL ? png_create_info_struct(png) : NULL;
-    const bool alpha = has_alpha(image);
+    bool alpha = false;
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) alpha |= image->pixels[4 * i + 3] != 255;
     if (info == NULL || setjmp(png_jmpbuf(png))) {
         png_destroy_write_struct(&png, &info);
         return false;
