@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figures of stored runs for papers: scenes as pixels, everything else as vector graphics and text. */
+/* Figures of stored runs for papers: scenes as pixels, everything else as vector graphics and text.
+
+     FigureSpec spec = {.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI, .run_count = 1};
+     spec.runs[0] = run, spec.paths[0] = "engine.npz";
+     figure_draw(figure_kind("strip", &error), &sketch, &spec, &error); */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"

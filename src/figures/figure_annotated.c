@@ -255,7 +255,7 @@ static int annotated_legend(const Annotated *figure, Sketch *sketch) {
                     contact);
     }
     if (largest > 0) {
-        const double shown = round_down(largest), arrow = shown * figure->look.arrow_scale, gap = number_gap(points);
+        const double shown = round_down(largest), arrow = shown * figure->look.arrow_scale, gap = gap_to_text(points);
         const WrappedText words =
             wrap_text(points, width - arrow - gap, "%g N s on the body with the higher number", shown);
         at = flow_place(&flow, arrow + gap + wrapped_width(&words), words.lines);

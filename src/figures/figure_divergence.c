@@ -110,7 +110,7 @@ static bool ever_diverges(const double *distance, int frames) {
    them. */
 static int draw_legend(const Divergence *d, Sketch *sketch, Point top, double width) {
     const FigureSpec *spec = d->spec;
-    const double line = line_height(spec->points), indent = sample + number_gap(spec->points);
+    const double line = line_height(spec->points), indent = sample + gap_to_text(spec->points);
     int rows = 0;
     for (int i = 1; i <= spec->run_count; i++) {
         const bool band = i == spec->run_count;

@@ -6,6 +6,7 @@
 #include "figures/figures_internal.h"
 #include "figures/labels.h"
 #include "figures/sketch.h"
+#include "figures/sketch_writers.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"

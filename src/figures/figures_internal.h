@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the figures of this room share: texts in lines, rows of items, and frames of runs in cells. */
+/* What the kinds of figures share: moments of runs, frames rendered into cells, texts, captions.
+
+     WorldWindow window = run_window(spec, frames, count);
+     run_cells_begin(&cells, &window, width, height, spec->dpi, error);
+     Image *image = run_cells_render(&cells, run, frames[0], &colours, STILL_ALL, error);
+     run_cells_free(&cells); */
 #pragma once
 #include "base/base.h"
 #include "figures/figure.h"
-#include "figures/labels.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"
@@ -17,40 +21,6 @@
 
 /* The kinds of figures. */
 extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe;
-
-/* A text in lines of a width. */
-typedef struct WrappedText {
-    char text[2 * CAPTION_TEXT_SIZE + 192];
-    int lines;
-    double points;
-} WrappedText;
-WrappedText wrap_text(double points, double width, const char *format, ...) PRINTF_LIKE(3, 4);
-
-/* From `left`, the middle of the first line. */
-void draw_wrapped(Sketch *sketch, Point left, uint32_t ink, const WrappedText *text);
-double wrapped_width(const WrappedText *text); /* mm: of the longest line */
-
-/* Items below a picture, from left to right; the next row begins where one has no room. */
-typedef struct Flow {
-    Point first;   /* middle of the left end of the first row */
-    double width;  /* mm */
-    double points; /* font size, which sets the distance of rows and items */
-    double used;   /* mm: of the row */
-    int row;       /* from 0 */
-} Flow;
-
-/* The place of an item of so many lines, the last of which ends its row if there are several. */
-Point flow_place(Flow *flow, double width, int lines);
-void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text); /* sketch NULL: takes its place */
-
-/* mm: between the end of a line or an arrow and the text that it belongs to; nearer it would be read as a minus
-   sign. */
-double number_gap(double points);
-
-/* From a mark to its label, and along below it if the mark is beside it (label_place_led). */
-void draw_leader(Sketch *sketch, const Segment *leader, const PageBox *label, const Pen *pen);
-
-/* Shared by figures of runs: the frames, the part of the world, and its rendered pixels. */
 
 /* The frames of the spec's times, or of `moments` equidistant times over the whole run, in
    frames[FIGURE_MOMENTS_MAX]. ERROR_INPUT for times outside a run. `after`: number of frames that must follow. */
@@ -99,9 +69,6 @@ View run_cells_view(const RunCells *cells, Point low);
 /* Draws a scale bar below the cells: a round length of at most a quarter of a cell, from `left`. */
 void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points);
 
-/* The same as the next item; without a sketch, it only takes its place. */
-void run_cells_flow_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
-
 /* A line around a cell. */
 void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low);
 
@@ -117,6 +84,34 @@ RunName run_method_name(const FigureSpec *spec, const Trajectory *run);
 
 /* The runs' colours, FIGURE_RUNS_MAX of them. */
 bool run_colours(const FigureSpec *spec, RunColours *colours, Error *error);
+
+/* A text in lines of a width. */
+typedef struct WrappedText {
+    char text[2 * CAPTION_TEXT_SIZE + 192];
+    int lines;
+    double points;
+} WrappedText;
+WrappedText wrap_text(double points, double width, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* From `left`, the middle of the first line. */
+void draw_wrapped(Sketch *sketch, Point left, uint32_t ink, const WrappedText *text);
+double wrapped_width(const WrappedText *text); /* mm: of the longest line */
+
+/* Items below a picture, from left to right; the next row begins where one has no room. */
+typedef struct Flow {
+    Point first;   /* middle of the left end of the first row */
+    double width;  /* mm */
+    double points; /* font size, which sets the distance of rows and items */
+    double used;   /* mm: of the row */
+    int row;       /* from 0 */
+} Flow;
+
+/* The place of an item of so many lines, the last of which ends its row if there are several. */
+Point flow_place(Flow *flow, double width, int lines);
+void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text); /* sketch NULL: takes its place */
+
+/* The scale bar of cells as the next item; without a sketch, it only takes its place. */
+void run_cells_flow_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
 
 /* Text for LaTeX. */
 
@@ -141,43 +136,3 @@ void caption_scene(FILE *out, const FigureSpec *spec);
 
 /* " at 0.5, 0.6 and 0.8~s"; many moments by their number, the first and the last. */
 void caption_times(FILE *out, const FigureSpec *spec);
-
-/* Blends one colour, alpha 0 .. 255, over a pixel. */
-void pixel_over(uint8_t *pixel, const uint8_t colour[3], int alpha);
-
-/* Shared by the writers of the three formats. Each returns a malloc'ed block, or NULL with error set.
-
-   Why our own writers: a figure has the same bytes on Debian 12 and 13. Tests compare bytes with stored hashes:
-   test_sketch_files.c for the writers, test_figure.sh and test_paper.sh for figures. cairo's bytes depend on its
-   version: with a fixed creation date, cairo 1.16.0 (Debian 12) and 1.18.4 (Debian 13) write different PDF and
-   SVG files, and different pixels of text. zlib, which compresses our PNG files and PDF streams, gives the same
-   bytes in versions 1.2.13 and 1.3.1. */
-
-char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
-char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
-char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
-
-/* The font that the texts need. */
-FontFile sketch_font(const Sketch *sketch);
-
-/* The marks' indices from bottom to top, [mark_count]; NULL if out of memory. */
-size_t *sketch_order(const Sketch *sketch);
-
-enum { DASHES_MAX = 4 };
-
-/* Returns the number of a pen's dashes and gaps, and their lengths in mm; 0: solid. */
-int pen_dashes(const Pen *pen, double dashes[DASHES_MAX]);
-
-/* The start of a text on its baseline, and the unit vector along it. */
-typedef struct TextPlace {
-    Point from;
-    double cosine, sine, em; /* mm per em */
-} TextPlace;
-TextPlace text_place(const Sketch *sketch, const SketchMark *mark);
-
-/* Halo thickness on each side / em. */
-#define HALO_SHARE 0.14
-
-/* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. drawn: of lines and text alone,
-   which take a tenth to a quarter less room without filters. */
-char *picture_as_png(const Image *image, double dpi, bool drawn, size_t *size, Error *error);

@@ -3,7 +3,6 @@
 #include "figures/labels.h"
 
 #include "base/base.h"
-#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 
 #include <math.h>

@@ -51,3 +51,6 @@ typedef struct LabelWish {
    *leader is that line, from the mark's edge to the label, and *led whether it is long enough to be drawn. Adds label
    and line to the field. False if there is no place. */
 bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, Segment *leader, bool *led);
+
+/* From a mark to its label, and along below it if the mark is beside it (label_place_led). */
+void draw_leader(Sketch *sketch, const Segment *leader, const PageBox *label, const Pen *pen);

@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "engine/engine.h"
-#include "figures/figures_internal.h"
+#include "figures/sketch_writers.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
@@ -350,14 +350,14 @@ void sketch_scale_bar(Sketch *sketch, Point left, double scale, double amount, c
     sketch_line(sketch, left, right, &pen);
     sketch_line(sketch, (Point){left.x, left.y - up}, (Point){left.x, left.y + up}, &pen);
     sketch_line(sketch, (Point){right.x, right.y - up}, (Point){right.x, right.y + up}, &pen);
-    sketch_text(sketch, (Point){right.x + number_gap(points), left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false},
+    sketch_text(sketch, (Point){right.x + gap_to_text(points), left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false},
                 "%g %s", amount, unit);
 }
 
-double number_gap(double points) { return fmax(1.4, 0.55 * points * MM_PER_POINT); }
+double gap_to_text(double points) { return fmax(1.4, 0.55 * points * MM_PER_POINT); }
 
 double sketch_scale_bar_width(double scale, double amount, const char *unit, double points) {
     char words[64];
     snprintf(words, sizeof words, "%g %s", amount, unit);
-    return scale * amount + number_gap(points) + type_width(words, points);
+    return scale * amount + gap_to_text(points) + type_width(words, points);
 }

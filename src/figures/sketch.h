@@ -152,6 +152,10 @@ typedef struct ShownDecimals {
 } ShownDecimals;
 ShownDecimals show_decimals(double value, int decimals);
 
+/* mm: between the end of a line or an arrow and the text that it belongs to; nearer it would be read as a minus
+   sign. */
+double gap_to_text(double points);
+
 /* A scale bar for an amount at `scale` mm per unit, labelled for example "5 m"; and its width with the label, mm. */
 void sketch_scale_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points);
 double sketch_scale_bar_width(double scale, double amount, const char *unit, double points);

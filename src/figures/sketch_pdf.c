@@ -2,8 +2,8 @@
 /* The objects of a PDF file and of its font. */
 #include "base/base.h"
 #include "base/file.h"
-#include "figures/figures_internal.h"
 #include "figures/sketch.h"
+#include "figures/sketch_writers.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plots are made of: axes and their ticks, styles, marks. */
 #include "base/numbers.h"
-#include "figures/figures_internal.h"
 #include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"

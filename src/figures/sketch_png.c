@@ -2,8 +2,8 @@
 /* A sketch as PNG: polygons, letters and pictures. */
 #include "base/base.h"
 #include "base/file.h"
-#include "figures/figures_internal.h"
 #include "figures/sketch.h"
+#include "figures/sketch_writers.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"
 #include "pixels/raster.h"

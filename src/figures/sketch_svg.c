@@ -4,8 +4,8 @@
    aria-label holds its content. */
 #include "base/base.h"
 #include "base/file.h"
-#include "figures/figures_internal.h"
 #include "figures/sketch.h"
+#include "figures/sketch_writers.h"
 #include "pictures/page.h"
 #include "pixels/png.h"
 #include "pixels/type.h"

@@ -3,7 +3,7 @@
    pale for what is behind them, or read with a line that ends at a number as its minus sign. Include testing.h
    first. */
 #pragma once
-#include "figures/figures_internal.h"
+#include "figures/sketch_writers.h"
 #include "figures/sketch.h"
 #include "pixels/png.h"
 #include "pixels/type.h"

@@ -5,7 +5,7 @@
 
 #include "base/hash.h"
 #include "base/machine.h"
-#include "figures/figures_internal.h"
+#include "figures/sketch_writers.h"
 #include "pixels/type.h"
 
 #include <inttypes.h>
