@@ -21,12 +21,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double last_time(const Trajectory *run, int after) { return (run->frames - 1 - after) * (double)run->dt; }
-
+/* ERROR_INPUT for a time that a run does not have. */
 static bool check_time(const FigureSpec *spec, double time, int after, Error *error) {
     for (int i = 0; i < spec->run_count; i++) {
-        double last = last_time(spec->runs[i], after);
-        if (time < 0 || time > last + (double)spec->runs[i]->dt / 2)
+        const Trajectory *run = spec->runs[i];
+        const double last = (run->frames - 1 - after) * (double)run->dt;
+        if (time < 0 || time > last + (double)run->dt / 2)
             return error_input(error, spec->paths[i], "has no moment at %g s%s; its moments are 0 to %g s", time,
                                after > 0 ? " with a step after it" : "", last);
     }
@@ -35,9 +35,10 @@ static bool check_time(const FigureSpec *spec, double time, int after, Error *er
 
 bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int *count, Error *error) {
     const double dt = (double)spec->runs[0]->dt;
-    if (!check_time(spec, 0, after, error)) return false;
     double last = HUGE_VAL;
-    for (int i = 0; i < spec->run_count; i++) last = fmin(last, last_time(spec->runs[i], after));
+    if (!check_time(spec, 0, after, error)) return false;
+    for (int i = 0; i < spec->run_count; i++)
+        last = fmin(last, (spec->runs[i]->frames - 1 - after) * (double)spec->runs[i]->dt);
     *count = spec->time_count > 0 ? spec->time_count : spec->moments > 0 ? spec->moments : moments;
     for (int i = 0; i < *count; i++) {
         double time = spec->time_count > 0 ? spec->times[i] : *count > 1 ? last * i / (*count - 1) : last;
@@ -59,16 +60,12 @@ bool run_check_worlds(const FigureSpec *spec, Error *error) {
     return true;
 }
 
-static WorldWindow window_of_view(const CameraView *view) {
-    return (WorldWindow){view->x - view->width / 2, view->y - view->height / 2, view->width, view->height};
-}
-
 WorldWindow run_window(const FigureSpec *spec, const int *frames, int count) {
     const double margin_share = 0.04, least_margin = 0.4; /* m */
     const Trajectory *const *runs = spec->view_from != NULL ? &spec->view_from : spec->runs;
-    CameraView set;
-    if (spec->view.width > 0) return window_of_view(&spec->view);
-    if (camera_view_of(runs[0], &set)) return window_of_view(&set);
+    CameraView view = spec->view;
+    if (view.width > 0 || camera_view_of(runs[0], &view))
+        return (WorldWindow){view.x - view.width / 2, view.y - view.height / 2, view.width, view.height};
     const Extent all = framing_in_frames(runs, spec->view_from != NULL ? 1 : spec->run_count, frames, count);
     if (extent_is_empty(&all)) return (WorldWindow){-1, -1, 2, 2};
     double margin = fmax(margin_share * extent_side(&all), least_margin);

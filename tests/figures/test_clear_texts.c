@@ -92,22 +92,6 @@ TEST(the_least_width_is_enough) {
     assert_clear(&faults);
 }
 
-/* Nothing is shortened, whatever runs are called. */
-TEST(long_names) {
-    Trajectory *runs[] = {read_run("stack", "engine"), read_run("stack", "pair-net")};
-    strcpy(runs[1]->method, "pair-net:weights=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz");
-    for (int i = 0; figure_kinds()[i] != NULL; i++) {
-        const FigureKind *kind = figure_kinds()[i];
-        FigureSpec spec = spec_of(runs, kind->max_runs < 2 ? 1 : 2);
-        spec.dpi = 50, spec.moments = 3;
-        spec.captions[0] =
-            "the physics engine that ships, with ten sweeps and warm start, as in all lectures of the year";
-        draw_at_sizes(kind, &spec, LEAST, USUAL);
-    }
-    free_runs(runs, 2);
-    assert_clear(&faults);
-}
-
 static void make_folder(void) {
     remove_temporary_folder();
     temporary_path("");
@@ -159,20 +143,6 @@ TEST(maps_and_borders) {
         draw();
     }
     free(borders);
-    assert_clear(&faults);
-}
-
-TEST(maps_and_borders_with_long_names) {
-#define LONG "\"network=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz,warm=off,k=%d\""
-    char maps[8192] = MAPS, borders[4096] = BORDERS;
-    for (int i = 0; i < 4; i++) {
-        text_add(maps, sizeof maps, "m,pair-net," LONG ",a,,1,b,,1,%s,,,,\n", i, i == 3 ? "falls" : "settles");
-        text_add(maps, sizeof maps, "m,pair-net," LONG ",a,,2,b,,1,falls,,,,\n", i);
-        text_add(borders, sizeof borders,
-                 "a_study_of_many_words_in_its_name_%d,pair-net," LONG ",height,boxes,10,11,falls\n", i, i);
-    }
-    start_afresh(maps, borders);
-    draw();
     assert_clear(&faults);
 }
 
@@ -239,22 +209,6 @@ TEST(faults_are_found) {
     begin(&sketch), sketch_rectangle(&sketch, (Point){38, 1}, (Point){58, 9}, &band);
     sketch_text(&sketch, (Point){40, 5}, &soft, "impact"), expect_fault(&sketch, "\"impact\" has a contrast of 3.5");
     begin(&sketch), sketch_line(&sketch, (Point){0, 5}, (Point){60, 5}, &pale), expect_none(&sketch);
-}
-
-/* A picture behind a text: dark pixels under a part of its letters. */
-TEST(texts_on_pictures_are_seen) {
-    Sketch sketch;
-    OWN(Image) *image = image_create(40, 20, &error);
-    assert_non_null(image);
-    for (int i = 0; i < 40 * 20; i++)
-        memcpy(image->pixels + 4 * i, i % 40 < 20 ? "\xFF\xFF\xFF\xFF" : "\0\x72\xB2\xFF", 4);
-    for (int over = 0; over < 2; over++) {
-        sketch_begin(&sketch, 40, 20);
-        sketch_image(&sketch, image, (Point){0, 0}, 40);
-        sketch_text(&sketch, (Point){over ? 10 : 2, 10}, &(TextStyle){8, TEXT_LEFT, INK_SOFT, 0, true},
-                    "2 out of view");
-        over ? expect_fault(&sketch, "has a contrast of") : expect_none(&sketch);
-    }
 }
 
 RUN_TESTS(NULL, NULL)
