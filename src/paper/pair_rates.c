@@ -64,17 +64,6 @@ static bool begin_rating(Rating *rating, const char *path, Error *error) {
            add_solver(rating, RATE_ENGINE10, "engine:k=10", NULL, error);
 }
 
-static void end_rating(Rating *rating) {
-    if (!rating->warm) pair_network_free(&rating->network);
-    for (int c = 0; c < RATE_COLUMNS; c++) {
-        if (rating->solvers[c].kind != NULL) rating->solvers[c].kind->destroy(rating->solvers[c].state);
-        pair_moment_free(&rating->results[c]);
-    }
-    pair_moment_free(&rating->now);
-    world_destroy(rating->world);
-    free(rating->pairs);
-}
-
 static const SequentialOptions engine_options = {.accumulate = true, .warm = true};
 
 static Vec2 relative(const float changes[PAIR_CHANGES]) {
@@ -222,6 +211,13 @@ bool pair_rates_measure(const char *path, const Scene *scene, const SnapshotList
     for (int i = 0; ok && i < count; i++)
         for (int s = 0; ok && s < lists[i].count; s++) ok = rate_step(&rating, &lists[i].items[s], error);
     if (ok) find_shares(&rating, sampling, rates);
-    end_rating(&rating);
+    if (!rating.warm) pair_network_free(&rating.network);
+    for (int c = 0; c < RATE_COLUMNS; c++) {
+        if (rating.solvers[c].kind != NULL) rating.solvers[c].kind->destroy(rating.solvers[c].state);
+        pair_moment_free(&rating.results[c]);
+    }
+    pair_moment_free(&rating.now);
+    world_destroy(rating.world);
+    free(rating.pairs);
     return ok;
 }

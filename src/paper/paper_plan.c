@@ -26,25 +26,21 @@ static PaperPart *add_part(PaperPlan *plan, double weight, PaperWrite *write, Er
     return part;
 }
 
-/* Of 2000 iterations; and of recording and scoring. */
-static double training_weight(const PaperNetwork *network) {
-    const double around = 0.1;
-    static const double of_data[PAPER_DATA] = {
-        [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
-    double weight = of_data[network->data];
-    if (strcmp(network->optimizer, "lm") == 0) weight *= 35;
-    if (strcmp(network->optimizer, "bfgs") == 0) weight *= 3;
-    if (pair_views[network->view].by_contact) weight *= network->target == TARGET_POINTS ? 8 : 4;
-    return around + weight * network->iterations / 2000;
-}
-
 /* The trainings, which come first, and the scores of all networks in each scene. */
 static bool add_networks(PaperPlan *plan, Error *error) {
+    /* Of 2000 iterations; and of recording and scoring. */
+    static const double of_data[PAPER_DATA] = {
+        [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
+    const double around = 0.1;
     const PaperSize *size = plan->size, *whole = &paper_whole_size;
     for (int i = 0; i < plan->network_count; i++) {
         const PaperNetwork *network = &plan->networks[i];
-        PaperPart *part =
-            add_part(plan, training_weight(network), paper_training_write, error, "network-%s", network->name);
+        double weight = of_data[network->data];
+        if (strcmp(network->optimizer, "lm") == 0) weight *= 35;
+        if (strcmp(network->optimizer, "bfgs") == 0) weight *= 3;
+        if (pair_views[network->view].by_contact) weight *= network->target == TARGET_POINTS ? 8 : 4;
+        PaperPart *part = add_part(plan, around + weight * network->iterations / 2000, paper_training_write, error,
+                                   "network-%s", network->name);
         if (part == NULL) return false;
         part->index = i;
     }
