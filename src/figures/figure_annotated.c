@@ -245,7 +245,7 @@ static int annotated_legend(const Annotated *figure, Sketch *sketch) {
     const double points = SMALL_TYPE * spec->points, largest = figure->look.largest;
     const double width = spec->width - PAGE_EDGE - figure->start;
     Flow flow = {.first = {figure->start, figure->foot - 0.7 * line_height(points)}, .width = width, .points = points};
-    run_cells_flow_scale_bar(&figure->cells, sketch, &flow);
+    run_cells_scale_bar(&figure->cells, sketch, &flow);
     const char *contact = "contact, normal";
     const double reach = NORMAL_RINGS * figure->look.ring;
     Point at = flow_place(&flow, 2 * reach + 1 + type_width(contact, points), 1);

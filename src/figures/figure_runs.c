@@ -129,12 +129,13 @@ static bool draw_bomb(const Strobe *strobe, Sketch *sketch, Error *error) {
 /* Below the picture: the scale, and who has left. Returns the rows; without a sketch, it only counts them. */
 static int strobe_foot(const Strobe *strobe, Sketch *sketch) {
     const FigureSpec *spec = strobe->spec;
-    const int outside = run_count_outside(strobe->run, strobe->frames[strobe->count - 1], &strobe->cells.window);
+    const int outside =
+        run_count_outside(strobe->run, strobe->frames[strobe->count - 1], &strobe->cells.window, NULL, 0);
     const WrappedText words = wrap_text(spec->points, strobe->cells.width, "%d out of view at the end", outside);
     Flow flow = {.first = {strobe->low.x, strobe->low.y - 0.7 * line_height(spec->points)},
                  .width = strobe->cells.width,
                  .points = spec->points};
-    run_cells_flow_scale_bar(&strobe->cells, sketch, &flow);
+    run_cells_scale_bar(&strobe->cells, sketch, &flow);
     if (outside > 0) flow_text(&flow, sketch, INK_SOFT, &words);
     return flow.row + 1;
 }
@@ -251,11 +252,8 @@ static WorldWindow window_of_bodies(const Strip *strip) {
 static WrappedText note_of(const Strip *strip, int row, int column) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
-    const Trajectory *run = spec->runs[row];
-    const int frame = strip->frames[column];
-    int outside = spec->body_count == 0 ? run_count_outside(run, frame, &cells->window) : 0;
-    for (int i = 0; i < spec->body_count; i++)
-        outside += !run->fixed[spec->bodies[i]] && run_is_outside(run, frame, spec->bodies[i], &cells->window);
+    const int outside =
+        run_count_outside(spec->runs[row], strip->frames[column], &cells->window, spec->bodies, spec->body_count);
     if (outside == 0) return (WrappedText){.lines = 0};
     return wrap_text(text_points("of view", SMALL_TYPE * spec->points, cells->width), cells->width, "%d out of view",
                      outside);
@@ -367,7 +365,8 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
                     &(TextStyle){time_points, TEXT_CENTER, INK, 0, false}, "%.2f s",
                     strip->frames[column] * (double)spec->runs[0]->dt);
     }
-    run_cells_draw_scale_bar(cells, sketch, (Point){strip->start, strip->foot / 2 - 0.3}, spec->points);
+    Flow foot = {.first = {strip->start, strip->foot / 2 - 0.3}, .width = spec->width, .points = spec->points};
+    run_cells_scale_bar(cells, sketch, &foot);
 }
 
 static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {

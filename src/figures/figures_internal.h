@@ -41,9 +41,8 @@ WorldWindow run_window(const FigureSpec *spec, const int *frames, int count);
 /* Widens the window on both sides to this aspect ratio (width / height), if it is narrower. */
 void run_window_widen(WorldWindow *window, double shape);
 
-/* Whether a body is there with its centre outside the window; and the number of such dynamic bodies. */
-bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window);
-int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window);
+/* How many dynamic bodies are there with their centre outside the window: of these, or of all if count is 0. */
+int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window, const int *bodies, int count);
 
 /* Cells of equal size on the page that show a window of the world, and their renderer. */
 typedef struct RunCells {
@@ -65,9 +64,6 @@ Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, const
 
 /* The mapping from metres to the page in a cell. */
 View run_cells_view(const RunCells *cells, Point low);
-
-/* Draws a scale bar below the cells: a round length of at most a quarter of a cell, from `left`. */
-void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points);
 
 /* A line around a cell. */
 void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low);
@@ -110,8 +106,9 @@ typedef struct Flow {
 Point flow_place(Flow *flow, double width, int lines);
 void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text); /* sketch NULL: takes its place */
 
-/* The scale bar of cells as the next item; without a sketch, it only takes its place. */
-void run_cells_flow_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
+/* The scale of cells as the next item, a bar of a round length of at most a quarter of a cell; without a sketch, it only
+   takes its place. */
+void run_cells_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
 
 /* Text for LaTeX. */
 

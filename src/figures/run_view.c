@@ -79,18 +79,16 @@ void run_window_widen(WorldWindow *window, double shape) {
     window->width += more;
 }
 
-bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window) {
-    if (!trajectory_has(run, frame, body)) return false;
-    const Vec2 at = run->position[trajectory_at(run, frame, body)];
-    const double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
-    return !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
-}
-
-int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window) {
-    int count = 0;
-    for (int body = 0; body < run->bodies; body++)
-        count += !run->fixed[body] && run_is_outside(run, frame, body, window);
-    return count;
+int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window, const int *bodies, int count) {
+    int outside = 0;
+    for (int i = 0; i < (count > 0 ? count : run->bodies); i++) {
+        const int body = count > 0 ? bodies[i] : i;
+        if (run->fixed[body] || !trajectory_has(run, frame, body)) continue;
+        const Vec2 at = run->position[trajectory_at(run, frame, body)];
+        const double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
+        outside += !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
+    }
+    return outside;
 }
 
 bool run_cells_begin(RunCells *cells, const WorldWindow *window, double width, double height, double dpi,
@@ -131,14 +129,10 @@ View run_cells_view(const RunCells *cells, Point low) {
                   cells->scale};
 }
 
-void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points) {
-    sketch_scale_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
-}
-
-void run_cells_flow_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow) {
+void run_cells_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow) {
     const double amount = round_down(cells->window.width / 4);
     const Point left = flow_place(flow, sketch_scale_bar_width(cells->scale, amount, "m", flow->points), 1);
-    if (sketch != NULL) run_cells_draw_scale_bar(cells, sketch, left, flow->points);
+    if (sketch != NULL) sketch_scale_bar(sketch, left, cells->scale, amount, "m", flow->points);
 }
 
 void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low) {
