@@ -96,8 +96,8 @@ static void draw_contact_point(Sketch *sketch, Point at, Point normal, double ri
     sketch_dot(sketch, at, ring, &circle);
 }
 
-/* Three significant digits, or "0", outside the pile of contacts, whose middle is at `middle`: beside the arrow's tip, or
-   beside the point, with a line to it if it is not near. False if there is no room. */
+/* Three significant digits, or "0", outside the pile of contacts, whose middle is at `middle`: beside the arrow's tip,
+   or beside the point, with a line to it if it is not near. False if there is no room. */
 static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field,
                         double middle, bool crowded) {
     const double points = SMALL_TYPE * look->points, em = points * MM_PER_POINT, value = contact->size;
@@ -130,8 +130,8 @@ static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownCont
     return true;
 }
 
-/* Draws the contacts of a step inside the view, over a picture of its bodies: points, normals, and impulses as arrows and
-   numbers. *numbered of *count have their impulse as a number; for the others there was no room. */
+/* Draws the contacts of a step inside the view, over a picture of its bodies: points, normals, and impulses as arrows
+   and numbers. *numbered of *count have their impulse as a number; for the others there was no room. */
 static bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
                           int *count, int *numbered, Error *error) {
     ShownContact *contacts = gather_contacts(run, step, view, count);

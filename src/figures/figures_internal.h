@@ -106,8 +106,8 @@ typedef struct Flow {
 Point flow_place(Flow *flow, double width, int lines);
 void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text); /* sketch NULL: takes its place */
 
-/* The scale of cells as the next item, a bar of a round length of at most a quarter of a cell; without a sketch, it only
-   takes its place. */
+/* The scale of cells as the next item, a bar of a round length of at most a quarter of a cell; without a sketch, it
+   only takes its place. */
 void run_cells_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
 
 /* Text for LaTeX. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plots on a sketch: axes, panels, series and legends; and whole figures of them.
 
-     PlotPanel panel = {.box = {13, 17, 70, 40}, .x = plot_linear_axis(0, 2, "time (s)"), .y = plot_log_axis(1e-6, 1, "m")};
+     PlotPanel panel = {.box = {13, 17, 70, 40}, .x = plot_linear_axis(0, 2, "s"), .y = plot_log_axis(1e-6, 1, "m")};
      plot_panel_place(&panel);
      plot_panel_draw(&sketch, &panel);
      plot_line(&sketch, points, count, &look); // points by plot_place(&panel, x, y)

@@ -54,8 +54,9 @@ Box engine_run_box(const EngineRun *run, int body) {
     return box_make(of->position, of->size, of->angle);
 }
 
-/* Figure 2: a collision of the bomb in the pyramid's run. Left: the boxes at true scale, with the contact points. Right:
-   both boxes' projections on the four axes, by the separating axis theorem: the smallest overlap gives the normal. */
+/* Figure 2: a collision of the bomb in the pyramid's run. Left: the boxes at true scale, with the contact points.
+   Right: both boxes' projections on the four axes, by the separating axis theorem: the smallest overlap gives the
+   normal. */
 
 enum { AXES = 4 };                                          /* of the first box, x first, then of the second */
 static const double width = FIGURE_PAGE_WIDTH, height = 76; /* mm */

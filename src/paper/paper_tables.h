@@ -46,7 +46,7 @@ extern const struct PublishedScore { double iteration, test, train; } published_
 /* For each target: the highest test error, over the constant predictor's, that its best network may have; 0: no aim. */
 extern const double target_aims[PAIR_TARGETS];
 
-/* rates.csv: shares of right predictions by definition, of what is rated and of what costs less (pair_rates_measure). */
+/* rates.csv: shares of right predictions by definition, of a network and of what costs less (pair_rates_measure). */
 typedef enum RateDefinition { RATE_RANGE, RATE_ABSOLUTE, RATE_BODIES, RATE_DEFINITIONS } RateDefinition;
 typedef enum RateColumn {
     RATE_NETWORK,
@@ -95,9 +95,9 @@ typedef struct TransferRow {
     double constant; /* of the mean of the pyramid's training rows */
 } TransferRow;
 
-/* system_scores.csv: every system that the paper cites, with its ablations, and rivals, on held-out launches of the four
-   scenes (launches_for_scoring). Each method runs on its own trajectory, from the start to the scene's last frame. Sums
-   and maxima are over all launches. */
+/* system_scores.csv: every system that the paper cites, with its ablations, and rivals, on held-out launches of the
+   four scenes (launches_for_scoring). Each method runs on its own trajectory, from the start to the scene's last frame.
+   Sums and maxima are over all launches. */
 typedef struct SystemScoreRow {
     const char *system, *method; /* "sain", or "rival"; the method as on the command line */
     int scene;                   /* of paper_scene_names */

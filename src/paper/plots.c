@@ -244,7 +244,8 @@ static bool laws_point(const void *of, int panel, int series, int i, PlotPoint *
             if (panel != ERROR_PANEL && laws->rows[k].laws == LAW_SET_ENGINE) value = law_value(&laws->rows[k], panel);
         return plot_level(out, i, value);
     }
-    /* The panel of the error has a line for each law and for all; that of a law has its own line and the one for all. */
+    /* The panel of the error has a line for each law and for all; that of a law has its own line and the one for all.
+       */
     if (panel != ERROR_PANEL && series != panel - 1 && series != LAW_SET_ALL) return false;
     const bool none = row->laws == LAW_SET_NONE;
     *out = (PlotPoint){none ? 0 : row->weight, law_value(row, panel), isnan(row->seed) ? 0 : row->seed};

@@ -27,8 +27,8 @@ typedef struct Illustration {
 
 extern const Illustration illustration_loop, illustration_narrow_phase, illustration_data, illustration_scenes;
 
-/* The plots of paper_report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error
-   set if memory is short. */
+/* The plots of paper_report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with
+   error set if memory is short. */
 typedef bool PlotWrite(const CsvTable *table, PlotPage *page, Error *error);
 PlotWrite plot_factors, plot_closed_loop, plot_transfer;
 
