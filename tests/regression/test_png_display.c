@@ -2,7 +2,7 @@
 #include "testing.h"
 
 #include "regression/png_display.h"
-#include "png_parts.h"
+#include "pixels/png_parts.h"
 
 static PngParts a, b;
 
