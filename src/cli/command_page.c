@@ -62,21 +62,8 @@ static const CommandSpec spec = {
         "Example: twinbox page stack -o stack.html\n"
         "         twinbox page --live stack -m engine -m interior -o live.html"};
 
-/* As it was typed, where that means the same in another checkout; else without its folder. */
-static const char *scene_of(const char *input) {
-    const bool elsewhere = input[0] == '/' || strncmp(input, "../", 3) == 0 || strstr(input, "/../") != NULL;
-    return elsewhere ? input + file_folder_length(input) : input;
-}
-
-/* "bomb_x=2.5,height=12" */
-static void join_settings(const SceneSettings *set, char *text, size_t size) {
-    text[0] = '\0';
-    for (int i = 0; i < set->count; i++)
-        text_add(text, size, "%s%s=%.17g", i > 0 ? "," : "", set->items[i].name, set->items[i].value);
-}
-
 static bool write_page(const Options *options, const Panels *panels, const PlayerLive *live, Error *error) {
-    char set[SCENE_SETTINGS_MAX * (SCENE_PARAMETER_SIZE + 32)];
+    char set[SCENE_SETTINGS_MAX * (SCENE_PARAMETER_SIZE + 32)] = ""; /* "bomb_x=2.5,height=12" */
     const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
     PlayerOptions page = {.first = options->frames.first,
                           .last = options->frames.last,
@@ -91,14 +78,19 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
         return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
                            panels->count == 1 ? "" : "s");
     for (int i = 0; i < panels->count; i++) {
-        const char *input = panels->inputs[i];
+        /* Folders differ between machines, but a scene is as it was typed, where that means the same in another
+           checkout. */
+        const char *input = panels->inputs[i], *name = input + file_folder_length(input);
+        const bool elsewhere = input[0] == '/' || strncmp(input, "../", 3) == 0 || strstr(input, "/../") != NULL;
         if (file_name_ends_with(input, ".npz"))
-            page.files[i] = input + file_folder_length(input); /* folders differ between machines */
+            page.files[i] = name;
         else
-            page.scenes[i] = scene_of(input);
+            page.scenes[i] = elsewhere ? name : input;
         if (i < options->caption_count && options->captions[i][0] != '\0') page.names[i] = options->captions[i];
     }
-    join_settings(&options->set, set, sizeof set);
+    for (int i = 0; i < options->set.count; i++)
+        text_add(set, sizeof set, "%s%s=%.17g", i > 0 ? "," : "", options->set.items[i].name,
+                 options->set.items[i].value);
     if (!player_write(runs, panels->count, &page, options->output, &result, error)) return false;
     note_different_scenes(runs, panels->count);
     if (result.left_contacts) note_print("contacts are left out: with them the page would take more than 64 MB");
@@ -107,93 +99,65 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
     return true;
 }
 
-/* The scene among the inputs, of which all others are stored runs. */
-static const char *find_scene(const Options *options, Error *error) {
-    const char *scene = NULL;
-    for (int i = 0; i < options->input_count; i++) {
-        if (file_name_ends_with(options->inputs[i], ".npz")) continue;
-        if (scene != NULL)
-            return error_input(error, "--live", "needs one scene (got %s and %s)", scene, options->inputs[i]), NULL;
-        scene = options->inputs[i];
-    }
-    if (scene == NULL) error_input(error, "--live", "needs a scene (.yaml)");
-    return scene;
-}
-
-static bool can_be_live(const char *text) {
-    const MethodDescription *description = method_describe(text);
-    return description != NULL && live_has_method(description);
-}
-
-/* Simulates the scene by each method here, too: the page compares its own hashes with these. */
-static bool add_methods(const Options *options, const char *path, PlayerLive *live, Panels *panels, Error *error) {
-    static const PanelMethods usual = {{"engine", "interior"}, 2};
-    const PanelMethods *methods = options->methods.count > 0 ? &options->methods : &usual;
-    if (!panels_add_scene(panels, path, &options->set, methods, error)) return false;
-    for (int i = 0; i < methods->count; i++)
-        if (can_be_live(methods->texts[i]))
-            live->methods[i] = panels->runs[i]->method;
-        else
-            note_print("%s is recorded: a page cannot run it", methods->texts[i]);
-    return true;
-}
-
-static bool page_pack(const char *scene, PlayerLive *live, Error *error) {
-    const char *methods[RENDER_PANELS_MAX];
-    void *bundle = NULL;
-    bool networks = false;
-    int count = 0;
-    for (int i = 0; i < RENDER_PANELS_MAX; i++) {
-        if (live->methods[i] == NULL) continue;
-        networks |= method_describe(live->methods[i])->needs_network;
-        methods[count++] = live->methods[i];
-    }
-    live->module = live_module(networks);
-    if (!live_pack(scene, methods, count, &bundle, &live->bundle_size, error)) return false;
-    live->bundle = bundle;
-    return true;
-}
-
+/* One scene, of which all other inputs are stored runs. */
 static bool write_live(const Options *options, Panels *panels, Error *error) {
-    const char *scene = find_scene(options, error);
-    PlayerLive live = {0};
-    if (scene == NULL) return false;
+    static const PanelMethods usual = {{"engine", "interior"}, 2}, stored = {.count = 0};
+    static const SceneSettings none = {0};
+    const PanelMethods *methods = options->methods.count > 0 ? &options->methods : &usual;
+    const char *scene = NULL, *runs[RENDER_PANELS_MAX], *live_methods[RENDER_PANELS_MAX];
+    int run_count = 0, live_count = 0;
+    for (int i = 0; i < options->input_count; i++) {
+        const char *input = options->inputs[i];
+        const bool run = file_name_ends_with(input, ".npz");
+        if (!run && scene != NULL) return error_input(error, "--live", "needs one scene (got %s and %s)", scene, input);
+        if (run)
+            runs[run_count++] = input;
+        else
+            scene = input;
+    }
+    if (scene == NULL) return error_input(error, "--live", "needs a scene (.yaml)");
     if (live_module(false).size == 0)
         return error_input(error, "--live",
                            "this build has no module for live pages; install clang, lld, wasi-libc and "
                            "libclang-rt-dev-wasm32 (tests/setup does), then configure and build afresh");
-    const char *runs[RENDER_PANELS_MAX];
-    int count = 0;
-    const SceneSettings none = {0};
-    const PanelMethods stored = {.count = 0};
-    for (int i = 0; i < options->input_count; i++)
-        if (options->inputs[i] != scene) runs[count++] = options->inputs[i];
-    const bool ok = add_methods(options, scene, &live, panels, error) &&
-                    panels_load(panels, runs, count, &none, &stored, error) && page_pack(scene, &live, error) &&
-                    write_page(options, panels, &live, error);
-    free((void *)live.bundle);
-    return ok;
-}
 
-static bool write_recorded(const Options *options, Panels *panels, Error *error) {
-    return panels_load(panels, options->inputs, options->input_count, &options->set, &options->methods, error) &&
-           write_page(options, panels, NULL, error);
-}
-
-static bool check_texts(const Options *options, Error *error) {
-    bool ok = caption_check(options->title, "--title", error);
-    for (int i = 0; ok && i < options->caption_count; i++) ok = caption_check(options->captions[i], "--caption", error);
+    /* Simulates the scene by each method here, too: the page compares its own hashes with these. */
+    PlayerLive live = {0};
+    bool networks = false;
+    if (!panels_add_scene(panels, scene, &options->set, methods, error)) return false;
+    for (int i = 0; i < methods->count; i++) {
+        const MethodDescription *method = method_describe(methods->texts[i]);
+        if (method == NULL || !live_has_method(method)) {
+            note_print("%s is recorded: a page cannot run it", methods->texts[i]);
+            continue;
+        }
+        networks |= method->needs_network;
+        live_methods[live_count++] = live.methods[i] = panels->runs[i]->method;
+    }
+    live.module = live_module(networks);
+    void *bundle = NULL;
+    bool ok = panels_load(panels, runs, run_count, &none, &stored, error) &&
+              live_pack(scene, live_methods, live_count, &bundle, &live.bundle_size, error);
+    live.bundle = bundle;
+    ok = ok && write_page(options, panels, &live, error);
+    free(bundle);
     return ok;
 }
 
 bool command_page(int argc, char **argv, Error *error) {
     Options options = {.every = 1, .frames = {0, -1}};
     Panels panels = {0};
-    if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!output_check_file(options.output, ".html", error) || !check_texts(&options, error)) return false;
+    if (!options_parse(&spec, argc, argv, &options, error) || !output_check_file(options.output, ".html", error) ||
+        !caption_check(options.title, "--title", error))
+        return false;
+    for (int i = 0; i < options.caption_count; i++)
+        if (!caption_check(options.captions[i], "--caption", error)) return false;
     if (options.live && (options.every > 1 || options.frames.first != 0 || options.frames.last != -1))
         return error_input(error, "--live", "shows whole runs; leave out --every and --frames");
-    const bool ok = options.live ? write_live(&options, &panels, error) : write_recorded(&options, &panels, error);
+    const bool ok = options.live ? write_live(&options, &panels, error)
+                                 : panels_load(&panels, options.inputs, options.input_count, &options.set,
+                                               &options.methods, error) &&
+                                       write_page(&options, &panels, NULL, error);
     panels_free(&panels);
     return ok;
 }

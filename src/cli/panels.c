@@ -14,15 +14,9 @@
 #include "scenes/scenes.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
-
-int panels_last_frame(const Panels *panels) {
-    int frames = 0;
-    for (int i = 0; i < panels->count; i++)
-        if (panels->runs[i]->frames > frames) frames = panels->runs[i]->frames;
-    return frames - 1;
-}
 
 RenderOptions render_defaults(const char *directory) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -30,9 +24,7 @@ RenderOptions render_defaults(const char *directory) {
                            .height = 1080,
                            .first = 0,
                            .last = -1,
-                           .jobs = cores < 1                 ? 1
-                                   : cores > RENDER_JOBS_MAX ? RENDER_JOBS_MAX
-                                                             : (int)cores,
+                           .jobs = (int)fmin(fmax((double)cores, 1), RENDER_JOBS_MAX),
                            .directory = directory,
                            .describe = method_describe};
 }
