@@ -28,7 +28,7 @@ struct ReferenceGroup {
     Vec4 gap, slip;                       /* m/s: velocities along the rows, normal: minus the bias */
     ReferencePoint now;                   /* of the interior point */
     Vec4 missing_normal, missing_tangent; /* m/s: gap - z and slip - (q - p) */
-    Vec4 over_z, dn, dt, s, rn, rt;       /* linear system, see reference_newton_code.h */
+    Vec4 over_z, dn, dt, s, rn, rt;       /* linear system, see reference_code.h */
     Vec4 wanted_n, wanted_p, wanted_q;    /* wanted changes of the products l z, u p, w q */
     ReferencePoint step, along;           /* directions */
 };
