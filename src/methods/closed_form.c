@@ -16,8 +16,8 @@
    Fails wherever something rests: contacts feel weight only as overlap, so a stack of three sinks into itself;
    friction needs a slip, so boxes creep down every slope; what slides fast is lifted, and deep stacks gain energy; an
    impact reaches no further than the first box. */
+#include "methods/impulses.h"
 #include "methods/methods.h"
-#include "methods/sweeps.h"
 
 #include <stdlib.h>
 

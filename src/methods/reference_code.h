@@ -15,7 +15,7 @@
 #include "methods/block_lu_code.h"
 #include "methods/reference.h"
 #include "methods/reference_parts.h"
-#include "nets/nets.h"
+#include "nets/activation.h"
 
 #include <string.h>
 

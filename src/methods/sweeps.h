@@ -1,35 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps over contacts: the scalar reference implementation, fast kernels and the order of visits. */
+/* Sweeps over contacts, fast: the order of visits, and many visits at once. */
 #pragma once
 #include "engine/engine.h"
+#include "methods/impulses.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-/* The scalar reference implementation of sequential impulses. The vectorised sweeps (sweeps.h) must have its bits. */
-
-typedef struct SequentialOptions {
-    bool accumulate; /* clamp accumulated impulses, not each impulse */
-    bool warm;       /* start from the problem's warm-start impulses, not from zero */
-} SequentialOptions;
-
-/* Sets velocities and impulses before the first sweep. */
-void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,
-                               ContactSolution *solution);
-
-/* Visits `count` contacts, from `first` on. */
-void sequential_impulses_visit(const ContactProblem *problem, const SequentialOptions *options, int first, int count,
-                               ContactSolution *solution);
-
-/* One sweep. */
-void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOptions *options,
-                               ContactSolution *solution);
-
-/* Begins, then `count` sweeps. */
-void sequential_impulses_solve(const ContactProblem *problem, const SequentialOptions *options, int count,
-                               ContactSolution *solution);
 
 /* Graph colouring of the contacts: pairs of one colour share no moving body, so their visits commute. A sweep in this
    order has one level (sweeps.h) per colour, instead of one per body of the longest chain, and a schedule needs two
@@ -65,8 +43,6 @@ bool colours_order(Colours *colours, const ContactProblem *problem);
    Visits follow the order of the problem's contacts, which is the engine's, or colours: fewer levels, other bits.
 
    Exact as long as all numbers are finite; sweeps_end() returns false otherwise. */
-
-enum { SWEEPS_MAX = 1000000 }; /* of one step, for any method */
 
 /* The kernels; sweeps_can() tells which ones the processor supports. */
 typedef enum SweepKernel { SWEEP_ONE_BY_ONE, SWEEP_LANES, SWEEP_KERNELS } SweepKernel;
@@ -244,52 +220,6 @@ static inline bool sweep_pair_may_overshoot(const SweepPair *pair) {
 /* Stores velocities and impulses. False if a velocity is NaN or infinite: then the bits may depend on the order of
    visits. */
 bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution);
-
-/* Impulses and relative velocities at contacts, for the scalar reference implementations. The order of all float
-   operations is part of the engine's result. */
-
-/* True if both contacts are of the same bodies and normal. */
-static inline bool contact_shares_surface(const ContactPoint *first, const ContactPoint *second) {
-    return first->a == second->a && first->b == second->b &&
-           memcmp(&first->normal, &second->normal, sizeof first->normal) == 0 &&
-           memcmp(&first->friction, &second->friction, sizeof first->friction) == 0;
-}
-
-/* The number of contacts (1 or 2) of the pair and normal that begin at contact `first`. */
-static inline int contact_surface_points(const ContactProblem *problem, int first) {
-    const ContactPoint *contact = &problem->contacts[first];
-    return first + 1 < problem->contact_count && contact_shares_surface(contact, contact + 1) ? 2 : 1;
-}
-
-/* Applies impulse to b and its opposite to a. */
-static inline void contact_apply(BodyVelocity *a, BodyVelocity *b, const ContactPoint *contact,
-                                 const ProblemBody *bodies, Vec2 impulse) {
-    const ProblemBody *body_a = &bodies[contact->a], *body_b = &bodies[contact->b];
-    a->linear = vec2_sub(a->linear, vec2_scale(body_a->inv_mass, impulse));
-    a->angular -= body_a->inv_inertia * vec2_cross(contact->arm_a, impulse);
-    b->linear = vec2_add(b->linear, vec2_scale(body_b->inv_mass, impulse));
-    b->angular += body_b->inv_inertia * vec2_cross(contact->arm_b, impulse);
-}
-
-/* The same for an impulse along normal and tangent. */
-static inline void contact_push(BodyVelocity *velocities, const ContactPoint *contact, const ProblemBody *bodies,
-                                ContactImpulse push) {
-    Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
-    Vec2 impulse = vec2_add(vec2_scale(push.normal, contact->normal), vec2_scale(push.tangent, tangent));
-    contact_apply(&velocities[contact->a], &velocities[contact->b], contact, bodies, impulse);
-}
-
-/* Velocity of b's point relative to a's. */
-static inline Vec2 contact_relative_velocity(const BodyVelocity *a, const BodyVelocity *b,
-                                             const ContactPoint *contact) {
-    Vec2 of_b = vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b));
-    return vec2_sub(vec2_sub(of_b, a->linear), scalar_cross_vec2(a->angular, contact->arm_a));
-}
-
-static inline float contact_clamp(float value, float low, float high) {
-    float capped = value < high ? value : high;
-    return low > capped ? low : capped;
-}
 
 /* Internal functions of the sweeps. */
 

@@ -182,7 +182,7 @@ static inline float turn_angle(float sine, float cosine, float before) {
     const float quarter = s > c ? 1.57079633f - eighth : eighth;
     const float half = cosine < 0 ? 3.14159265f - quarter : quarter;
     const float angle = sine < 0 ? -half : half;
-    /* Adding 1.5 * 2^23 rounds to an integer, as in nets/nets.h. */
+    /* Adding 1.5 * 2^23 rounds to an integer, as in nets/activation.h. */
     const float shift = 0x1.8p23f, turns = ((before - angle) * 0.159154943f + shift) - shift;
     return angle + 6.28318531f * turns;
 }
