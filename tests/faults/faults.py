@@ -12,6 +12,7 @@ Prints each finding, and counts; exit status 1: there are findings."""
 import argparse
 import collections
 import concurrent.futures
+import contextlib
 import ctypes
 import fnmatch
 import hashlib
@@ -72,17 +73,16 @@ def form(path):
 def end_group(group, patience):
     """Whether processes of the run are left after it; they get some seconds. Orphans belong to this process (subreaper)."""
     for _ in range(int(100 * patience)):
-        try:
+        with contextlib.suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:
                 pass
-        except ChildProcessError:
-            pass
         try:
             os.killpg(group, 0)
         except ProcessLookupError:
             return False
         time.sleep(0.01)
-    os.killpg(group, signal.SIGKILL)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(group, signal.SIGKILL)
     return True
 
 
