@@ -315,6 +315,8 @@ def main():
     if options.call == ["system"]:
         options.call = [call for call in CALLS if not call.endswith("malloc")]
     program, sources = os.path.abspath(options.program), os.path.abspath(options.sources)
+    if unknown := set(options.case or []) - {case.name for case in CASES}:
+        sys.exit(f"cases.py has no {', '.join(sorted(unknown))}")
     cases = [case for case in CASES if case.name in (options.case or [case.name]) and (case.most or not options.kills)]
     tally = collections.Counter()
     with tempfile.TemporaryDirectory(prefix="faults-") as prepared, \
