@@ -5,6 +5,7 @@
 #include "base/csv.h"
 #include "methods/methods.h"
 #include "pictures/colours.h"
+#include "studies/chart_plot.h"
 #include "studies/chart_table.h"
 #include "studies/error_curve.h"
 
@@ -78,22 +79,13 @@ typedef struct Chart {
 /* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
-   before the bomb came, as they were scored on another scene; of a line that `highlight` names these are marks, too.
+   before the bomb came, as they were scored on another scene; of a line that the look highlights these are marks, too.
    Errors below PARETO_RESOLUTION are drawn there. The axes show the coloured lines: other marks more than a decade away
-   from them are left out, and counted in their line. highlight: names of lines or methods, separated by commas; NULL:
-   none; others are ignored. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
-bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const char *highlight,
+   from them are left out, and counted in their line. At most CHART_LOUD lines are coloured: what the reader asks for, programs of others, the engine,
+   interior, the strongest rival that learns nothing, scene-net, and the silenced twins of these. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
+bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const ChartLook *look,
                   Error *error);
-/* Colours the lines of a gathered chart again, with what was chosen. */
-bool chart_colour(Chart *chart, const ColourChoices *choices, Error *error);
 void chart_free(Chart *chart);
-
-/* The Pareto front of a panel, of the lines that count and have not lost the scene; the caller frees it. NULL if out of
-   memory. */
-CurvePoint *chart_front(const Chart *chart, int p, bool (*counts)(const ChartLine *line), int *count);
-
-/* Whether the mark is a point of the front. */
-bool chart_mark_is_on(const ChartMark *mark, const CurvePoint *front, int count);
 
 /* Whether a program of others takes its steps, by its own clock. */
 bool chart_is_program(const ChartLine *line);
@@ -103,12 +95,6 @@ const char *chart_twin_word(const ChartLine *line);
 
 /* Whether each number in its setting is what the key's help calls the default. */
 bool chart_mark_is_default(const ChartMark *mark);
-
-/* Sets the rank of each line, given all its marks. At most CHART_LOUD are coloured: what the reader asks for
-   (`highlight`, programs of others), the engine, interior, the strongest rival that learns nothing, and scene-net; then
-   the silenced twins of these. The strongest rival is the one with most corners in the front of such methods, both
-   panels together. False with error set if out of memory. */
-bool chart_rank(Chart *chart, const char *highlight, const char *path, Error *error);
 
 /* What a picture calls a line: its key, plain and truncated, without the folders of a network; of a program its setting
    `name`. */

@@ -270,9 +270,9 @@ bool chart_plot(const char *csv_path, const char *scene, const char *folder, con
     if (!csv_table_read(&table, csv_path, &chart_layout, error)) return false;
     Chart chart;
     ChartPicture picture;
-    bool drawn = chart_gather(&chart, &table, scene, csv_path, look->highlight, error);
+    bool drawn = chart_gather(&chart, &table, scene, csv_path, look, error);
     if (drawn) {
-        drawn = chart_colour(&chart, &look->colours, error) && chart_picture_make(&picture, &chart, scene, look, error);
+        drawn = chart_picture_make(&picture, &chart, scene, look, error);
         if (drawn) {
             drawn = write_picture(&picture, stem, error);
             chart_picture_free(&picture);

@@ -13,6 +13,7 @@ typedef enum ChartSize { CHART_PAGE, CHART_COLUMN, CHART_SLIDE } ChartSize;
 typedef struct ChartLook {
     ChartSize size;
     const char *highlight; /* methods to be drawn in colour, separated by commas; NULL: none beside the usual ones */
+    bool chosen;           /* all lines are: methods that --methods names, but silenced twins */
     bool words;            /* the caption below the picture, too, which makes it higher */
     ColourChoices colours; /* those that name a line count */
 } ChartLook;
