@@ -57,7 +57,7 @@ static const Option option_table[] = {
      .needed = "-o DIR is needed"},
     {"--methods", 0, "LIST",
      "Methods, separated by commas; a name alone stands for all settings that the chart has for it (default: all; "
-     "methods left out are reported)",
+     "methods left out are reported); those named are in colour, as far as there are six",
      OPTION_METHOD(Options, study.methods)},
     {"--launches", 0, "N|FILE.csv",
      "Launches to score on: N held-out launches of the scene's family (default: 40, fewer above 110 bodies), or a "
@@ -225,6 +225,7 @@ bool command_chart(int argc, char **argv, Error *error) {
         const char *path = options.scenes[i];
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
+    options.study.look.chosen = options.study.methods != NULL;
     return check_look(&options.study, error) && output_check_folder(options.study.folder, error) &&
            chart_study(&options.study, error);
 }

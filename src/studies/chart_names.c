@@ -7,6 +7,7 @@
 #include "pixels/type.h"
 #include "studies/chart_data.h"
 #include "studies/chart_drawing.h"
+#include "studies/figure_words.h"
 
 #include <math.h>
 #include <string.h>
@@ -74,16 +75,12 @@ static bool place_label(ChartDrawing *drawing, const ChartMark *mark, const Labe
     return true;
 }
 
-/* "3.8 × the time", "1/980 of the error". */
-static void write_factor(char *text, size_t size, double factor, const char *of) {
-    const double times = factor < 1 ? 1 / factor : factor;
-    char number[24];
-    const double unit = pow(10, floor(log10(times)) - 1); /* two digits */
-    snprintf(number, sizeof number, times < 9.95 ? "%.1f" : "%.0f", unit * round(times / unit));
-    if (factor < 1)
-        snprintf(text, size, "1/%s of the %s", number, of);
-    else
-        snprintf(text, size, "%s × the %s", number, of);
+/* A row "3.8 × the time", "1/980 of the error". */
+static void label_factor(Label *label, double factor, const char *of) {
+    char text[48], number[FACTOR_SIZE];
+    factor_text(number, factor < 1 ? 1 / factor : factor);
+    snprintf(text, sizeof text, factor < 1 ? "1/%s of the %s" : "%s × the %s", number, of);
+    label_row(label, CHART_SMALL_POINTS, text);
 }
 
 /* The mark that stands for a line: its setting as shipped or by default, else the most accurate one. */
@@ -112,11 +109,8 @@ static Label label_of(const ChartDrawing *drawing, int line, const ChartMark *ma
     if (mark == NULL || mark == shipped) return label;
     label_row(&label, CHART_SMALL_POINTS, mark->label);
     if (shipped != NULL && line != shipped->line && !chart_is_program(&drawing->chart->lines[line])) {
-        char text[48];
-        write_factor(text, sizeof text, mark->us / shipped->us, "time,");
-        label_row(&label, CHART_SMALL_POINTS, text);
-        write_factor(text, sizeof text, mark->error / shipped->error, "error");
-        label_row(&label, CHART_SMALL_POINTS, text);
+        label_factor(&label, mark->us / shipped->us, "time,");
+        label_factor(&label, mark->error / shipped->error, "error");
     }
     return label;
 }

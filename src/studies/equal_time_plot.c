@@ -239,16 +239,14 @@ static void draw_box(Sketch *sketch, PlotBox box, uint32_t colour, uint32_t line
                      &pen);
 }
 
-/* Two digits: "1/52", "1/3.1", "1", "×2.4". */
-static void name_ratio(char text[24], double ratio) {
+enum { RATIO_SIZE = FACTOR_SIZE + 4 };
+
+/* "1/52", "1/3.1", "1", "×2.4". */
+static void name_ratio(char text[RATIO_SIZE], double ratio) {
     const double factor = ratio < 1 ? 1 / ratio : ratio;
-    const char *before = ratio < 1 ? "1/" : "×";
-    if (factor < 1.05)
-        strcpy(text, "1");
-    else if (factor < 9.95)
-        snprintf(text, 24, "%s%.1f", before, factor);
-    else
-        snprintf(text, 24, "%s%.0f", before, factor < 99.5 ? factor : 10 * round(factor / 10));
+    char number[FACTOR_SIZE];
+    factor_text(number, factor);
+    snprintf(text, RATIO_SIZE, "%s%s", factor < 1.05 ? "" : ratio < 1 ? "1/" : "×", factor < 1.05 ? "1" : number);
 }
 
 /* What does not fit into a cell is beyond a power of ten: ">10⁵", "<10⁻⁴". */
@@ -264,7 +262,7 @@ static void draw_power(Sketch *sketch, Point at, const TextStyle *style, double 
 }
 
 static void draw_ratio(Sketch *sketch, Point at, const TextStyle *style, double ratio) {
-    char text[24];
+    char text[RATIO_SIZE];
     if (fabs(log10(ratio)) >= log10(9995)) {
         draw_power(sketch, at, style, ratio);
         return;
@@ -310,7 +308,7 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
     enum { STEPS = 61 };
     Sketch *sketch = layout->sketch;
     const double bottom = foot - 7.2, right = layout->left + bar_width + 6;
-    char text[24], note[CHART_TEXT_SIZE + 64];
+    char text[RATIO_SIZE], note[CHART_TEXT_SIZE + 64];
     for (int i = 0; i < STEPS; i++)
         draw_box(sketch, (PlotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
                  colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)), NO_COLOUR);

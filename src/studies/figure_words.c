@@ -4,6 +4,7 @@
 #include "methods/methods.h"
 #include "studies/figure_words.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Of the meaning, without what is for those who run the method: choices before it, "on|off: ", and what follows "
@@ -41,4 +42,9 @@ void words_add_settings(WordList *words, const char *name, const char *setting) 
 void words_join(const WordList *words, char *caption, size_t size) {
     for (int i = 0; i < words->count; i++) text_add(caption, size, "%s%s", i == 0 ? " " : "; ", words->items[i]);
     text_add(caption, size, words->count > 0 ? ".\n" : "\n");
+}
+
+void factor_text(char text[FACTOR_SIZE], double factor) {
+    const double unit = pow(10, floor(log10(factor)) - 1);
+    snprintf(text, FACTOR_SIZE, factor < 9.95 ? "%.1f" : "%.0f", unit * round(factor / unit));
 }

@@ -19,5 +19,9 @@ void words_add(WordList *words, const char *word, const char *meaning);
 void words_add_method(WordList *words, const char *name);
 void words_add_settings(WordList *words, const char *name, const char *setting);
 
+/* A factor in two digits, without an exponent: "3.8", "980". */
+enum { FACTOR_SIZE = 24 };
+void factor_text(char text[FACTOR_SIZE], double factor);
+
 /* Ends a caption of `size` bytes with all of them, as far as there is room, and a line end. */
 void words_join(const WordList *words, char *caption, size_t size);

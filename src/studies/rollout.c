@@ -61,9 +61,7 @@ bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
     return true;
 }
 
-static bool fell_back(const Fallbacks *step) {
-    return step->not_finite + step->beyond_training + step->by_sweeps > 0;
-}
+static bool fell_back(const Fallbacks *step) { return step->not_finite + step->beyond_training + step->by_sweeps > 0; }
 
 void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase) {
     log->frames = frame;

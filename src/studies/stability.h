@@ -201,8 +201,8 @@ VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene
 /* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those
    that are shifted by a micrometre. */
 typedef struct Convergence {
-    int steps;                  /* of all of them */
-    int first;                  /* step that did not converge, in the run by which methods are judged; 0: none */
+    int steps;           /* of all of them */
+    int first;           /* step that did not converge, in the run by which methods are judged; 0: none */
     Fallbacks fallbacks; /* of all of them */
 } Convergence;
 

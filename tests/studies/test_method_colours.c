@@ -149,7 +149,7 @@ TEST(a_chart_of_all_methods_has_no_colour_twice) {
     assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
     for (int i = 0; i < count; i++) {
         Chart chart;
-        assert_ok(chart_gather(&chart, &table, "stack", path, names[i], &error), error);
+        assert_ok(chart_gather(&chart, &table, "stack", path, &(ChartLook){.highlight = names[i]}, &error), error);
         int line = 0;
         while (line < chart.line_count && strcmp(chart.lines[line].key, names[i]) != 0) line++;
         assert_true(line < chart.line_count);
