@@ -9,7 +9,6 @@
 #include "methods/sweeps.h"
 #include "paper/paper_internal.h"
 #include "scenes/scenes.h"
-#include "studies/frozen.h"
 #include "studies/rollout.h"
 
 #include <math.h>

@@ -13,7 +13,6 @@
 #include "paper/paper_internal.h"
 #include "runs/pieces.h"
 #include "scenes/scenes.h"
-#include "studies/frozen.h"
 #include "studies/piece_tables.h"
 
 #include <stdlib.h>

@@ -15,7 +15,6 @@
 #include "paper/paper_tables.h"
 #include "runs/pieces.h"
 #include "scenes/scenes.h"
-#include "studies/frozen.h"
 #include "studies/rollout.h"
 
 #include <stdio.h>

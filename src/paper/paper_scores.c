@@ -10,7 +10,6 @@
 #include "nets/nets.h"
 #include "paper/paper_internal.h"
 #include "studies/closed_loop.h"
-#include "studies/frozen.h"
 #include "studies/piece_tables.h"
 #include "studies/rollout.h"
 

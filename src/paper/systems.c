@@ -9,7 +9,6 @@
 #include "scenes/scenes.h"
 #include "studies/closed_loop.h"
 #include "studies/contenders.h"
-#include "studies/frozen.h"
 #include "studies/piece_tables.h"
 #include "studies/rollout.h"
 #include "studies/statistics.h"

@@ -5,7 +5,6 @@
 #include "scenes/scenes.h"
 #include "studies/closed_loop.h"
 #include "studies/contenders.h"
-#include "studies/frozen.h"
 #include "studies/rollout.h"
 #include "studies/statistics.h"
 #include "studies/timing.h"

@@ -4,7 +4,6 @@
 #include "base/base.h"
 #include "methods/methods.h"
 #include "scenes/scenes.h"
-#include "studies/frozen.h"
 #include "studies/rollout.h"
 
 #include <stdbool.h>

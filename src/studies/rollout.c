@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs in closed loop: their logs and measures, and the scores of their steps. */
+/* Runs in closed loop: their logs and measures, and the scores of their steps; steps of the engine, which all methods
+   solve, and the scores of a method on them. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/criteria.h"
@@ -9,6 +10,7 @@
 #include "scenes/scenes.h"
 #include "studies/rollout.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,21 +21,17 @@ void converged_step_free(ConvergedStep *converged) {
     *converged = (ConvergedStep){0};
 }
 
-/* A negative bias lets a gap close; it stays. */
-static bool remove_push_out(ConvergedStep *converged, ContactProblem *problem) {
-    const size_t count = (size_t)problem->contact_count;
-    if (!array_reserve((void **)&converged->contacts, &converged->contact_capacity, count, sizeof(ContactPoint)))
-        return false;
-    if (count > 0) memcpy(converged->contacts, problem->contacts, count * sizeof(ContactPoint));
-    for (size_t i = 0; i < count; i++)
-        if (converged->contacts[i].bias > 0) converged->contacts[i].bias = 0;
-    problem->contacts = converged->contacts;
-    return true;
-}
-
 bool converged_step_solve(ConvergedStep *converged, const ContactProblem *problem, bool push_out, Error *error) {
     ContactProblem solved = *problem;
-    if (!push_out && !remove_push_out(converged, &solved)) return error_memory(error, "study");
+    if (!push_out) { /* a negative bias lets a gap close; it stays */
+        const size_t count = (size_t)problem->contact_count;
+        if (!array_reserve((void **)&converged->contacts, &converged->contact_capacity, count, sizeof(ContactPoint)))
+            return error_memory(error, "study");
+        if (count > 0) memcpy(converged->contacts, problem->contacts, count * sizeof(ContactPoint));
+        for (size_t i = 0; i < count; i++)
+            if (converged->contacts[i].bias > 0) converged->contacts[i].bias = 0;
+        solved.contacts = converged->contacts;
+    }
     return reference_solve(&converged->reference, &solved, NULL, error);
 }
 
@@ -61,8 +59,6 @@ bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
     return true;
 }
 
-static bool fell_back(const Fallbacks *step) { return step->not_finite + step->beyond_training + step->by_sweeps > 0; }
-
 void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase) {
     log->frames = frame;
     if (phase == PHASE_IMPACT && log->touch == 0) log->touch = frame;
@@ -74,8 +70,9 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
         .phase = phase,
         .bomb = world_body_count(world) > log->bodies ? world_bodies(world)[log->bodies].position : vec2(0, 0)};
     log->momentum_error += (double)world_solution(world)->momentum_error;
-    log->fallen_back += fell_back(&world_solution(world)->fallbacks);
-    if (frame == 0 || world_solution(world)->fallbacks.not_converged == 0) return;
+    const Fallbacks *fallbacks = &world_solution(world)->fallbacks;
+    log->fallen_back += fallbacks->not_finite + fallbacks->beyond_training + fallbacks->by_sweeps > 0;
+    if (frame == 0 || fallbacks->not_converged == 0) return;
     if (log->unconverged++ == 0) log->first_unconverged = frame;
 }
 
@@ -164,15 +161,6 @@ void step_scores_free(StepScores *scores) {
     *scores = (StepScores){0};
 }
 
-/* Without contacts or impulses there is no law to break. */
-static void add_criteria(CriteriaSum *sum, const ContactProblem *problem, const ContactCriteria *found) {
-    if (problem->contact_count == 0 || isnan(found->signorini)) return;
-    sum->signorini += found->signorini;
-    sum->cone += found->cone;
-    sum->dissipation += found->dissipation;
-    sum->steps++;
-}
-
 bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const ContactSolution *solution,
                      const ReferenceVelocity *reference, bool push_out) {
     size_t wanted = (size_t)scores->count + 1;
@@ -182,7 +170,13 @@ bool step_scores_add(StepScores *scores, int frame, const ContactProblem *proble
         return false;
     const SolutionError found = solution_error(problem, solution->velocities, reference);
     const ContactCriteria criteria = contact_criteria(problem, solution, push_out);
-    add_criteria(&scores->criteria, problem, &criteria);
+    CriteriaSum *sum = &scores->criteria;
+    if (problem->contact_count > 0 && !isnan(criteria.signorini)) { /* else there is no law to break */
+        sum->signorini += criteria.signorini;
+        sum->cone += criteria.cone;
+        sum->dissipation += criteria.dissipation;
+        sum->steps++;
+    }
     scores->error[scores->count] = found.rms;
     scores->place[scores->count] = (StepPlace){frame, found.worst};
     scores->share[scores->count++] = found.counted > 0 ? (double)found.right / found.counted : 1;
@@ -202,27 +196,12 @@ void rollout_free(Rollout *rollout) {
     *rollout = (Rollout){0};
 }
 
-static bool rollout_score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
-    const ContactProblem *problem = world_problem(rollout->world);
-    if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
-    const bool found = converged_step_found(&rollout->converged);
-    rollout->unconverged += !found;
-    return !found ||
-           step_scores_add(scores, frame, problem, world_solution(rollout->world),
-                           rollout->converged.reference.velocities, push_out) ||
-           error_memory(error, "study");
-}
-
-static bool rollout_begin(Rollout *rollout, const Scene *launched, Error *error) {
+bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
+                 StepScores scores[PHASES], Error *error) {
     world_destroy(rollout->world);
     rollout->world = scene_world(launched, error);
     if (rollout->world == NULL) return false;
-    return run_log_begin(&rollout->log, launched, rollout->world) || error_memory(error, "study");
-}
-
-bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
-                 StepScores scores[PHASES], Error *error) {
-    if (!rollout_begin(rollout, launched, error)) return false;
+    if (!run_log_begin(&rollout->log, launched, rollout->world)) return error_memory(error, "study");
     const bool push_out = !stepper_describe(stepper)->no_push_out;
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     for (int frame = 1; frame <= launched->frames; frame++) {
@@ -235,9 +214,14 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         }
         Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
-        if (scores != NULL && sampling_takes(sampling, phase, &tracker, frame) &&
-            !rollout_score(rollout, frame, push_out, &scores[phase], error))
-            return false;
+        if (scores == NULL || !sampling_takes(sampling, phase, &tracker, frame)) continue;
+        const ContactProblem *problem = world_problem(rollout->world);
+        if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
+        const bool found = converged_step_found(&rollout->converged);
+        rollout->unconverged += !found;
+        if (found && !step_scores_add(&scores[phase], frame, problem, world_solution(rollout->world),
+                                      rollout->converged.reference.velocities, push_out))
+            return error_memory(error, "study");
     }
     return true;
 }
@@ -253,4 +237,96 @@ bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *
     rollout.log = (RunLog){0};
     rollout_free(&rollout);
     return ok;
+}
+
+static void snapshot_free(Snapshot *snapshot) {
+    world_destroy(snapshot->world);
+    free(snapshot->reference);
+    free(snapshot->no_push_out);
+}
+
+void snapshots_free(SnapshotList *list) {
+    for (int i = 0; i < list->count; i++) snapshot_free(&list->items[i]);
+    free(list->items);
+    *list = (SnapshotList){0};
+}
+
+static World *empty_world(const Scene *scene, Error *error) {
+    Scene empty = *scene;
+    empty.body_count = 0;
+    empty.bomb.present = false;
+    return scene_world(&empty, error);
+}
+
+/* *velocities: a copy of the converged velocities of a step, or NULL if the solve has not converged. */
+static bool converged_velocities(ConvergedStep *converged, const ContactProblem *problem, bool push_out,
+                                 ReferenceVelocity **velocities, Error *error) {
+    const size_t size = (size_t)problem->body_count * sizeof **velocities;
+    if (!converged_step_solve(converged, problem, push_out, error)) return false;
+    if (!converged_step_found(converged)) return true;
+    *velocities = malloc(size + 1);
+    if (*velocities == NULL) return error_memory(error, "study");
+    if (size > 0) memcpy(*velocities, converged->reference.velocities, size);
+    return true;
+}
+
+bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sampling, Error *error) {
+    Method method;
+    if (!method_parse(&method, "engine", error)) return false;
+    Stepper *engine = stepper_create(&method, launched, error);
+    World *world = scene_world(launched, error), *before = empty_world(launched, error);
+    ConvergedStep converged = {0};
+    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
+    bool ok = engine != NULL && world != NULL && before != NULL;
+    for (int frame = 1; ok && frame <= launched->frames; frame++) {
+        const Step step = {.scene = launched, .frame = frame};
+        ok = world_copy(before, world, error) && simulate_step(engine, world, &step, error);
+        if (!ok) break;
+        const Phase phase = phase_next(&tracker, world_problem(world), frame);
+        if (!sampling_takes(sampling, phase, &tracker, frame)) continue;
+        /* The state before the step, and the step's converged velocities, if there are any. */
+        ok = array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items) ||
+             error_memory(error, "study");
+        if (!ok) break;
+        const ContactProblem *problem = world_problem(world);
+        Snapshot *snapshot = &list->items[list->count];
+        *snapshot = (Snapshot){.scene = launched, .frame = frame, .phase = phase};
+        ok = converged_velocities(&converged, problem, true, &snapshot->reference, error);
+        if (ok && list->no_push_out)
+            ok = converged_velocities(&converged, problem, false, &snapshot->no_push_out, error);
+        if (ok && (snapshot->reference == NULL || (list->no_push_out && snapshot->no_push_out == NULL))) {
+            snapshot_free(snapshot);
+            list->unconverged++;
+            continue;
+        }
+        list->count++;
+        if (ok) snapshot->world = empty_world(launched, error);
+        ok = ok && snapshot->world != NULL && world_copy(snapshot->world, before, error);
+    }
+    stepper_destroy(engine);
+    world_destroy(world);
+    world_destroy(before);
+    converged_step_free(&converged);
+    return ok;
+}
+
+bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, StepScores scores[PHASES],
+                     Error *error) {
+    const bool push_out = !stepper_describe(stepper)->no_push_out;
+    assert(push_out || list->no_push_out);
+    for (int i = 0; i < list->count; i++) {
+        const Snapshot *snapshot = &list->items[i];
+        const Step step = {.scene = snapshot->scene, .frame = snapshot->frame, .engine_step = true};
+        Error failure = {0};
+        if (!world_copy(world, snapshot->world, error)) return false;
+        if (!stepper_step(stepper, world, &step, &failure)) {
+            if (failure.failure == FAILURE_ADAPTER) return true; /* as in closed loop */
+            *error = failure;
+            return false;
+        }
+        if (!step_scores_add(&scores[snapshot->phase], snapshot->frame, world_problem(world), world_solution(world),
+                             push_out ? snapshot->reference : snapshot->no_push_out, push_out))
+            return error_memory(error, "study");
+    }
+    return true;
 }

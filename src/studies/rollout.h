@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A run in closed loop: its log, its measures, the scores of its steps. */
+/* The two protocols of the speed-accuracy study: a run in closed loop, with its log, its measures and the scores of its
+   steps; and steps that are frozen, which every method solves. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -136,3 +137,31 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
 
 /* Logs a run by the method of this name, which ends early if its state becomes NaN or infinite. */
 bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *error);
+
+/* The frozen protocol: every method solves the same steps, sampled from engine runs. */
+
+typedef struct Snapshot {
+    const Scene *scene; /* launched; owned by the caller */
+    World *world;       /* before the step */
+    int frame;          /* of the step */
+    Phase phase;
+    ReferenceVelocity *reference;   /* [bodies] converged velocities after the step */
+    ReferenceVelocity *no_push_out; /* [bodies] the same for methods of that description; or NULL */
+} Snapshot;
+
+/* Zero-initialise. */
+typedef struct SnapshotList {
+    int count;
+    Snapshot *items; /* [count] */
+    size_t capacity;
+    bool no_push_out; /* set by the caller: methods of that description will be scored, too */
+    int unconverged;  /* steps that were left out (converged_step_found()) */
+} SnapshotList;
+
+/* Adds sampled steps of the engine's run of a launched scene; the scene must outlive the list. */
+bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sampling, Error *error);
+void snapshots_free(SnapshotList *list);
+
+/* Scores a method on every step. world: scratch space for a copy. A method of the description no_push_out needs a list
+   with that flag. */
+bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, StepScores scores[PHASES], Error *error);

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene of the study: its launches and contenders. */
+/* A scene of the study: its launches and contenders, and its pieces: a launch with all methods, and the times of all
+   methods. */
 #include "base/base.h"
 #include "base/machine.h"
+#include "methods/methods.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
+#include "studies/chart_table.h"
 #include "studies/contenders.h"
+#include "studies/launch_scores.h"
+#include "studies/rollout.h"
 #include "studies/scene_study.h"
 #include "studies/stepper_pool.h"
+#include "studies/timing.h"
 
+#include <math.h>
 #include <stdlib.h>
-
-static void scene_study_sweep(const FloatRange *bomb_x, const Scene *scene, Launch *out) {
-    for (int i = 0; i < bomb_x->count; i++) {
-        out[i] = launch_of(scene);
-        out[i].x = range_value(bomb_x, i);
-    }
-}
+#include <string.h>
 
 Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error) {
     LaunchTable table = {0};
@@ -29,7 +30,10 @@ Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int s
     if (ok && choice->table != NULL)
         ok = launches_for(&table, scene, launches, error);
     else if (ok && choice->bomb_x.count > 0)
-        scene_study_sweep(&choice->bomb_x, scene, launches);
+        for (int i = 0; i < *count; i++) {
+            launches[i] = launch_of(scene);
+            launches[i].x = range_value(&choice->bomb_x, i);
+        }
     else if (ok)
         ok = launches_for_scoring(scene, *count, launches, error);
     launches_free(&table);
@@ -37,12 +41,6 @@ Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int s
     if (ok) return launches;
     free(launches);
     return NULL;
-}
-
-static bool scores_without_push_out(const SceneStudy *study) {
-    for (int i = 0; i < study->contender_count; i++)
-        if (study->contenders[i]->method.kind->description->no_push_out) return true;
-    return false;
 }
 
 /* A step takes time in proportion to its bodies, its converged solution even more. So larger scenes have fewer launches
@@ -60,30 +58,32 @@ static StudySize size_for(const StudySize *full, const Scene *scene) {
     return size;
 }
 
-static bool choose_contenders(SceneStudy *study, const ContenderList *contenders, Error *error) {
-    study->contenders = malloc((size_t)(contenders->count + 1) * sizeof *study->contenders);
-    if (study->contenders == NULL) return error_memory(error, "study");
-    study->contender_count = contenders_for(contenders, study->scene, study->contenders);
-    study->no_push_out = scores_without_push_out(study);
-    return stepper_pool_begin(&study->steppers, study->contender_count, error);
-}
-
 static bool try_launch(void *context, int i, Error *error) {
     SceneStudy *study = context;
     const Scene launched = scene_study_launch(study, i);
     return launch_find_touch(&launched, "engine", &study->striking[i], error);
 }
 
-/* Finds the launches that strike a box: only these have times of an impact. */
-static bool find_striking(SceneStudy *study, Error *error) {
+static bool begin(SceneStudy *study, const char *path, const ContenderList *contenders, const LaunchChoice *launches,
+                  Error *error) {
+    const Scene *scene = study->scene;
+    if (!scene->bomb.present) return error_input(error, path, "the scene has no bomb");
+    study->contenders = malloc((size_t)(contenders->count + 1) * sizeof *study->contenders);
+    if (study->contenders == NULL) return error_memory(error, "study");
+    study->contender_count = contenders_for(contenders, scene, study->contenders);
+    for (int i = 0; i < study->contender_count; i++)
+        study->no_push_out |= study->contenders[i]->method.kind->description->no_push_out;
+    if (!stepper_pool_begin(&study->steppers, study->contender_count, error)) return false;
+    study->launches = launch_choice_make(launches, scene, study->size.launches, &study->launch_count, error);
+    if (study->launches == NULL) return false;
+    /* The launches that strike a box: only these have times of an impact. */
     const ParallelWork tries = {try_launch, study};
     study->striking = calloc((size_t)study->launch_count, sizeof *study->striking);
     if (study->striking == NULL) return error_memory(error, "study");
-    if (!parallel_for(&tries, study->launch_count, study->scene->name, NULL, error)) return false;
+    if (!parallel_for(&tries, study->launch_count, scene->name, NULL, error)) return false;
     for (int i = 0; i < study->launch_count; i++)
         if (study->striking[i] > 0) study->striking[study->striking_count++] = i;
-    return study->striking_count > 0 ||
-           launches_refuse_misses(study->scene, study->launches, study->launch_count, error);
+    return study->striking_count > 0 || launches_refuse_misses(scene, study->launches, study->launch_count, error);
 }
 
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
@@ -91,11 +91,7 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
     *study = (SceneStudy){.scene = scene_read(path, error)};
     if (study->scene == NULL) return false;
     study->size = size_for(size, study->scene);
-    bool ok = study->scene->bomb.present || error_input(error, path, "the scene has no bomb");
-    ok = ok && choose_contenders(study, contenders, error);
-    if (ok)
-        study->launches = launch_choice_make(launches, study->scene, study->size.launches, &study->launch_count, error);
-    if (study->launches != NULL && find_striking(study, error)) return true;
+    if (begin(study, path, contenders, launches, error)) return true;
     scene_study_end(study);
     return false;
 }
@@ -116,4 +112,183 @@ Scene scene_study_launch(const SceneStudy *study, int launch) {
 int scene_study_timed(const SceneStudy *study) {
     const int most = study->size.timed_launches;
     return most < study->striking_count ? most : study->striking_count;
+}
+
+/* A launch with all methods. */
+
+typedef struct LaunchPiece {
+    SceneStudy *study;
+    Scene launched;
+    RunLog converged;
+    SnapshotList snapshots;
+    int first;            /* contender that is tried first */
+    bool *chosen;         /* [contenders] */
+    LaunchScores *scores; /* [contenders] */
+} LaunchPiece;
+
+/* Scores a contender, whichever is free. */
+static bool score(void *context, int i, Error *error) {
+    (void)i;
+    LaunchPiece *piece = context;
+    SceneStudy *study = piece->study;
+    const int contender = stepper_pool_take(&study->steppers, piece->chosen, piece->first);
+    LaunchScores *scores = &piece->scores[contender];
+    Stepper *stepper =
+        stepper_pool_stepper(&study->steppers, contender, &study->contenders[contender]->method, study->scene, error);
+    Rollout rollout = {0};
+    bool ok = stepper != NULL && rollout_run(&rollout, stepper, &piece->launched, &study->size.closed,
+                                             scores->steps[PROTOCOL_CLOSED], error);
+    if (ok) scores->measures = run_measures(&rollout.log, &piece->converged, &piece->launched);
+    if (ok && !stepper_describe(stepper)->whole_scenes)
+        ok = snapshots_score(&piece->snapshots, stepper, rollout.world, scores->steps[PROTOCOL_FROZEN], error);
+    scores->unconverged = rollout.unconverged;
+    rollout_free(&rollout);
+    stepper_pool_give(&study->steppers, contender);
+    return ok;
+}
+
+bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Progress *progress, Error *error) {
+    const size_t count = (size_t)study->contender_count + 1;
+    const double converged_share = 0.2;       /* about that of the piece that its converged run takes */
+    const double golden = 0.6180339887498949; /* neighbouring launches, which run at once, begin far apart */
+    LaunchPiece piece = {.study = study,
+                         .launched = scene_study_launch(study, launch),
+                         .snapshots = {.no_push_out = study->no_push_out},
+                         .first = (int)(fmod(launch * golden, 1) * study->contender_count),
+                         .chosen = calloc(count, sizeof *piece.chosen),
+                         .scores = calloc(count, sizeof *piece.scores)};
+    ProgressStage stage = {progress, converged_share, 1 - converged_share, false};
+    bool ok = (piece.chosen != NULL && piece.scores != NULL) || error_memory(error, "study");
+    ok = ok && rollout_log(&piece.converged, "reference", &piece.launched, error) &&
+         snapshots_add(&piece.snapshots, &piece.launched, &study->size.frozen, error) &&
+         parallel_for(&(ParallelWork){score, &piece}, study->contender_count, study->scene->name,
+                      &(Progress){progress_stage, &stage}, error);
+    if (ok)
+        launch_scores_write(results, piece.scores, study->contender_count, piece.snapshots.unconverged,
+                            piece.converged.unconverged);
+    for (int i = 0; piece.scores != NULL && i < study->contender_count; i++) launch_scores_free(&piece.scores[i]);
+    run_log_free(&piece.converged);
+    snapshots_free(&piece.snapshots);
+    free(piece.chosen);
+    free(piece.scores);
+    return ok;
+}
+
+/* The times of all methods. */
+
+/* Frames of a run behind the phase "after", so that all three phases are timed. */
+enum { FRAMES_BEHIND = 20 };
+
+typedef struct Timed {
+    SnapshotList snapshots;
+    int touch; /* of the converged run */
+} Timed;
+
+typedef struct SceneTimes {
+    const SceneStudy *study;
+    int count;
+    Timed *timed;    /* [count] */
+    Scene *launches; /* [count] */
+    SnapshotList snapshots;
+    StepCost (*costs[PROTOCOLS])[PHASES]; /* [contenders] */
+} SceneTimes;
+
+static bool prepare_launch(void *context, int i, Error *error) {
+    SceneTimes *times = context;
+    Timed *timed = &times->timed[i];
+    const SceneStudy *study = times->study;
+    Scene *launched = &times->launches[i];
+    const int spread = (2 * i + 1) * study->striking_count / (2 * times->count);
+    *launched = scene_study_launch(study, study->striking[spread]);
+    return launch_find_touch(launched, "reference", &timed->touch, error) &&
+           snapshots_add(&timed->snapshots, launched, &study->size.frozen, error);
+}
+
+static bool measure_times(SceneTimes *times, const Progress *progress, Error *error) {
+    const SceneStudy *study = times->study;
+    const double prepared = 0.1; /* about the share of the time that preparations take */
+    ProgressStage before = {progress, 0, prepared, false}, then = {progress, prepared, 1 - prepared, false};
+    const ParallelWork work = {prepare_launch, times};
+    if (!parallel_for(&work, times->count, study->scene->name, &(Progress){progress_stage, &before}, error))
+        return false;
+    /* The frozen steps of all launches go into one list. */
+    SnapshotList *all = &times->snapshots;
+    int last = 0;
+    for (int i = 0; i < times->count; i++) {
+        SnapshotList *list = &times->timed[i].snapshots;
+        if (!array_reserve((void **)&all->items, &all->capacity, (size_t)(all->count + list->count) + 1,
+                           sizeof *all->items))
+            return error_memory(error, "study");
+        if (list->count > 0) memcpy(all->items + all->count, list->items, (size_t)list->count * sizeof *all->items);
+        all->count += list->count;
+        list->count = 0;
+        const int frame = times->timed[i].touch + study->scene->bomb.impact_frames + AFTER_FRAMES + FRAMES_BEHIND;
+        if (frame > last) last = frame;
+    }
+    const TimingOptions options = {.launches = times->launches,
+                                   .launch_count = times->count,
+                                   .repetitions = study->size.repetitions,
+                                   .last_frame = last < study->scene->frames ? last : study->scene->frames};
+    return timing_measure(study->contenders, study->contender_count, &options, &times->snapshots,
+                          times->costs[PROTOCOL_CLOSED], times->costs[PROTOCOL_FROZEN],
+                          &(Progress){progress_stage, &then}, error);
+}
+
+bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *progress, Error *error) {
+    const size_t contenders = (size_t)study->contender_count + 1;
+    SceneTimes times = {.study = study, .count = scene_study_timed(study)};
+    times.timed = calloc((size_t)times.count, sizeof *times.timed);
+    times.launches = calloc((size_t)times.count, sizeof *times.launches);
+    bool room = times.timed != NULL && times.launches != NULL;
+    for (int p = 0; p < PROTOCOLS; p++) {
+        times.costs[p] = calloc(contenders, sizeof *times.costs[p]);
+        room = room && times.costs[p] != NULL;
+    }
+    const bool ok = room ? measure_times(&times, progress, error) : error_memory(error, "study");
+    for (int i = 0; ok && i < study->contender_count; i++)
+        for (int p = 0; p < PROTOCOLS; p++)
+            for (int phase = 0; phase < PHASES; phase++) {
+                const StepCost *cost = &times.costs[p][i][phase];
+                const double stored[] = {cost->solver,       cost->solver_q1, cost->solver_q3, cost->step,
+                                         cost->instructions, cost->engine,    cost->varies};
+                fwrite(stored, sizeof stored, 1, results);
+            }
+    for (int i = 0; times.timed != NULL && i < times.count; i++) snapshots_free(&times.timed[i].snapshots);
+    snapshots_free(&times.snapshots);
+    for (int p = 0; p < PROTOCOLS; p++) free(times.costs[p]);
+    free(times.timed);
+    free(times.launches);
+    return ok;
+}
+
+static bool is_time(double value) { return !(value < 0); }
+
+/* What chart.csv can have. */
+static bool is_cost(const StepCost *cost) {
+    return is_time(cost->solver_q1) && !(cost->solver_q1 > cost->solver) && !(cost->solver > cost->solver_q3) &&
+           is_time(cost->step) && is_time(cost->instructions) && is_time(cost->engine);
+}
+
+MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error) {
+    double stored[7];
+    const size_t count = (size_t)study->contender_count;
+    MethodTimes *times = calloc(count + 1, sizeof *times);
+    if (times == NULL) return error_memory(error, path), NULL;
+    bool whole = size == count * PROTOCOLS * PHASES * sizeof stored;
+    for (size_t i = 0; whole && i < count * PROTOCOLS * PHASES; i++) {
+        memcpy(stored, bytes + i * sizeof stored, sizeof stored);
+        StepCost *cost = &times[i / (PROTOCOLS * PHASES)].costs[i / PHASES % PROTOCOLS][i % PHASES];
+        *cost = (StepCost){stored[0],
+                           stored[1],
+                           stored[2],
+                           stored[3],
+                           .instructions = stored[4],
+                           .engine = stored[5],
+                           .varies = stored[6] == 1};
+        whole = is_cost(cost) && (stored[6] == 0 || stored[6] == 1);
+    }
+    if (whole) return times;
+    error_input(error, path, "is no result of times; delete it, and run the command again");
+    free(times);
+    return NULL;
 }

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The timing of contenders, in turns. */
+/* The timing of contenders, in turns: the clock and the counter of instructions of this thread, the steps, their
+   summary. */
+#define _GNU_SOURCE
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
@@ -8,20 +10,40 @@
 #include "scenes/scenes.h"
 #include "studies/chart_table.h"
 #include "studies/contenders.h"
-#include "studies/frozen.h"
-#include "studies/meter.h"
 #include "studies/statistics.h"
 #include "studies/timing.h"
 
 #include <assert.h>
+#include <linux/perf_event.h>
 #include <math.h>
+#include <sched.h>
 #include <stdlib.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
 
-/* A counter, and what reading it costs. */
+/* A counter, and what reading it costs, which is subtracted from every measurement. */
 typedef struct Meter {
     int64_t (*now)(void);
     int64_t overhead;
 } Meter;
+
+/* Nanoseconds. Tests put a clock that counts in the place of the system's (tests/studies/test_times.c). */
+static int64_t meter_time(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static int counter = -1;
+
+static int64_t meter_instructions(void) {
+    int64_t count = 0;
+    return read(counter, &count, sizeof count) == (ssize_t)sizeof count ? count : 0;
+}
+
+/* At least 0, as the overhead itself varies by some nanoseconds. */
+static int64_t meter_without(int64_t passed, int64_t overhead) { return passed > overhead ? passed - overhead : 0; }
 
 /* The times of steps, in the order in which they ran: the same in all repetitions. */
 typedef struct StepTime {
@@ -35,25 +57,19 @@ typedef struct StepLog {
     size_t capacity;
 } StepLog;
 
-typedef struct Cost {
-    int64_t solver, step, engine; /* engine: ns that it reports; 0: unknown */
-} Cost;
-
-static bool metered_step(Stepper *stepper, World *world, Step step, const Meter *meter, Cost *cost, Error *error) {
+/* Takes a step and adds its times to the log. */
+static bool metered_step(Stepper *stepper, World *world, Step step, const Meter *meter, StepLog *log, Error *error) {
     StepMeter inner = {.now = meter->now};
+    if (!array_reserve((void **)&log->items, &log->capacity, (size_t)log->count + 1, sizeof *log->items))
+        return error_memory(error, "timing");
+    StepTime *cost = &log->items[log->count];
     step.meter = &inner;
     int64_t begun = meter->now();
     if (!simulate_step(stepper, world, &step, error)) return false;
     cost->step = meter_without(meter->now() - begun, 3 * meter->overhead); /* with two calls inside the step */
     cost->solver = meter_without(inner.solving, meter->overhead);
     cost->engine = inner.reported;
-    return true;
-}
-
-static bool log_step(StepLog *log, const Cost *cost, Phase phase, Error *error) {
-    if (!array_reserve((void **)&log->items, &log->capacity, (size_t)log->count + 1, sizeof *log->items))
-        return error_memory(error, "timing");
-    log->items[log->count++] = (StepTime){cost->solver, cost->step, cost->engine, phase};
+    log->count++;
     return true;
 }
 
@@ -64,11 +80,9 @@ static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, 
     if (world == NULL) return false;
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     Error failure = {0};
-    Cost cost;
     for (int frame = 1; frame <= last_frame; frame++) {
-        if (!metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, &cost, &failure) ||
-            !log_step(log, &cost, phase_next(&tracker, world_problem(world), frame), &failure))
-            break;
+        if (!metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, log, &failure)) break;
+        log->items[log->count - 1].phase = phase_next(&tracker, world_problem(world), frame);
     }
     world_destroy(world);
     if (failure.kind == ERROR_NONE || failure.failure != FAILURE_NONE) return true;
@@ -80,14 +94,12 @@ static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, 
 static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world, const Meter *meter, StepLog *log,
                        Error *error) {
     Error failure = {0};
-    Cost cost;
     for (int i = 0; i < list->count; i++) {
         const Snapshot *snapshot = &list->items[i];
         const Step step = {.scene = snapshot->scene, .frame = snapshot->frame, .engine_step = true};
-        if (!world_copy(world, snapshot->world, &failure) ||
-            !metered_step(stepper, world, step, meter, &cost, &failure) ||
-            !log_step(log, &cost, snapshot->phase, &failure))
+        if (!world_copy(world, snapshot->world, &failure) || !metered_step(stepper, world, step, meter, log, &failure))
             break;
+        log->items[log->count - 1].phase = snapshot->phase;
     }
     if (failure.kind == ERROR_NONE || failure.failure == FAILURE_ADAPTER) return true;
     *error = failure;
@@ -123,11 +135,24 @@ static bool run_both(const Timing *timing, const Timed *timed, int launches, con
            run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
 }
 
-static bool varies(const Timing *timing, int contender) {
-    bool any = false;
-    for (int p = 0; p < PROTOCOLS; p++)
-        for (int phase = 0; phase < PHASES; phase++) any |= timing->costs[p][contender][phase].varies;
-    return any;
+/* All contenders, or those that vary, in turns. */
+static bool repeat_all(Timing *timing, bool again, const Meter *meter, const Progress *progress, Error *error) {
+    const int repetitions = timing->options->repetitions;
+    for (int r = 0; r < repetitions; r++) {
+        for (int i = 0; i < timing->count; i++) {
+            const Timed *timed = &timing->items[i];
+            bool varies = false;
+            for (int p = 0; p < PROTOCOLS; p++)
+                for (int phase = 0; phase < PHASES; phase++) varies |= timing->costs[p][i][phase].varies;
+            if (again && !varies) continue;
+            StepLog *closed = &timed->logs[PROTOCOL_CLOSED][r], *frozen = &timed->logs[PROTOCOL_FROZEN][r];
+            closed->count = frozen->count = 0;
+            if (!run_both(timing, timed, timing->options->launch_count, meter, closed, frozen, error)) return false;
+        }
+        if (!progress_report(progress, again ? repetitions : r + 1, repetitions))
+            return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
+    }
+    return true;
 }
 
 /* Memory grows and caches fill in the first steps of a stepper: these do not count. */
@@ -143,59 +168,38 @@ static bool warm_up(const Timing *timing, const Meter *meter, Error *error) {
     return ok;
 }
 
-/* All contenders, or those that vary, in turns. */
-static bool timing_repeat(Timing *timing, int repetition, bool again, const Meter *meter, Error *error) {
-    for (int i = 0; i < timing->count; i++) {
-        const Timed *timed = &timing->items[i];
-        if (again && !varies(timing, i)) continue;
-        StepLog *closed = &timed->logs[PROTOCOL_CLOSED][repetition],
-                *frozen = &timed->logs[PROTOCOL_FROZEN][repetition];
-        closed->count = frozen->count = 0;
-        if (!run_both(timing, timed, timing->options->launch_count, meter, closed, frozen, error)) return false;
-    }
-    return true;
-}
-
-static bool repeat_all(Timing *timing, bool again, const Meter *meter, const Progress *progress, Error *error) {
-    const int repetitions = timing->options->repetitions;
-    for (int r = 0; r < repetitions; r++) {
-        if (!timing_repeat(timing, r, again, meter, error)) return false;
-        if (!progress_report(progress, again ? repetitions : r + 1, repetitions))
-            return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
-    }
-    return true;
-}
-
-/* Mean of the solver's counts in a phase. */
-static double mean_count(const StepLog *log, int phase) {
-    int64_t sum = 0;
-    int steps = 0;
-    for (int i = 0; i < log->count; i++) {
-        if ((int)log->items[i].phase != phase) continue;
-        sum += log->items[i].solver;
-        steps++;
-    }
-    return steps > 0 ? (double)sum / steps : NAN;
-}
-
-/* Without repetitions: counts do not vary. */
+/* Means of the solver's instructions in each phase, where the system counts those of this thread. Without repetitions:
+   counts do not vary. */
 static bool count_instructions(Timing *timing, Error *error) {
-    bool can = !timing->options->no_instructions && meter_open_instructions();
+    struct perf_event_attr event = {.type = PERF_TYPE_HARDWARE,
+                                    .size = sizeof event,
+                                    .config = PERF_COUNT_HW_INSTRUCTIONS,
+                                    .exclude_kernel = 1,
+                                    .exclude_hv = 1};
     const Meter meter = {meter_instructions, 0};
     bool ok = true;
+    if (!timing->options->no_instructions) counter = (int)syscall(SYS_perf_event_open, &event, 0, -1, -1, 0);
     for (int i = 0; ok && i < timing->count; i++) {
         StepLog logs[PROTOCOLS] = {0};
-        const bool counts = can && !is_external(&timing->items[i]); /* those of this thread are not the engine's */
+        const bool counts = counter >= 0 && !is_external(&timing->items[i]); /* those are not the engine's */
         if (counts)
             ok = run_both(timing, &timing->items[i], timing->options->launch_count, &meter, &logs[PROTOCOL_CLOSED],
                           &logs[PROTOCOL_FROZEN], error);
         for (int p = 0; p < PROTOCOLS; p++) {
+            int64_t sums[PHASES] = {0};
+            int steps[PHASES] = {0};
+            for (int k = 0; k < logs[p].count; k++) {
+                sums[logs[p].items[k].phase] += logs[p].items[k].solver;
+                steps[logs[p].items[k].phase]++;
+            }
             for (int phase = 0; phase < PHASES; phase++)
-                timing->items[i].instructions[p][phase] = counts ? mean_count(&logs[p], phase) : NAN;
+                timing->items[i].instructions[p][phase] =
+                    steps[phase] > 0 ? (double)sums[phase] / steps[phase] : (double)NAN;
             free(logs[p].items);
         }
     }
-    if (can) meter_close_instructions();
+    if (counter >= 0) close(counter);
+    counter = -1;
     return ok;
 }
 
@@ -212,18 +216,13 @@ static void add_step(StepCost *sum, const StepLog *logs, int repetitions, int i,
     sum->engine += statistics_quantile(times, repetitions, 0.5);
 }
 
-static int fewest(const StepLog *logs, int repetitions) {
-    int count = logs[0].count;
-    for (int r = 1; r < repetitions; r++) count = logs[r].count < count ? logs[r].count : count;
-    return count;
-}
-
 /* times: scratch, [repetitions]. */
-static StepCost timing_summarise(const Timed *timed, int protocol, int phase, int repetitions, double *times) {
+static StepCost summarise(const Timed *timed, int protocol, int phase, int repetitions, double *times) {
     const StepLog *logs = timed->logs[protocol];
     StepCost sum = {0};
-    int steps = 0;
-    for (int i = 0; i < fewest(logs, repetitions); i++) {
+    int steps = 0, fewest = logs[0].count;
+    for (int r = 1; r < repetitions; r++) fewest = logs[r].count < fewest ? logs[r].count : fewest;
+    for (int i = 0; i < fewest; i++) {
         if ((int)logs[0].items[i].phase != phase) continue;
         add_step(&sum, logs, repetitions, i, times);
         steps++;
@@ -241,18 +240,18 @@ static StepCost timing_summarise(const Timed *timed, int protocol, int phase, in
                       .instructions = timed->instructions[protocol][phase]};
 }
 
-static double timing_distance(const StepCost *cost) { return cost->solver_q3 - cost->solver_q1; }
+static double distance(const StepCost *cost) { return cost->solver_q3 - cost->solver_q1; }
 
-static double timing_spread(const StepCost *cost) { return timing_distance(cost) / cost->solver; }
+static double spread(const StepCost *cost) { return distance(cost) / cost->solver; }
 
 /* Whether a time varies more than those of the others in that phase: another process may have disturbed it. */
 static bool is_disturbed(const StepCost (*costs)[PHASES], int count, int contender, int phase, double *spreads) {
     int others = 0;
     for (int i = 0; i < count; i++)
-        if (i != contender && costs[i][phase].solver > 0) spreads[others++] = timing_spread(&costs[i][phase]);
-    const double usual = statistics_quantile(spreads, others, 0.5), own = timing_spread(&costs[contender][phase]);
+        if (i != contender && costs[i][phase].solver > 0) spreads[others++] = spread(&costs[i][phase]);
+    const double usual = statistics_quantile(spreads, others, 0.5), own = spread(&costs[contender][phase]);
     return own > TIMES_VARY_FACTOR * usual && own > TIMES_VARY_LEAST &&
-           timing_distance(&costs[contender][phase]) > TIMES_VARY_US;
+           distance(&costs[contender][phase]) > TIMES_VARY_US;
 }
 
 static void summarise_all(const Timing *timing) {
@@ -260,17 +259,17 @@ static void summarise_all(const Timing *timing) {
         for (int phase = 0; phase < PHASES; phase++) {
             StepCost(*costs)[PHASES] = timing->costs[p];
             for (int i = 0; i < timing->count; i++)
-                costs[i][phase] =
-                    timing_summarise(&timing->items[i], p, phase, timing->options->repetitions, timing->numbers);
+                costs[i][phase] = summarise(&timing->items[i], p, phase, timing->options->repetitions, timing->numbers);
             for (int i = 0; i < timing->count; i++)
                 costs[i][phase].varies =
                     is_disturbed((const StepCost(*)[PHASES])costs, timing->count, i, phase, timing->numbers);
         }
 }
 
-static bool timing_begin(Timing *timing, const Contender *const *contenders, Error *error) {
+static bool measure(Timing *timing, const Contender *const *contenders, const Progress *progress, Error *error) {
     const Scene *scene = &timing->options->launches[0];
     const size_t repetitions = (size_t)timing->options->repetitions;
+    Meter clock = {meter_time, INT64_MAX};
     timing->numbers = malloc((repetitions + (size_t)timing->count) * sizeof *timing->numbers);
     timing->items = calloc((size_t)timing->count, sizeof *timing->items);
     if (timing->items == NULL || timing->numbers == NULL) return error_memory(error, "timing");
@@ -284,26 +283,11 @@ static bool timing_begin(Timing *timing, const Contender *const *contenders, Err
         }
     }
     timing->world = scene_world(scene, error);
-    return timing->world != NULL;
-}
-
-static void timing_end(Timing *timing) {
-    for (int i = 0; timing->items != NULL && i < timing->count; i++) {
-        const Timed *timed = &timing->items[i];
-        stepper_destroy(timed->stepper);
-        for (int p = 0; p < PROTOCOLS; p++) {
-            for (int r = 0; timed->logs[p] != NULL && r < timing->options->repetitions; r++)
-                free(timed->logs[p][r].items);
-            free(timed->logs[p]);
-        }
+    if (timing->world == NULL) return false;
+    for (int i = 0; i < 1000; i++) {
+        const int64_t begun = meter_time(), passed = meter_time() - begun;
+        if (passed < clock.overhead) clock.overhead = passed;
     }
-    free(timing->items);
-    free(timing->numbers);
-    world_destroy(timing->world);
-}
-
-static bool measure_timing(Timing *timing, const Progress *progress, Error *error) {
-    const Meter clock = {meter_time, meter_time_overhead()};
     if (!warm_up(timing, &clock, error) || !repeat_all(timing, false, &clock, progress, error) ||
         !count_instructions(timing, error))
         return false;
@@ -320,10 +304,26 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
                      .snapshots = snapshots,
                      .count = count,
                      .costs = {[PROTOCOL_CLOSED] = closed, [PROTOCOL_FROZEN] = frozen}};
-    meter_pin();
-    const bool ok = timing_begin(&timing, contenders, error) && measure_timing(&timing, progress, error);
-    meter_unpin();
-    timing_end(&timing);
+    /* The thread stays on its core, to avoid the cost of migration, where the system can do that. */
+    const int here = sched_getcpu();
+    cpu_set_t before, core;
+    CPU_ZERO(&core);
+    if (here >= 0) CPU_SET((size_t)here, &core);
+    const bool pinned =
+        here >= 0 && sched_getaffinity(0, sizeof before, &before) == 0 && sched_setaffinity(0, sizeof core, &core) == 0;
+    const bool ok = measure(&timing, contenders, progress, error);
+    if (pinned) sched_setaffinity(0, sizeof before, &before);
+    for (int i = 0; timing.items != NULL && i < count; i++) {
+        const Timed *timed = &timing.items[i];
+        stepper_destroy(timed->stepper);
+        for (int p = 0; p < PROTOCOLS; p++) {
+            for (int r = 0; timed->logs[p] != NULL && r < options->repetitions; r++) free(timed->logs[p][r].items);
+            free(timed->logs[p]);
+        }
+    }
+    free(timing.items);
+    free(timing.numbers);
+    world_destroy(timing.world);
     return ok;
 }
 

@@ -11,7 +11,7 @@
 #include "base/machine.h"
 #include "scenes/scenes.h"
 #include "studies/contenders.h"
-#include "studies/frozen.h"
+#include "studies/rollout.h"
 
 #include <stdbool.h>
 

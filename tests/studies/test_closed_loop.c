@@ -2,7 +2,6 @@
 #include "made.h"
 
 #include "studies/closed_loop.h"
-#include "studies/frozen.h"
 #include "studies/rollout.h"
 
 OWNED_VALUE(RunLog, run_log_free)

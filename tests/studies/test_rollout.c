@@ -2,7 +2,6 @@
 /* Scores of methods with a known ranking: the reference has no error, more sweeps have less, noise has more. */
 #include "made.h"
 
-#include "studies/frozen.h"
 #include "studies/rollout.h"
 #include "studies/statistics.h"
 

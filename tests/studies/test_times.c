@@ -9,8 +9,6 @@
 #include "studies/chart_table.h"
 #include "studies/closed_loop.h"
 #include "studies/contenders.h"
-#include "studies/frozen.h"
-#include "studies/meter.h"
 #include "studies/rollout.h"
 #include "studies/timing.h"
 
@@ -237,7 +235,5 @@ TEST(a_method_is_timed_beside_the_engine) {
     assert_near(us_step, 2 + COLLISION / 1000.0, 1e-9);
     snapshots_free(&states);
 }
-
-TEST(reading_the_clock_does_not_count) { assert_int_equal(meter_time_overhead(), READING); }
 
 RUN_TESTS(NULL, NULL)
