@@ -387,17 +387,6 @@ static bool scan_band(Scan *scan, int slot) {
     return true;
 }
 
-static bool scan_bands(Scan *scan) {
-    int slot = 0;
-    give_next(scan, slot);
-    for (; (scan->count = rows_from(scan, scan->top)) > 0; scan->top += scan->count, slot = 1 - slot)
-        if (!scan_band(scan, slot)) return false;
-    PngRows *first = scan->sides[0].rows, *second = scan->sides[1].rows;
-    const bool ok = scan->files == 1 || png_rows_end(second);
-    first->damaged = second->twin != NULL; /* those that are the same up to a sound end have parted there */
-    return !first->damaged && png_rows_end(first) && ok;
-}
-
 static bool start(Scan *scan, size_t band, bool threads) {
     Error ignored = {0};
     Side *sides = scan->sides;
@@ -432,7 +421,15 @@ bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool thre
     Scan scan = {.files = files, .equal = true, .sink = sink, .since = FAR_AWAY};
     scan.kept = around > 1 && around < ROWS_ALL ? around : 1; /* none is left out of all */
     for (int i = 0; i < 2; i++) scan.sides[i].rows = rows[i < files ? i : 0];
-    const bool ok = start(&scan, band, threads) && scan_bands(&scan);
+    bool ok = start(&scan, band, threads);
+    if (ok) give_next(&scan, 0);
+    for (int slot = 0; ok && (scan.count = rows_from(&scan, scan.top)) > 0; scan.top += scan.count, slot = 1 - slot)
+        ok = scan_band(&scan, slot);
+    if (ok) {
+        ok = files == 1 || png_rows_end(rows[1]);
+        rows[0]->damaged = scan.sides[1].rows->twin != NULL; /* the same up to a sound end: parted there */
+        ok = !rows[0]->damaged && png_rows_end(rows[0]) && ok;
+    }
     background_stop(scan.background);
     for (int i = 0; i < files; i++) {
         rows[i]->damaged = rows[i]->damaged || scan.sides[i].failed;

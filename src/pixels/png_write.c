@@ -234,18 +234,10 @@ static bool encode_row(Idat *idat, const uint8_t *pixels, const uint8_t *above, 
     row->count = (size_t)(writer.next - idat->scratch) * 8 + writer.count;
     bits_end(&writer);
     const size_t bytes = (size_t)(writer.next - idat->scratch);
-    /* write_row() reads whole words. */
+    /* idat_encode() reads whole words. */
     if (!array_reserve((void **)&row->bits, &row->capacity, bytes + WORD_BYTES, 1)) return error_memory(error, "image");
     memcpy(row->bits, idat->scratch, bytes);
     return true;
-}
-
-static void write_row(BitWriter *writer, const Row *row) {
-    size_t at = 0;
-    for (; at + CHUNK_BITS <= row->count; at += CHUNK_BITS)
-        bits_write(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << CHUNK_BITS) - 1), CHUNK_BITS);
-    unsigned left = (unsigned)(row->count - at);
-    bits_write(writer, load_word(row->bits + at / 8) & (((uint64_t)1 << left) - 1), left);
 }
 
 /* *data is valid until the next call. changed: as for png_encode(). */
@@ -268,7 +260,11 @@ static bool idat_encode(Idat *idat, const Image *image, const bool *changed, con
     uint64_t a = 1, b = 0, row_bytes = (uint64_t)idat->width * CHANNELS + 1;
     for (int y = 0; y < idat->height; y++) {
         const Row *row = &idat->rows[y];
-        write_row(&writer, row);
+        for (size_t at = 0; at < row->count; at += CHUNK_BITS) {
+            const size_t left = row->count - at;
+            const unsigned part = left < CHUNK_BITS ? (unsigned)left : CHUNK_BITS;
+            bits_write(&writer, load_word(row->bits + at / 8) & (((uint64_t)1 << part) - 1), part);
+        }
         b = (b + row_bytes * a + row->weighted) % ADLER_MODULUS;
         a = (a + row->sum) % ADLER_MODULUS;
     }

@@ -102,7 +102,7 @@ static void add_border(BorderCell *cell, const CsvTable *table, const BorderRow 
 
 static void add_row(BorderCell *cell, const CsvTable *table, const BorderRow *row, const BorderRange *range) {
     if (cell->row == NULL) cell->row = row;
-    if (row->verdict == LOOK_NOT_APPLICABLE) return;
+    if (row->verdict == CELL_NOT_APPLICABLE) return;
     if (!isnan(row->holds_at) && !isnan(row->fails_at))
         add_border(cell, table, row, range);
     else if (!isnan(row->holds_at))

@@ -85,7 +85,7 @@ static BorderCell cell_at(const Borders *borders, int study, int method) {
 static bool is_applicable(const CsvTable *table, const BorderRow *row) {
     bool found = false;
     for (int i = 0; !found && i < table->count; i++)
-        found = border_row(table, i)->verdict != LOOK_NOT_APPLICABLE && border_same_method(border_row(table, i), row);
+        found = border_row(table, i)->verdict != CELL_NOT_APPLICABLE && border_same_method(border_row(table, i), row);
     return found;
 }
 
@@ -146,7 +146,7 @@ static bool add_method(Borders *borders, int i, bool any, Error *error) {
 static bool borders_gather(Borders *borders, Error *error) {
     const CsvTable *table = borders->table;
     bool any = false, ok = true;
-    for (int i = 0; i < table->count; i++) any = any || border_row(table, i)->verdict != LOOK_NOT_APPLICABLE;
+    for (int i = 0; i < table->count; i++) any = any || border_row(table, i)->verdict != CELL_NOT_APPLICABLE;
     for (int i = 0; ok && i < table->count; i++)
         ok = add_study(borders, i, error) && add_method(borders, i, any, error);
     return ok;
@@ -159,8 +159,8 @@ static void note_looks(Borders *borders, const BorderCell *cell) {
         if (!cell->spans[i].holds) borders->used[cell->spans[i].look] = true;
     }
     if (cell->row == NULL) return;
-    if (cell->row->verdict == LOOK_NOT_APPLICABLE)
-        borders->used[LOOK_NOT_APPLICABLE] = true;
+    if (cell->row->verdict == CELL_NOT_APPLICABLE)
+        borders->used[CELL_NOT_APPLICABLE] = true;
     else if (decided < 1 - least_seen)
         borders->used[VERDICT_UNDECIDED] = true;
 }
@@ -185,7 +185,7 @@ static void borders_measure(Borders *borders) {
             borders->methods[method].held += cell.held / borders->study_count;
             borders->methods[method].as_far += holds_as_far(borders, study, &cell);
             borders->studies[study].held += cell.held;
-            applicable += cell.row != NULL && cell.row->verdict != LOOK_NOT_APPLICABLE;
+            applicable += cell.row != NULL && cell.row->verdict != CELL_NOT_APPLICABLE;
             note_looks(borders, &cell);
         }
         if (applicable > 0) borders->studies[study].held /= applicable;
@@ -351,8 +351,8 @@ static void draw_cell(const Borders *borders, int study, int method, double y) {
                  width = borders->column - column_gap;
     BorderSpan spans[2 * BORDERS_MAX];
     if (cell.row == NULL) return;
-    if (cell.row->verdict == LOOK_NOT_APPLICABLE) {
-        put_symbol(borders->sketch, left, left + width, y, LOOK_NOT_APPLICABLE);
+    if (cell.row->verdict == CELL_NOT_APPLICABLE) {
+        put_symbol(borders->sketch, left, left + width, y, CELL_NOT_APPLICABLE);
         return;
     }
     borders_fill(borders->sketch, left, left + width, y, verdict_looks[VERDICT_UNDECIDED].fill);

@@ -19,7 +19,7 @@
    light and round, failing dark and angular, readable in black and white. */
 
 /* Continues Verdict: cells without a verdict. */
-enum { LOOK_NOT_APPLICABLE = VERDICTS, LOOK_MISSING, VERDICT_LOOKS };
+enum { CELL_NOT_APPLICABLE = VERDICTS, CELL_MISSING, VERDICT_LOOKS };
 
 typedef struct VerdictLook {
     const char *name;
@@ -287,7 +287,7 @@ enum {
 typedef struct MapCell {
     const char *map, *method, *setting, *x_parameter, *x_unit, *y_parameter, *y_unit;
     double x, y;
-    int verdict;               /* a Verdict, or LOOK_NOT_APPLICABLE */
+    int verdict;               /* a Verdict, or CELL_NOT_APPLICABLE */
     double frame, body, value; /* maps.csv: as in VerdictReading, or NAN */
     const char *unit;          /* maps.csv */
     int steps, not_converged;  /* unconverged.csv: as in Convergence */
@@ -299,7 +299,7 @@ typedef struct BorderRow {
     const char *study, *method, *setting, *parameter, *unit;
     double holds_at; /* NAN: nothing holds */
     double fails_at; /* NAN: no decided value fails; with a failing verdict, values beyond holds_at are undecided */
-    int verdict;     /* how it fails; if it holds over the whole range, how it holds; or LOOK_NOT_APPLICABLE */
+    int verdict;     /* how it fails; if it holds over the whole range, how it holds; or CELL_NOT_APPLICABLE */
 } BorderRow;
 
 /* refusals.csv: why a method does not apply. */
@@ -405,7 +405,7 @@ typedef struct MapPanels {
     double x[MAP_MAX_VALUES], y[MAP_MAX_VALUES]; /* values of all methods, ascending */
     const MapCell *methods[MAP_MAX_METHODS];     /* first row of each */
     unsigned char looks[MAP_MAX_METHODS][MAP_MAX_VALUES]
-                       [MAP_MAX_VALUES]; /* [panel][x][y]; LOOK_MISSING without a row */
+                       [MAP_MAX_VALUES]; /* [panel][x][y]; CELL_MISSING without a row */
 } MapPanels;
 
 /* Gathers the map whose rows start at *row and advances *row past them. ERROR_INPUT, with path:line:column: a repeated

@@ -44,7 +44,7 @@ static bool gather_values(MapPanels *map, const CsvTable *table, int first, int 
 }
 
 static bool gather_looks(MapPanels *map, const CsvTable *table, int first, int end, Error *error) {
-    memset(map->looks, LOOK_MISSING, sizeof map->looks);
+    memset(map->looks, CELL_MISSING, sizeof map->looks);
     for (int i = first; i < end; i++) {
         const MapCell *cell = map_cell(table, i);
         if (i == first || !map_cell_same_method(cell - 1, cell)) {
@@ -55,7 +55,7 @@ static bool gather_looks(MapPanels *map, const CsvTable *table, int first, int e
         }
         unsigned char *look =
             &map->looks[map->panel_count - 1][stability_map_find(map->x, cell->x)][stability_map_find(map->y, cell->y)];
-        if (*look != LOOK_MISSING)
+        if (*look != CELL_MISSING)
             return csv_table_error(table, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
                                    cell->x, cell->y_parameter, cell->y);
         *look = (unsigned char)cell->verdict;
@@ -171,8 +171,8 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_EXPLODES] = {"explodes", 0x6E1650, 0xFFFFFF, PLOT_STAR, false, 1.1},
     [VERDICT_NON_FINITE] = {"non-finite", 0x140A1C, 0xFFFFFF, PLOT_CROSS, false, 1.1},
     [VERDICT_ADAPTER_FAILED] = {"adapter failed", 0xB4B4B4, 0x202020, METHOD_TRIANGLE, true, 0.9}, /* no physics */
-    [LOOK_NOT_APPLICABLE] = {"not applicable", NO_COLOUR, 0x909090, VERDICT_STROKE, false, 1},
-    [LOOK_MISSING] = {"not run", NO_COLOUR, 0x909090, VERDICT_BARE, false, 1},
+    [CELL_NOT_APPLICABLE] = {"not applicable", NO_COLOUR, 0x909090, VERDICT_STROKE, false, 1},
+    [CELL_MISSING] = {"not run", NO_COLOUR, 0x909090, VERDICT_BARE, false, 1},
 };
 
 /* mm. Seams between small tiles would be most of what is seen; these overlap instead, as half-covered pixels would let

@@ -178,7 +178,7 @@ static bool write_border(const Run *run, int i, const Border *border, FILE *line
                            .unit = scene_parameter_unit(run->context->typical, study->parameter),
                            .holds_at = border != NULL ? border->holds_at : NAN,
                            .fails_at = border != NULL ? border->fails_at : NAN,
-                           .verdict = border != NULL ? (int)border->verdict : LOOK_NOT_APPLICABLE};
+                           .verdict = border != NULL ? (int)border->verdict : CELL_NOT_APPLICABLE};
     return piece_tables_print(lines, &border_layout, -1, &row, error);
 }
 

@@ -167,7 +167,7 @@ static bool check_border(const CsvTable *table, int i, Error *error) {
         return csv_table_error(table, i, 0, error, "the study '%s' had another parameter before", row->study);
     const char *verdict = verdict_words[row->verdict];
     bool holds = !isnan(row->holds_at), fails = !isnan(row->fails_at);
-    if (row->verdict == LOOK_NOT_APPLICABLE)
+    if (row->verdict == CELL_NOT_APPLICABLE)
         return (!holds && !fails) || csv_table_error(table, i, 0, error, "'%s' cannot have values", verdict);
     if (!verdict_holds((Verdict)row->verdict)) return true;
     return (holds && !fails) || csv_table_error(table, i, 0, error, "'%s' contradicts the values", verdict);

@@ -309,6 +309,7 @@ def main():
             measured.check(run, frame, body)
         for frame, body in (16, -1), (60, -1), (60, 4):
             measured.curves(frame, body)
+        measured.times()
         check_link(checks, browser, page)
         check_command(checks, page)
         check_saved(checks, browser, page)

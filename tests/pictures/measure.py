@@ -89,6 +89,21 @@ class Measured:
             wanted = apart[body] if body >= 0 else numpy.nanmax(apart)
             self.checks.near(f"frame {frame} body {body}: the curve of {name}", number(text), wanted, 1e-9 + 0.006 * wanted)
 
+    def times(self):
+        """The times below the plot stand where its cursor is at their frames."""
+        ends = []
+        for frame in 0, len(self.loaded[0]["angle"]) - 1:
+            self.page.run("player.change({frame: $0})", frame)
+            self.page.settle()
+            at = self.page.run("document.querySelector('#plot > g').getAttribute('transform')")
+            ends.append((frame * float(self.loaded[0]["dt"]), number(at.removeprefix("translate(").removesuffix(")"))))
+        labels = self.page.run("[...document.querySelectorAll('#plot text')].filter(({textContent}) => "
+                               "/^[\\d.]+ s$/.test(textContent)).map(text => [text.textContent, text.getAttribute('x')])")
+        self.checks.true("the plot has times", len(labels) > 2)
+        for text, x in labels:
+            wanted = numpy.interp(number(text.removesuffix(" s")), *zip(*ends))
+            self.checks.near(f"where the plot has {text}", float(x), wanted, 0.01)
+
     def contacts(self, what, rows, wanted):
         found = {int(name.split()[-1]): [number(cell) for cell in cells] for name,
                  cells in rows.items() if re.match(r"body \d+$", name)}

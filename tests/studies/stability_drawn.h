@@ -88,7 +88,7 @@ static inline char *make_map(int methods, int across, int up) {
     for (int method = 0; method < methods; method++)
         for (int cell = 0; cell < across * up; cell++)
             fprintf(file, "grid,engine,k=%d,ratio,,%g,height,boxes,%d,%s,,,,\n", method, pow(10, cell % across),
-                    3 + cell / across, verdict_words[cell % LOOK_MISSING]);
+                    3 + cell / across, verdict_words[cell % CELL_MISSING]);
     assert_int_equal(fclose(file), 0);
     return text;
 }

@@ -55,7 +55,7 @@ static bool check_row(void *context, int i, Error *error) {
     if (i % sampled(4) != 0) return true;
     const StabilityScan scan = {stability_study_find(row->study), scenes, NULL};
     if (scan.study == NULL) return csv_table_error(&golden->table, i, 0, error, "no such study");
-    if (row->verdict == LOOK_NOT_APPLICABLE) return check_refusal(golden, i, &scan, error);
+    if (row->verdict == CELL_NOT_APPLICABLE) return check_refusal(golden, i, &scan, error);
     return check_side(golden, i, &scan, true, error) && check_side(golden, i, &scan, false, error);
 }
 

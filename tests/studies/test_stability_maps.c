@@ -139,7 +139,7 @@ TEST(many_methods_and_large_grids_are_drawn) {
         int cells = cases[i].across * cases[i].up;
         check_svg("svg = read('map-grid')\nexpect(count(svg, '#%06X'), %d, 'settles')\n"
                   "expect(sum(t.startswith('engine:k=') for t in texts(svg)), %d, 'panels')\n",
-                  verdict_looks[0].fill, cases[i].methods * ((cells + LOOK_MISSING - 1) / LOOK_MISSING) + 1,
+                  verdict_looks[0].fill, cases[i].methods * ((cells + CELL_MISSING - 1) / CELL_MISSING) + 1,
                   cases[i].methods);
     }
 }

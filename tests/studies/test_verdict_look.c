@@ -51,8 +51,8 @@ TEST(looks_are_those_of_the_verdicts) {
         assert_string_equal(verdict_looks[verdict].name, verdict_name((Verdict)verdict));
         assert_string_equal(verdict_words[verdict], verdict_name((Verdict)verdict));
     }
-    assert_string_equal(verdict_words[LOOK_NOT_APPLICABLE], verdict_looks[LOOK_NOT_APPLICABLE].name);
-    assert_null(verdict_words[LOOK_MISSING]);
+    assert_string_equal(verdict_words[CELL_NOT_APPLICABLE], verdict_looks[CELL_NOT_APPLICABLE].name);
+    assert_null(verdict_words[CELL_MISSING]);
 }
 
 RUN_TESTS(NULL, NULL)

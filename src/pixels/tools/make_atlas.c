@@ -15,7 +15,7 @@ static const int sizes[FONT_SIZES] = {9,  10, 11, 12, 13, 14, 15, 16, 18, 20, 22
                                       26, 28, 30, 32, 36, 40, 44, 48, 52, 56, 64, 72};
 
 static const unsigned extra[] = {0xB0, 0xB1, 0xB5, 0xB7, 0xD7, 0x2007, 0x2013, 0x2014, 0x2026, 0x2212, 0x221E};
-enum { ASCII_FIRST = 0x20, ASCII_LAST = 0x7E, FIGURE_SPACE_CODE = 0x2007 };
+enum { ASCII_FIRST = 0x20, ASCII_LAST = 0x7E, ASCII = ASCII_LAST - ASCII_FIRST + 1, FIGURE_SPACE_CODE = 0x2007 };
 
 static FILE *output;
 static unsigned bitmap_size;
@@ -25,19 +25,14 @@ static void make_atlas_quit(const char *what) {
     exit(1);
 }
 
-static unsigned code_point(int i) {
-    int ascii = ASCII_LAST - ASCII_FIRST + 1;
-    return i < ascii ? (unsigned)(ASCII_FIRST + i) : extra[i - ascii];
-}
-
 static FT_Pos make_atlas_load(FT_Face face, unsigned code) {
     FT_UInt index = FT_Get_Char_Index(face, code);
     if (index == 0) make_atlas_quit("a character is missing in the font");
     if (FT_Load_Glyph(face, index, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) make_atlas_quit("cannot load a glyph");
-    return (face->glyph->linearHoriAdvance + (1 << 9)) >> 10; /* Tabular figures: changing numbers must not shift. */
+    return (face->glyph->linearHoriAdvance + (1 << 9)) >> 10;
 }
 
-/* Coverage in the levels of shaders/shape.frag. */
+/* All figures are as wide: changing numbers must not shift. */
 static FT_Pos figure_advance(FT_Face face) {
     FT_Pos widest = 0;
     for (unsigned code = '0'; code <= '9'; code++) {
@@ -47,17 +42,8 @@ static FT_Pos figure_advance(FT_Face face) {
     return widest;
 }
 
-/* Coverage in the levels of the shapes (shaders/shape.frag). One string: a list of numbers takes a compiler seconds. */
-static void print_bitmap(const FT_Bitmap *bitmap) {
-    for (unsigned y = 0; y < bitmap->rows; y++) {
-        for (unsigned x = 0; x < bitmap->width; x++) {
-            int coverage = bitmap->buffer[(int)y * bitmap->pitch + (int)x];
-            fprintf(output, "\\%o", (unsigned)(coverage * 51 + 127) / 255 * 5);
-        }
-    }
-    bitmap_size += bitmap->rows * bitmap->width;
-}
-
+/* Prints the coverage in the levels of the shapes (shaders/shape.frag), as a part of one string: a list of numbers takes
+   a compiler seconds. */
 static FontGlyph render(FT_Face face, unsigned code, FT_Pos figure) {
     if (code == FIGURE_SPACE_CODE) return (FontGlyph){.code = code, .advance = (short)figure};
     FT_Pos advance = make_atlas_load(face, code);
@@ -66,16 +52,22 @@ static FontGlyph render(FT_Face face, unsigned code, FT_Pos figure) {
         advance = figure;
     }
     if (FT_Render_Glyph(face->glyph, FT_RENDER_MODE_NORMAL) != 0) make_atlas_quit("cannot render a glyph");
-    FT_GlyphSlot slot = face->glyph;
-    FontGlyph glyph = {code,
-                       bitmap_size,
-                       (short)slot->bitmap.width,
-                       (short)slot->bitmap.rows,
-                       (short)slot->bitmap_left,
-                       (short)slot->bitmap_top,
+    const FT_Bitmap *bitmap = &face->glyph->bitmap;
+    for (unsigned y = 0; y < bitmap->rows; y++) {
+        for (unsigned x = 0; x < bitmap->width; x++) {
+            int coverage = bitmap->buffer[(int)y * bitmap->pitch + (int)x];
+            fprintf(output, "\\%o", (unsigned)(coverage * 51 + 127) / 255 * 5);
+        }
+    }
+    const unsigned offset = bitmap_size;
+    bitmap_size += bitmap->rows * bitmap->width;
+    return (FontGlyph){code,
+                       offset,
+                       (short)bitmap->width,
+                       (short)bitmap->rows,
+                       (short)face->glyph->bitmap_left,
+                       (short)face->glyph->bitmap_top,
                        (short)advance};
-    print_bitmap(&slot->bitmap);
-    return glyph;
 }
 
 /* Nested braces: with a designator for each glyph, [1][2][3] = {...}, gcc takes seconds. */
@@ -112,7 +104,8 @@ int main(int argc, char **argv) {
         for (int size = 0; size < FONT_SIZES; size++) {
             if (FT_Set_Pixel_Sizes(face, 0, (FT_UInt)sizes[size]) != 0) make_atlas_quit("cannot set a size");
             FT_Pos figure = figure_advance(face);
-            for (int j = 0; j < FONT_GLYPHS; j++) glyphs[i][size][j] = render(face, code_point(j), figure);
+            for (int j = 0; j < FONT_GLYPHS; j++)
+                glyphs[i][size][j] = render(face, j < ASCII ? ASCII_FIRST + (unsigned)j : extra[j - ASCII], figure);
         }
         FT_Done_Face(face);
     }

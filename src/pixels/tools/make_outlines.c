@@ -53,18 +53,26 @@ static int cubic(const FT_Vector *first, const FT_Vector *second, const FT_Vecto
     return 0;
 }
 
-static void add_glyph(FT_Face face, unsigned code, unsigned index) {
-    static const FT_Outline_Funcs functions = {make_outlines_move, line, conic, cubic, 0, 0};
-    if (glyph_count == GLYPHS_MAX) make_outlines_quit("too many characters");
-    if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING) != 0)
-        make_outlines_quit("cannot load a glyph");
-    int first = step_count;
-    if (FT_Outline_Decompose(&face->glyph->outline, &functions, NULL) != 0)
-        make_outlines_quit("cannot read an outline");
-    glyphs[glyph_count++] = (Glyph){code, index, (int)face->glyph->metrics.horiAdvance, first, step_count - first};
+static FT_Face open_font(FT_Library library, const char *path) {
+    FT_Face face = NULL;
+    if (FT_New_Face(library, path, 0, &face) != 0) make_outlines_quit("cannot read a font");
+    return face;
 }
 
-static void make_outlines_print(FILE *output, const char *name) {
+static void write_face(FILE *output, FT_Face face, const char *name) {
+    static const FT_Outline_Funcs functions = {make_outlines_move, line, conic, cubic, 0, 0};
+    FT_UInt index;
+    glyph_count = step_count = 0;
+    for (FT_ULong code = FT_Get_First_Char(face, &index); index != 0; code = FT_Get_Next_Char(face, code, &index)) {
+        const int first = step_count;
+        if (glyph_count == GLYPHS_MAX) make_outlines_quit("too many characters");
+        if (FT_Load_Glyph(face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING) != 0)
+            make_outlines_quit("cannot load a glyph");
+        if (FT_Outline_Decompose(&face->glyph->outline, &functions, NULL) != 0)
+            make_outlines_quit("cannot read an outline");
+        glyphs[glyph_count++] =
+            (Glyph){(unsigned)code, index, (int)face->glyph->metrics.horiAdvance, first, step_count - first};
+    }
     fprintf(output, "static const Glyph %s_glyphs[] = {\n", name);
     for (int i = 0; i < glyph_count; i++)
         fprintf(output, "{%u,%u,%d,%d,%d},\n", glyphs[i].code, glyphs[i].index, glyphs[i].advance, glyphs[i].first,
@@ -74,35 +82,18 @@ static void make_outlines_print(FILE *output, const char *name) {
     fprintf(output, "};\nconst Typeface type_%s = {%s_glyphs, %s_steps};\n", name, name, name);
 }
 
-static FT_Face open_font(FT_Library library, const char *path) {
-    FT_Face face = NULL;
-    if (FT_New_Face(library, path, 0, &face) != 0) make_outlines_quit("cannot read a font");
-    return face;
-}
-
-static void write_face(FILE *output, FT_Face face, const char *name) {
-    FT_UInt index;
-    glyph_count = step_count = 0;
-    for (FT_ULong code = FT_Get_First_Char(face, &index); index != 0; code = FT_Get_Next_Char(face, code, &index))
-        add_glyph(face, (unsigned)code, index);
-    make_outlines_print(output, name);
-}
-
-static void check_small(FT_Face small, FT_Face whole) {
-    FT_UInt index;
-    for (FT_ULong code = FT_Get_First_Char(small, &index); index != 0; code = FT_Get_Next_Char(small, code, &index))
-        if (FT_Get_Char_Index(whole, code) != index) make_outlines_quit("a glyph of the small font has another index");
-}
-
 int main(int argc, char **argv) {
     FT_Library library;
+    FT_UInt index;
     if (argc != 5) make_outlines_quit("usage: make_outlines REGULAR.otf SEMIBOLD.otf SMALL.otf OUTPUT.c");
     FILE *output = fopen(argv[4], "w");
     if (output == NULL) make_outlines_quit("cannot write the output");
     if (FT_Init_FreeType(&library) != 0) make_outlines_quit("cannot start FreeType");
     FT_Face regular = open_font(library, argv[1]), semibold = open_font(library, argv[2]);
     FT_Face small = open_font(library, argv[3]);
-    check_small(small, regular);
+    for (FT_ULong code = FT_Get_First_Char(small, &index); index != 0; code = FT_Get_Next_Char(small, code, &index))
+        if (FT_Get_Char_Index(regular, code) != index)
+            make_outlines_quit("a glyph of the small font has another index");
     fprintf(output, "#include \"pixels/type.h\"\n");
     write_face(output, regular, "regular");
     const int count = glyph_count;
