@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which colour a method has: one table for films, pages, charts and figures.
 
-   The rule: a method has one colour in all pictures; its further settings in a picture, in alphabetical order, have
-   shades of it (without its network always one); any other name has one of seven spare colours, which the name chooses;
-   --colour changes either. So the colours of a picture follow from the names in it, and not from their order. */
+   The rule: a method has one colour in all pictures, that of its line in the table, else the next free one; its further
+   settings in a picture, in alphabetical order, have shades of it (without its network always one); any other name has
+   one of seven spare colours, which the name chooses; --colour changes either. So the colours of a picture follow from
+   the names in it, and not from their order. */
 #pragma once
 #include "base/base.h"
 #include "base/json_write.h"
