@@ -53,8 +53,7 @@ static bool draw_and_report(const PaperOptions *study, Error *error) {
 bool command_paper(int argc, char **argv, Error *error) {
     Options options = {.study = {.scenes = installed_path("scenes"), .seed = 1, .draw = draw_and_report}};
     Pieces pieces = {0};
-    if (!options_parse(&spec, argc, argv, &options, error) ||
-        !output_check_folder(options.study.folder, error))
+    if (!options_parse(&spec, argc, argv, &options, error) || !output_check_folder(options.study.folder, error))
         return false;
     const bool ok = paper_run(&options.study, &pieces, progress_bar_begin("paper"), error);
     progress_bar_end();

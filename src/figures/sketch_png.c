@@ -239,18 +239,6 @@ static void draw_image(Painter *painter, const SketchMark *mark) {
         }
 }
 
-static void draw_mark(Painter *painter, const SketchMark *mark) {
-    const double em = mark->style.points * MM_PER_POINT * painter->scale;
-    switch (mark->kind) {
-    case MARK_IMAGE: draw_image(painter, mark); break;
-    case MARK_PATH: draw_path(painter, mark); break;
-    case MARK_TEXT:
-        if (mark->style.halo) draw_glyphs(painter, mark, HALO_SHARE * em, 0xFFFFFF);
-        draw_glyphs(painter, mark, 0, mark->style.colour);
-        break;
-    }
-}
-
 char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error) {
     if (!sketch_check_pixels(sketch->width, sketch->height, output->dpi, error)) return NULL;
     const double scale = output->dpi / 25.4;
@@ -263,8 +251,17 @@ char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *si
         if (!output->transparent)
             memset(painter.page->pixels, 255, (size_t)painter.page->width * (size_t)painter.page->height * 4);
         for (size_t i = 0; i < sketch->mark_count; i++) {
-            draw_mark(&painter, &sketch->marks[order[i]]);
-            images |= sketch->marks[i].kind == MARK_IMAGE;
+            const SketchMark *mark = &sketch->marks[order[i]];
+            const double em = mark->style.points * MM_PER_POINT * scale;
+            switch (mark->kind) {
+            case MARK_IMAGE: draw_image(&painter, mark); break;
+            case MARK_PATH: draw_path(&painter, mark); break;
+            case MARK_TEXT:
+                if (mark->style.halo) draw_glyphs(&painter, mark, HALO_SHARE * em, 0xFFFFFF);
+                draw_glyphs(&painter, mark, 0, mark->style.colour);
+                break;
+            }
+            images |= mark->kind == MARK_IMAGE;
         }
         if (painter.raster.failed)
             error_memory(error, "figure");

@@ -121,37 +121,24 @@ static bool write_tables(const PaperPlan *plan, Error *error) {
            csv_table_write(path, &paper_fact_layout, facts, sizeof facts / sizeof *facts, error);
 }
 
-/* A hash of all that decides the result: the program, the options, the scenes. */
-static bool find_key(const PaperPlan *plan, StudyKey *key, Error *error) {
-    if (!study_key_begin(key, error)) return false;
-    study_key_add(key, &plan->options->quick, sizeof plan->options->quick);
-    study_key_add(key, &plan->options->seed, sizeof plan->options->seed);
-    for (int i = 0; i < PAPER_SCENES; i++)
-        if (!study_key_add_file(key, plan->datasets.scenes[i], error)) return false;
-    return true;
-}
-
-/* What follows from the parts, once all are there. */
-static bool paper_finish(const PaperPlan *plan, Error *error) {
-    const PaperOptions *options = plan->options;
-    return write_tables(plan, error) && options->draw(options, error) && pieces_end(plan->pieces, error);
-}
-
-static bool do_parts(PaperPlan *plan, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
-    const PaperOptions *options = plan->options;
-    plan->pieces = pieces;
-    return pieces_open(pieces, options->folder, key, &options->shard, error) &&
-           file_make_directory(plan->networks_folder, error) &&
-           pieces_do(pieces, &plan->plan, progress, error) &&
-           (options->shard.count > 0 || paper_finish(plan, error));
-}
-
 bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
     PaperPlan *plan = malloc(sizeof *plan);
     StudyKey key = {0};
     if (plan == NULL) return error_memory(error, "paper");
-    const bool ok = paper_plan_make(plan, options, error) && find_key(plan, &key, error) &&
-                    do_parts(plan, pieces, &key, progress, error);
+    bool ok = paper_plan_make(plan, options, error);
+    plan->pieces = pieces;
+    /* A hash of all that decides the result: the program, the options, the scenes. */
+    ok = ok && study_key_begin(&key, error);
+    if (ok) {
+        study_key_add(&key, &options->quick, sizeof options->quick);
+        study_key_add(&key, &options->seed, sizeof options->seed);
+    }
+    for (int i = 0; ok && i < PAPER_SCENES; i++) ok = study_key_add_file(&key, plan->datasets.scenes[i], error);
+    ok = ok && pieces_open(pieces, options->folder, &key, &options->shard, error) &&
+         file_make_directory(plan->networks_folder, error) && pieces_do(pieces, &plan->plan, progress, error);
+    /* What follows from the parts, once all are there. */
+    if (options->shard.count == 0)
+        ok = ok && write_tables(plan, error) && options->draw(options, error) && pieces_end(pieces, error);
     pieces->plan = NULL;
     paper_plan_free(plan);
     free(plan);

@@ -3,7 +3,7 @@
    the paper, one factor at a time; their rates of right predictions; their runs in place of the solver; laws of physics
    in the loss; transfer learning; the systems that the paper cites.
 
-     const PaperOptions options = {.scenes = "scenes", .folder = "out/paper", .seed = 1, .run = &run, .draw = draw};
+     const PaperOptions options = {.scenes = "scenes", .folder = "out/paper", .seed = 1, .draw = draw};
      Pieces pieces = {0};
      if (!paper_run(&options, &pieces, &progress, &error)) ... */
 #pragma once
@@ -19,15 +19,14 @@ typedef struct PaperOptions {
     const char *folder; /* created if missing */
     bool quick;         /* fewer networks, launches, iterations */
     uint64_t seed;
-    Shard shard;
+    Shard shard; /* zero: the whole study */
     /* Draws what the tables show, and writes the report. */
     bool (*draw)(const struct PaperOptions *study, Error *error);
 } PaperOptions;
 
 /* Writes folder/table1.csv, networks.csv, rates.csv, closed_loop.csv, laws.csv, transfer.csv, system_scores.csv,
-   study.csv and folder/networks/NAME.npz, then draws; a shard does its
-   parts only, and of the files writes the networks that it trains. Finished parts are kept: the same study, by the same
-   program, continues where it was interrupted. ERROR_INPUT for a scene that cannot be read, and for a merge of times of
-   different processors; ERROR_INTERRUPTED if progress_report() stops it. *pieces tells what was done; it has no
-   plan. */
+   study.csv and folder/networks/NAME.npz, then draws; a shard does its parts only, and of the files writes the networks
+   that it trains. Finished parts are kept: the same study, by the same program, continues where it was interrupted.
+   ERROR_INPUT for a scene that cannot be read; ERROR_INTERRUPTED if progress_report() stops it. *pieces tells what was
+   done; it has no plan. */
 bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *progress, Error *error);
