@@ -41,8 +41,9 @@ const FigureKind *figure_kind(const char *name, Error *error) {
     return NULL;
 }
 
-/* Characters with a meaning, and those that the font encoding OT1 has only in some fonts, are commands. */
-void latex_text(FILE *out, const char *text) {
+/* A text for LaTeX in which every character stands for itself, in any font encoding: those with a meaning, and those
+   that OT1 has only in some fonts, are commands; bytes beyond ASCII stay as they are (UTF-8). */
+static void latex_text(FILE *out, const char *text) {
     static const char *const commands[] = {
         ['\\'] = "\\textbackslash{}", ['~'] = "\\textasciitilde{}", ['^'] = "\\textasciicircum{}",
         ['<'] = "\\textless{}",       ['>'] = "\\textgreater{}",    ['|'] = "\\textbar{}"};
@@ -61,7 +62,7 @@ void latex_text(FILE *out, const char *text) {
     }
 }
 
-void latex_code(FILE *out, const char *text) {
+static void latex_code(FILE *out, const char *text) {
     fputs("\\texttt{", out);
     latex_text(out, text);
     fputs("}", out);

@@ -110,15 +110,6 @@ void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text
    only takes its place. */
 void run_cells_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
 
-/* Text for LaTeX. */
-
-/* A text in which every character stands for itself, in any font encoding; bytes beyond ASCII stay as they are
-   (UTF-8). */
-void latex_text(FILE *out, const char *text);
-
-/* The same as \texttt{...}. */
-void latex_code(FILE *out, const char *text);
-
 /* The caption of a figure for LaTeX: \caption{...} with scene, methods, times and version. */
 
 /* What kinds write in their captions. A run's method, what that is, and the sweeps that the scene sets:

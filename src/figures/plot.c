@@ -127,7 +127,8 @@ PlotLook plot_look_dashed(const char *name) {
 
 PlotLook plot_look_guide(void) { return (PlotLook){.style = {.colour = 0xC8C8C8, .ink = 0xC8C8C8}, .line = 0.6}; }
 
-void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *look) {
+/* A line through points of the page, and marks on them; a point that is NaN interrupts the line. */
+static void draw_line(Sketch *sketch, const Point *points, int count, const PlotLook *look) {
     const Pen pen = pen_line(look->style.colour, look->line, look->style.dashes);
     for (int i = 0, end; i < count; i = end + 1) {
         for (end = i; end < count && !isnan(points[end].x + points[end].y);) end++;
@@ -154,11 +155,13 @@ static void draw_sample(Sketch *sketch, const PlotLook *look, double left, doubl
         sketch_rectangle(sketch, (Point){left, y - half}, (Point){left + LEGEND_SAMPLE, y + half},
                          &(Pen){look->style.colour, 1, NO_COLOUR, 0, NULL});
     else
-        plot_line(sketch, ends, 2, &line);
+        draw_line(sketch, ends, 2, &line);
     if (look->marks) plot_marks(sketch, &middle, 1, &look->style);
 }
 
-void plot_legend(Sketch *sketch, const PlotLook *looks, int count, int columns, double left, double top) {
+/* A legend in columns over [left, page width], the middle of its first row at `top`. Looks without a name are left out.
+   */
+static void draw_legend(Sketch *sketch, const PlotLook *looks, int count, int columns, double left, double top) {
     const double width = (sketch->width - left) / columns;
     for (int i = 0, shown = 0; i < count; i++) {
         if (looks[i].name == NULL) continue;
@@ -272,7 +275,7 @@ static void draw_series(Plotter *plotter, int index, int series, Pass pass) {
         if (i > 0 && points[i].group != points[i - 1].group) plotter->places[places++] = (Point){NAN, NAN};
         plotter->places[places++] = plot_place(panel, points[i].x, points[i].y);
     }
-    plot_line(plotter->sketch, plotter->places, places, &look);
+    draw_line(plotter->sketch, plotter->places, places, &look);
 }
 
 bool plot_draw(PlotPage *page, const PlotSpec *spec, const char *what, Error *error) {
@@ -292,7 +295,7 @@ bool plot_draw(PlotPage *page, const PlotSpec *spec, const char *what, Error *er
     int count = 0;
     for (int series = 0; series < spec->series; series++)
         if (plotter.used[series]) shown[count++] = spec->looks[series];
-    plot_legend(&page->sketch, shown, count, spec->legend_columns, spec->legend_left, spec->legend_top);
+    draw_legend(&page->sketch, shown, count, spec->legend_columns, spec->legend_left, spec->legend_top);
     snprintf(page->caption, sizeof page->caption, "%s%s\n", spec->caption,
              plotter.beyond ? " Values beyond an axis are drawn at its edge." : "");
     free(plotter.points);

@@ -4,9 +4,9 @@
      PlotPanel panel = {.box = {13, 17, 70, 40}, .x = plot_linear_axis(0, 2, "s"), .y = plot_log_axis(1e-6, 1, "m")};
      plot_panel_place(&panel);
      plot_panel_draw(&sketch, &panel);
-     plot_line(&sketch, points, count, &look); // points by plot_place(&panel, x, y)
+     plot_mark(&sketch, plot_place(&panel, 0.5, 1e-3), &style, MARK_RADIUS, 1.6);
 
-   plot_draw() does all this for a figure whose panels, looks and points are data. */
+   plot_draw() draws a whole figure whose panels, looks and points are data. */
 #pragma once
 #include "base/base.h"
 #include "figures/sketch.h"
@@ -163,19 +163,13 @@ PlotLook plot_look_marks(int i, const char *name);
 PlotLook plot_look_dashed(const char *name);
 PlotLook plot_look_guide(void);
 
-/* A line through points of the page, and marks on them; a point that is NaN interrupts the line. */
-void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *look);
-
 /* Lines (text_wrap), the first at `at`. */
 void plot_text(Sketch *sketch, Point at, TextAlign align, double points, const char *text);
 
-/* A legend in columns over [left, page width], the middle of its first row at `top`. Looks without a name are left
-   out. */
 #define LEGEND_ROW 3.7
 #define LEGEND_SAMPLE 8.0
 #define LEGEND_GAP 1.2 /* between sample and name */
 #define LEGEND_POINTS 7.5
-void plot_legend(Sketch *sketch, const PlotLook *looks, int count, int columns, double left, double top);
 
 /* A figure of plots with its caption; and the one function that draws plots which differ in their data only. */
 
@@ -211,7 +205,7 @@ typedef struct PlotSpec {
     bool (*point)(const void *of, int panel, int series, int row, PlotPoint *out); /* false: none */
     const void *of;                                                                /* handed to point */
     int legend_columns;
-    double legend_left, legend_top; /* as of plot_legend(); the legend has the series with points */
+    double legend_left, legend_top; /* mm: the middle of its first row; it has the series with points */
     const char *caption;
 } PlotSpec;
 

@@ -239,11 +239,6 @@ typedef struct PairRates {
 bool pair_rates_measure(const char *path, const Scene *scene, const SnapshotList *lists, int count,
                         const Sampling *sampling, PairRates *rates, Error *error);
 
-/* The share of test rows for which all outputs are within 5% of their range over the training rows; NaN without test
-   rows. The paper does not define the accuracy of its gate (section 3: 90%); this is a guess. False with error set when
-   memory is short. */
-bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error);
-
 /* A training that fails if it is stopped, as results of half a training must not enter the study: as training_run, but
    NULL with error set if progress_report() stops it. */
 Network *whole_training(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error);

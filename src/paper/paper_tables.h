@@ -28,7 +28,7 @@ typedef struct TrainedRow {
     const char *layers, *hidden, *output, *scale, *optimizer, *loss;
     double iterations, parameters, test, train, constant;
     double ratio;    /* test over constant */
-    double accuracy; /* paper_accuracy() */
+    double accuracy; /* share of test rows whose outputs are all within 5% of their range */
 } TrainedRow;
 
 /* table1.csv: mean squared errors of normalised outputs during a training. */

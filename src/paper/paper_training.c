@@ -125,7 +125,10 @@ PaperNetwork paper_network(int i) {
     return network;
 }
 
-bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error) {
+/* The share of test rows for which all outputs are within 5% of their range over the training rows; NaN without test
+   rows. The paper does not define the accuracy of its gate (section 3: 90%); this is a guess. False with error set when
+   memory is short. */
+static bool find_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error) {
     const double near_share = 0.05; /* of the outputs' range */
     const int outputs = network->widths[network->layers], inputs = network->widths[0];
     double near[PAIR_CHANGES];
@@ -230,9 +233,9 @@ static bool score_and_store(const PaperPlan *plan, const PaperPart *part, const 
                             int iterations, FILE *lines, Error *error) {
     const PaperNetwork *of = &plan->networks[part->index];
     TrainingScore score = {0}; /* of the weights that are kept, which are not the last ones */
-    double accuracy;
+    double accuracy = NAN;
     if (!training_score(dataset, network, of->loss, &score, error) ||
-        !paper_accuracy(network, dataset, &accuracy, error))
+        !find_accuracy(network, dataset, &accuracy, error))
         return false;
     const TrainedRow row = {.network = of->name,
                             .factor = of->factor,

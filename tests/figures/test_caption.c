@@ -26,26 +26,6 @@ FIXTURE(destroy) {
     for (int i = 0; i < 3; i++) trajectory_destroy(runs[i]);
 }
 
-static void print_text(FILE *out, const void *text) { latex_text(out, text); }
-
-TEST(every_character_stands_for_itself) {
-    static const char *const cases[][2] = {{"stack", "stack"},
-                                           {"two_boxes", "two\\_boxes"},
-                                           {"100% & $5 #1 {x}", "100\\% \\& \\$5 \\#1 \\{x\\}"},
-                                           {"a\\b~c^d", "a\\textbackslash{}b\\textasciitilde{}c\\textasciicircum{}d"},
-                                           {"a<b>c|d", "a\\textless{}b\\textgreater{}c\\textbar{}d"},
-                                           {"a--b---c", "a-{}-b-{}-{}-c"},
-                                           {"?`!```'',,", "?{}`!{}`{}`{}`'{}',{},"},
-                                           {"Übung Voncilă", "Übung Voncilă"},
-                                           {"\\input{/etc/passwd}", "\\textbackslash{}input\\{/etc/passwd\\}"},
-                                           {"", ""}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        size_t size;
-        FREED char *text = file_print(print_text, cases[i][0], &size);
-        assert_string_equal(text, cases[i][1]);
-    }
-}
-
 /* Draws a figure and returns its caption. */
 static char *caption_of(const char *kind_name, FigureSpec spec) {
     Error error = {0};
@@ -67,6 +47,27 @@ static void assert_caption(const char *kind, FigureSpec spec, const char *wanted
     if (strlen(text) > strlen(whole)) text[strlen(whole)] = '\0';
     assert_string_equal(text, whole);
     free(text);
+}
+
+/* As the name of a scene. */
+TEST(every_character_stands_for_itself) {
+    static const char *const cases[][2] = {{"stack", "stack"},
+                                           {"two_boxes", "two\\_boxes"},
+                                           {"100% & $5 #1 {x}", "100\\% \\& \\$5 \\#1 \\{x\\}"},
+                                           {"a\\b~c^d", "a\\textbackslash{}b\\textasciitilde{}c\\textasciicircum{}d"},
+                                           {"a<b>c|d", "a\\textless{}b\\textgreater{}c\\textbar{}d"},
+                                           {"a--b---c", "a-{}-b-{}-{}-c"},
+                                           {"?`!```'',,", "?{}`!{}`{}`{}`'{}',{},"},
+                                           {"Übung Voncilă", "Übung Voncilă"},
+                                           {"\\input{/etc/passwd}", "\\textbackslash{}input\\{/etc/passwd\\}"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char before[sizeof runs[0]->scene];
+        strcpy(before, runs[0]->scene);
+        strcpy(runs[0]->scene, cases[i][0]);
+        FREED char *text = caption_of("strobe", spec_of(runs, 1));
+        strcpy(runs[0]->scene, before);
+        assert_non_null(strstr(text, printed("scene \\texttt{%s} at", cases[i][1])));
+    }
 }
 
 #define ENGINE "\\texttt{engine} (physics engine, sequential impulses)"

@@ -2,7 +2,6 @@
 /* A network has its name only when it is whole, and its figures are numbers. */
 #include "owned.h"
 
-#include "allocations.h"
 #include "paper/paper_internal.h"
 
 static const PaperDataSize size = {.swept = "-2:2:1"};
@@ -78,19 +77,6 @@ TEST(lines_know_their_network) {
     assert_int_equal(remove(network_path()), 0);
     assert_ok(paper_training_whole(&plan, &part, lines, &there, &error), error);
     assert_false(there);
-}
-
-TEST(without_memory_there_is_no_accuracy) {
-    const Dataset *dataset = paper_dataset(&plan.datasets, &network, &error);
-    OWN(Network) *trained = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
-    double accuracy = -1;
-    assert_ok(dataset != NULL && trained != NULL, error);
-    failing_allocation = 1;
-    assert_false(paper_accuracy(trained, dataset, &accuracy, &error));
-    assert_error(error, ERROR_SYSTEM, "out of memory");
-    error = (Error){0};
-    assert_ok(paper_accuracy(trained, dataset, &accuracy, &error), error);
-    assert_true(accuracy >= 0 && accuracy <= 1);
 }
 
 RUN_TESTS(begin, end)
