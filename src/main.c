@@ -17,6 +17,7 @@
 static void print_help(FILE *file) {
     fprintf(file, "Usage: twinbox COMMAND [OPTION...]\n%s Help: twinbox help COMMAND\n", program_summary);
     for (const Command *command = commands; command->name != NULL; command++) {
+        if (command->summary == NULL) continue; /* left out of this build */
         if (command->heading != NULL) fprintf(file, "%s:\n", command->heading);
         fprintf(file, "  %-10s %s\n", command->name, command->summary);
     }
