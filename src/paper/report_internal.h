@@ -13,7 +13,8 @@
 
 #include <stddef.h>
 
-/* What the illustrations have in common; each is in illustration_NAME.c. */
+/* What the illustrations have in common; each is in illustration_NAME.c, that of the narrow phase with the drawing of
+   all. */
 
 enum { CAPTION_SIZE = 800 };
 
