@@ -48,6 +48,7 @@ static ChartScene *scene_of(const ChartPlan *plan, int64_t piece) {
     return &plan->scenes[i];
 }
 
+/* The last piece of a scene. */
 static bool is_times(const ChartScene *scene, int64_t piece) {
     return piece == scene->first + scene->study.launch_count;
 }
@@ -71,20 +72,6 @@ static void empty_pools(const ChartPlan *plan) {
         if (plan->scenes[i].working == 0) stepper_pool_empty(&plan->scenes[i].study.steppers);
 }
 
-/* Pieces come scene by scene: the steppers of a scene go when work on another begins. */
-static void begin_work(const ChartPlan *plan, ChartScene *scene) {
-#pragma omp critical(chart_plan)
-    {
-        scene->working++;
-        empty_pools(plan);
-    }
-}
-
-static void end_work(ChartScene *scene) {
-#pragma omp critical(chart_plan)
-    scene->working--;
-}
-
 /* Times are measured with steppers of their own. */
 static bool chart_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
     ChartScene *scene = scene_of(context, piece);
@@ -92,27 +79,16 @@ static bool chart_work(void *context, int64_t piece, FILE *results, const Progre
         empty_pools(context);
         return scene_times_write(&scene->study, results, progress, error);
     }
-    begin_work(context, scene);
+    /* Pieces come scene by scene: the steppers of a scene go when work on another begins. */
+#pragma omp critical(chart_plan)
+    {
+        scene->working++;
+        empty_pools(context);
+    }
     const bool ok = launch_piece_write(&scene->study, (int)(piece - scene->first), results, progress, error);
-    end_work(scene);
+#pragma omp critical(chart_plan)
+    scene->working--;
     return ok;
-}
-
-static void chart_weigh(ChartScene *scene) {
-    const SceneStudy *study = &scene->study;
-    const double steps = (double)study->scene->frames * (study->scene->body_count + 1);
-    const int timed = scene_study_timed(study);
-    scene->launch_weight = steps * (converged_seconds + scored_seconds * study->contender_count);
-    scene->times_weight =
-        steps * timed * (converged_seconds + timed_seconds * study->contender_count * (study->size.repetitions + 1));
-}
-
-static bool has_own_name(const ChartPlan *plan, const char *path, Error *error) {
-    const char *name = plan->scenes[plan->count - 1].study.scene->name;
-    for (int i = 0; i + 1 < plan->count; i++)
-        if (strcmp(plan->scenes[i].study.scene->name, name) == 0)
-            return error_input(error, path, "another scene has the same name (%s)", name);
-    return true;
 }
 
 /* Reads the scenes. ERROR_INPUT also if two have the same name. The contenders must outlive the plan. */
@@ -125,10 +101,17 @@ static bool chart_plan_make(ChartPlan *plan, const char *const *paths, int count
         ChartScene *scene = &plan->scenes[i];
         if (!scene_study_begin(&scene->study, paths[i], contenders, launches, size, error)) return false;
         plan->count++;
-        if (!has_own_name(plan, paths[i], error)) return false;
-        chart_weigh(scene);
+        const SceneStudy *study = &scene->study;
+        for (int k = 0; k < i; k++)
+            if (strcmp(plan->scenes[k].study.scene->name, study->scene->name) == 0)
+                return error_input(error, paths[i], "another scene has the same name (%s)", study->scene->name);
+        const double steps = (double)study->scene->frames * (study->scene->body_count + 1);
+        scene->launch_weight = steps * (converged_seconds + scored_seconds * study->contender_count);
+        scene->times_weight =
+            steps * scene_study_timed(study) *
+            (converged_seconds + timed_seconds * study->contender_count * (study->size.repetitions + 1));
         scene->first = plan->plan.count;
-        plan->plan.count += scene->study.launch_count + 1;
+        plan->plan.count += study->launch_count + 1;
     }
     return true;
 }
@@ -164,18 +147,6 @@ static bool open_launch(const Assembly *assembly, int launch, char path[PIECES_P
            stored_scores_open(stored, path, *text, size, assembly->scene->study.contender_count, error);
 }
 
-/* Adds a launch to the scores of some methods. */
-static bool add_launch(const Assembly *assembly, int launch, int first, int end, Error *error) {
-    char path[PIECES_PATH_SIZE], *text = NULL;
-    StoredScores stored;
-    bool ok = open_launch(assembly, launch, path, &stored, &text, error);
-    if (ok && first == 0) assembly->solves->frozen_unconverged += stored.unconverged;
-    if (ok && first == 0) assembly->solves->runs_unconverged += stored.run_unconverged;
-    for (int i = first; ok && i < end; i++) ok = method_scores_add(&assembly->scores[i], &stored, i, error);
-    free(text);
-    return ok;
-}
-
 static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
     const SceneStudy *study = &assembly->scene->study;
     MethodScores *scores = &assembly->scores[contender];
@@ -199,38 +170,30 @@ static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
     method_scores_free(scores);
 }
 
-/* The number of methods whose scores on all launches fit into GROUP_BYTES, by the size of a launch. */
-static bool group_size(const Assembly *assembly, int *count, Error *error) {
-    const SceneStudy *study = &assembly->scene->study;
-    char path[PIECES_PATH_SIZE], *text = NULL;
-    StoredScores stored;
-    const bool ok = open_launch(assembly, 0, path, &stored, &text, error);
-    if (ok) {
-        const double all = (double)stored.size * study->launch_count;
-        *count = all <= GROUP_BYTES ? study->contender_count : (int)(study->contender_count * GROUP_BYTES / all);
-        if (*count < 1) *count = 1;
-    }
-    free(text);
-    return ok;
-}
-
 static bool add_scores(const Assembly *assembly, ChartRow *rows, Error *error) {
     const SceneStudy *study = &assembly->scene->study;
-    int group, end;
-    if (!group_size(assembly, &group, error)) return false;
-    for (int first = 0; first < study->contender_count; first = end) {
-        end = study->contender_count - first < group ? study->contender_count : first + group;
-        for (int launch = 0; launch < study->launch_count; launch++)
-            if (!add_launch(assembly, launch, first, end, error)) return false;
-        for (int i = first; i < end; i++) fill_rows(assembly, i, rows + (size_t)i * ROWS_EACH);
+    int group = study->contender_count;
+    for (int first = 0; first < study->contender_count; first += group) {
+        for (int launch = 0; launch < study->launch_count; launch++) {
+            char path[PIECES_PATH_SIZE], *text = NULL;
+            StoredScores stored;
+            bool ok = open_launch(assembly, launch, path, &stored, &text, error);
+            if (ok && first == 0 &&
+                launch == 0) { /* as many methods as fit into GROUP_BYTES, by the size of a launch */
+                const double all = (double)stored.size * study->launch_count;
+                if (all > GROUP_BYTES) group = (int)fmax(1, study->contender_count * GROUP_BYTES / all);
+            }
+            if (ok && first == 0) assembly->solves->frozen_unconverged += stored.unconverged;
+            if (ok && first == 0) assembly->solves->runs_unconverged += stored.run_unconverged;
+            for (int i = first; ok && i < first + group && i < study->contender_count; i++)
+                ok = method_scores_add(&assembly->scores[i], &stored, i, error);
+            free(text);
+            if (!ok) return false;
+        }
+        for (int i = first; i < first + group && i < study->contender_count; i++)
+            fill_rows(assembly, i, rows + (size_t)i * ROWS_EACH);
     }
     return true;
-}
-
-static void add_costs(ChartRow *rows, const MethodTimes *times, const char *cpu) {
-    for (int p = 0; p < PROTOCOLS; p++)
-        for (int phase = 0; phase < PHASES; phase++)
-            scene_row_cost(&rows[p * PHASES + phase], &times->costs[p][phase], cpu);
 }
 
 static bool add_times(const Assembly *assembly, ChartRow *rows, char cpu[CPU_NAME_SIZE], Error *error) {
@@ -241,8 +204,11 @@ static bool add_times(const Assembly *assembly, ChartRow *rows, char cpu[CPU_NAM
     if (!pieces_path(assembly->pieces, piece, path, error)) return false;
     char *text = pieces_read(assembly->pieces, piece, &size, cpu, error);
     MethodTimes *times = text != NULL ? scene_times_read(study, path, text, size, error) : NULL;
+    for (int i = 0; times != NULL && i < study->contender_count; i++)
+        for (int p = 0; p < PROTOCOLS; p++)
+            for (int phase = 0; phase < PHASES; phase++)
+                scene_row_cost(&rows[i * ROWS_EACH + p * PHASES + phase], &times[i].costs[p][phase], cpu);
     const bool ok = times != NULL;
-    for (int i = 0; ok && i < study->contender_count; i++) add_costs(rows + (size_t)i * ROWS_EACH, &times[i], cpu);
     free(times);
     free(text);
     return ok;
@@ -304,20 +270,13 @@ static bool find_key(const SpeedAccuracyOptions *options, const ContenderList *c
     return true;
 }
 
-static SpeedAccuracyScene chart_summarise(const Run *run, const SceneStudy *study) {
+static SpeedAccuracyScene summarise(const Run *run, const SceneStudy *study) {
     SpeedAccuracyScene summary = {.contenders = study->contender_count,
                                   .launches = study->launch_count,
                                   .striking = study->striking_count,
                                   .without_network = contenders_without_network(&run->contenders, study->scene)};
     snprintf(summary.name, sizeof summary.name, "%s", study->scene->name);
     return summary;
-}
-
-static void chart_tell(const Run *run) {
-    for (int i = 0; run->options->begin != NULL && i < run->plan.count; i++) {
-        const SpeedAccuracyScene summary = chart_summarise(run, &run->plan.scenes[i].study);
-        run->options->begin(&summary);
-    }
 }
 
 static bool assemble_chart(Run *run, const Pieces *pieces, Error *error) {
@@ -329,7 +288,7 @@ static bool assemble_chart(Run *run, const Pieces *pieces, Error *error) {
     for (int i = 0; i < run->plan.count; i++) {
         const ChartScene *scene = &run->plan.scenes[i];
         SpeedAccuracyScene *summary = &run->scenes[i];
-        *summary = chart_summarise(run, &scene->study);
+        *summary = summarise(run, &scene->study);
         if (!chart_assemble(pieces, scene, run->rows + run->row_count, run->cpus[i], &summary->solves, error))
             return false;
         run->row_count += summary->contenders * ROWS_EACH;
@@ -418,7 +377,10 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
         return false;
     bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders, &options->launches,
                               speed_accuracy_size(options->quick), error);
-    if (ok) chart_tell(&run);
+    for (int i = 0; ok && options->begin != NULL && i < run.plan.count; i++) {
+        const SpeedAccuracyScene summary = summarise(&run, &run.plan.scenes[i].study);
+        options->begin(&summary);
+    }
     ok = ok && find_key(options, &run.contenders, &key, error) &&
          pieces_open(pieces, options->folder, &key, &options->shard, error) &&
          pieces_do(pieces, &run.plan.plan, progress, error) &&

@@ -29,7 +29,7 @@ typedef struct StabilityGroup {
     GridContext mapped;
 } StabilityGroup;
 
-/* stability_plan_free(). groups and pieces have the same number. */
+/* groups and pieces have the same number. */
 typedef struct StabilityPlan {
     StabilityGroup *groups;
     PieceGroup *pieces;
@@ -43,51 +43,42 @@ static const double piece_seconds = 4;
 /* Cells of a scene file take an unknown time. */
 enum { MOST_PIECES = 4096 };
 
-/* Index of the group of a piece. */
-static int find_group(const StabilityPlan *plan, int64_t piece) {
+/* A piece's group, and its items first .. *end - 1. */
+static int find_items(const StabilityPlan *plan, int64_t piece, int *first, int *end) {
     int group = 0;
     while (piece >= plan->pieces[group].first + plan->pieces[group].count) group++;
+    const int64_t i = piece - plan->pieces[group].first, count = plan->pieces[group].count;
+    *first = (int)(plan->groups[group].items * i / count);
+    *end = (int)(plan->groups[group].items * (i + 1) / count);
     return group;
 }
 
-/* The first item of piece i of a group; of the number of pieces, the end. */
-static int first_item(const StabilityPlan *plan, int group, int64_t i) {
-    return (int)(plan->groups[group].items * i / plan->pieces[group].count);
-}
-
-static void stability_describe(void *context, int64_t piece, PieceInfo *info) {
+static void describe(void *context, int64_t piece, PieceInfo *info) {
     const StabilityPlan *plan = context;
-    const int group = find_group(plan, piece);
-    const int64_t i = piece - plan->pieces[group].first;
-    snprintf(info->name, sizeof info->name, "%s %d-%d", plan->groups[group].name, first_item(plan, group, i) + 1,
-             first_item(plan, group, i + 1));
-    info->weight = plan->groups[group].weight;
+    int first, end;
+    const StabilityGroup *group = &plan->groups[find_items(plan, piece, &first, &end)];
+    snprintf(info->name, sizeof info->name, "%s %d-%d", group->name, first + 1, end);
+    info->weight = group->weight;
 }
 
-/* The context of a group is made by the first of its pieces. */
-static bool stability_plan_begin(StabilityGroup *group, Error *error) {
+static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+    const StabilityPlan *plan = context;
+    int first, end;
+    StabilityGroup *group = &plan->groups[find_items(plan, piece, &first, &end)];
+    const bool scans = group->scan.study != NULL;
     bool ok = true;
+    /* The context of a group is made by the first of its pieces. */
 #pragma omp critical(stability_group)
     if (!group->begun) {
-        ok = group->scan.study != NULL ? stability_scan_begin(&group->scanned, &group->scan, error)
-                                       : stability_grid_begin(&group->mapped, &group->grid, error);
+        ok = scans ? stability_scan_begin(&group->scanned, &group->scan, error)
+                   : stability_grid_begin(&group->mapped, &group->grid, error);
         group->begun = ok;
         if (!ok) stability_scan_end(&group->scanned);
         if (!ok) stability_grid_end(&group->mapped);
     }
-    return ok;
-}
-
-static bool stability_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
-    const StabilityPlan *plan = context;
-    const int number = find_group(plan, piece);
-    StabilityGroup *group = &plan->groups[number];
-    const int64_t i = piece - plan->pieces[number].first;
-    const int first = first_item(plan, number, i), stability_end = first_item(plan, number, i + 1);
-    if (!stability_plan_begin(group, error)) return false;
-    return group->scan.study != NULL
-               ? stability_scan_write(&group->scanned, first, stability_end, results, progress, error)
-               : stability_grid_write(&group->mapped, first, stability_end, results, progress, error);
+    if (!ok) return false;
+    return scans ? stability_scan_write(&group->scanned, first, end, results, progress, error)
+                 : stability_grid_write(&group->mapped, first, end, results, progress, error);
 }
 
 /* weight: seconds on two cores, of the whole group. */
@@ -101,11 +92,11 @@ static void add_group(StabilityPlan *plan, StabilityGroup group, double weight, 
 }
 
 /* The studies and maps that are to be done, in their order. All pointers must outlive the plan. */
-static bool stability_plan_make(StabilityPlan *plan, const StabilityStudy *const *studies, int study_count,
-                                const StabilityMap *const *maps, int map_count, const char *scenes,
-                                const ContenderList *methods, bool quick, Error *error) {
+static bool make_plan(StabilityPlan *plan, const StabilityStudy *const *studies, int study_count,
+                      const StabilityMap *const *maps, int map_count, const char *scenes, const ContenderList *methods,
+                      bool quick, Error *error) {
     const size_t count = (size_t)study_count + (size_t)map_count;
-    *plan = (StabilityPlan){.plan = {.describe = stability_describe, .work = stability_work, .context = plan}};
+    *plan = (StabilityPlan){.plan = {.describe = describe, .work = work, .context = plan}};
     plan->groups = calloc(count + 1, sizeof *plan->groups);
     plan->pieces = calloc(count + 1, sizeof *plan->pieces);
     if (plan->groups == NULL || plan->pieces == NULL) return error_memory(error, "stability");
@@ -124,16 +115,6 @@ static bool stability_plan_make(StabilityPlan *plan, const StabilityStudy *const
                   maps[i]->weight * cells / all, maps[i]->file == NULL, methods->count);
     }
     return true;
-}
-
-static void stability_plan_free(StabilityPlan *plan) {
-    for (int i = 0; i < plan->count; i++) {
-        stability_scan_end(&plan->groups[i].scanned);
-        stability_grid_end(&plan->groups[i].mapped);
-    }
-    free(plan->groups);
-    free(plan->pieces);
-    *plan = (StabilityPlan){0};
 }
 
 /* What rigid boxes do; the scenes state the laws. */
@@ -250,7 +231,7 @@ static bool is_named(const StabilityOptions *options, const char *name, bool qui
 }
 
 /* What is named, or all that belongs to a run of this size. */
-static bool stability_choose(Run *run, Error *error) {
+static bool choose(Run *run, Error *error) {
     const StabilityOptions *options = run->options;
     const StabilityOwn *own = options->own;
     const StabilityStudy *studies = own != NULL ? own->studies : stability_studies;
@@ -267,31 +248,21 @@ static bool stability_choose(Run *run, Error *error) {
     return true;
 }
 
-static bool is_known(const char *name) {
-    for (int i = 0; i < stability_map_count; i++)
-        if (strcmp(stability_maps[i].name, name) == 0) return true;
-    return stability_study_find(name) != NULL;
-}
-
-static bool refuse_name(const char *name, Error *error) {
-    NameList known = {0};
-    for (int i = 0; i < stability_study_count; i++) name_list_add(&known, stability_studies[i].name);
-    for (int i = 0; i < stability_map_count; i++) name_list_add(&known, stability_maps[i].name);
-    return error_unknown(error, "stability", name, "a study or map", &known);
-}
-
 static bool know_names(const StabilityOptions *options, Error *error) {
-    for (int i = 0; i < options->name_count; i++)
-        if (!is_known(options->names[i])) return refuse_name(options->names[i], error);
+    for (int i = 0; i < options->name_count; i++) {
+        NameList known = {0};
+        bool found = stability_study_find(options->names[i]) != NULL;
+        for (int k = 0; k < stability_study_count; k++) name_list_add(&known, stability_studies[k].name);
+        for (int k = 0; k < stability_map_count; k++) {
+            name_list_add(&known, stability_maps[k].name);
+            found = found || strcmp(stability_maps[k].name, options->names[i]) == 0;
+        }
+        if (!found) return error_unknown(error, "stability", options->names[i], "a study or map", &known);
+    }
     return true;
 }
 
-static bool add_place_to_key(const StabilityPlace *place, StudyKey *key, Error *error) {
-    char path[STABILITY_PATH_SIZE];
-    return stability_path(path, place, error) && study_key_add_scene(key, path, error);
-}
-
-/* Hashes a range that is not in the program. */
+/* Adds a range that is not in the program. */
 static void add_scan_to_key(const char *name, const char *parameter, const BorderScan *scan, StudyKey *key) {
     const double numbers[] = {scan->from, scan->to, scan->points};
     study_key_add(key, name, strlen(name) + 1);
@@ -299,17 +270,9 @@ static void add_scan_to_key(const char *name, const char *parameter, const Borde
     study_key_add(key, numbers, sizeof numbers);
 }
 
-static bool add_study_to_key(const Run *run, const StabilityStudy *study, StudyKey *key, Error *error) {
-    const StabilityPlace place = {run->options->scenes, study->scene, study->file};
-    add_scan_to_key(study->name, study->parameter, &study->scan, key);
-    return add_place_to_key(&place, key, error);
-}
-
-static bool add_map_to_key(const Run *run, const StabilityMap *map, StudyKey *key, Error *error) {
-    const StabilityPlace place = {run->options->scenes, map->scene, map->file};
-    add_scan_to_key(map->name, map->x.parameter, &map->x.scan, key);
-    add_scan_to_key(map->name, map->y.parameter, &map->y.scan, key);
-    return add_place_to_key(&place, key, error);
+static bool add_place_to_key(const StabilityPlace *place, StudyKey *key, Error *error) {
+    char path[STABILITY_PATH_SIZE];
+    return stability_path(path, place, error) && study_key_add_scene(key, path, error);
 }
 
 /* Hashes everything that determines the result: the program, the options, the scenes. */
@@ -318,20 +281,18 @@ static bool find_key(const Run *run, StudyKey *key, Error *error) {
     if (!study_key_begin(key, error) || !contenders_add_to_key(&run->methods, key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
     if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
-    for (int i = 0; i < run->study_count; i++)
-        if (!add_study_to_key(run, run->studies[i], key, error)) return false;
-    for (int i = 0; i < run->map_count; i++)
-        if (!add_map_to_key(run, run->maps[i], key, error)) return false;
+    for (int i = 0; i < run->study_count; i++) {
+        const StabilityStudy *study = run->studies[i];
+        add_scan_to_key(study->name, study->parameter, &study->scan, key);
+        if (!add_place_to_key(&(StabilityPlace){options->scenes, study->scene, study->file}, key, error)) return false;
+    }
+    for (int i = 0; i < run->map_count; i++) {
+        const StabilityMap *map = run->maps[i];
+        add_scan_to_key(map->name, map->x.parameter, &map->x.scan, key);
+        add_scan_to_key(map->name, map->y.parameter, &map->y.scan, key);
+        if (!add_place_to_key(&(StabilityPlace){options->scenes, map->scene, map->file}, key, error)) return false;
+    }
     return true;
-}
-
-static bool write_tables(const Run *run, const Pieces *pieces, Error *error) {
-    static const CsvLayout *const layouts[] = {&border_layout, &map_layout,         &refusal_layout, &fallback_layout,
-                                               &rest_layout,   &unconverged_layout, &engine_layout};
-    bool external = false;
-    for (int i = 0; i < run->methods.count; i++) external |= run->methods.items[i].method.kind->description->external;
-    const int count = (int)(sizeof layouts / sizeof *layouts) - !external;
-    return piece_tables_write(pieces, run->options->folder, layouts, count, run->plan.pieces, run->plan.count, error);
 }
 
 /* A live page for each scene, and the tables that link to them. */
@@ -362,35 +323,37 @@ static bool write_pages(const Run *run, Error *error) {
 }
 
 /* What follows from the pieces, once all are there. */
-static bool stability_finish(const Run *run, const Pieces *pieces, Error *error) {
+static bool finish(const Run *run, const Pieces *pieces, Error *error) {
+    static const CsvLayout *const layouts[] = {&border_layout, &map_layout,         &refusal_layout, &fallback_layout,
+                                               &rest_layout,   &unconverged_layout, &engine_layout};
     const StabilityOptions *options = run->options;
-    return write_tables(run, pieces, error) && (options->draw == NULL || options->draw(options, error)) &&
-           write_pages(run, error) && pieces_end(pieces, error);
-}
-
-static bool stability_begin(Run *run, const StabilityOptions *options, Error *error) {
-    *run = (Run){.options = options};
-    return know_names(options, error) && contenders_parse(&run->methods, options->methods, STUDY_STABILITY, error) &&
-           stability_choose(run, error) &&
-           stability_plan_make(&run->plan, run->studies, run->study_count, run->maps, run->map_count, options->scenes,
-                               &run->methods, options->quick, error);
-}
-
-static void stability_end(Run *run) {
-    stability_plan_free(&run->plan);
-    contenders_free(&run->methods);
-    free(run->studies);
-    free(run->maps);
+    bool external = false;
+    for (int i = 0; i < run->methods.count; i++) external |= run->methods.items[i].method.kind->description->external;
+    const int count = (int)(sizeof layouts / sizeof *layouts) - !external;
+    return piece_tables_write(pieces, options->folder, layouts, count, run->plan.pieces, run->plan.count, error) &&
+           (options->draw == NULL || options->draw(options, error)) && write_pages(run, error) &&
+           pieces_end(pieces, error);
 }
 
 bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
-    Run run;
+    Run run = {.options = options};
     StudyKey key = {0};
-    const bool ok = stability_begin(&run, options, error) && find_key(&run, &key, error) &&
-                    pieces_open(pieces, options->folder, &key, &options->shard, error) &&
+    const bool ok = know_names(options, error) &&
+                    contenders_parse(&run.methods, options->methods, STUDY_STABILITY, error) && choose(&run, error) &&
+                    make_plan(&run.plan, run.studies, run.study_count, run.maps, run.map_count, options->scenes,
+                              &run.methods, options->quick, error) &&
+                    find_key(&run, &key, error) && pieces_open(pieces, options->folder, &key, &options->shard, error) &&
                     pieces_do(pieces, &run.plan.plan, progress, error) &&
-                    (options->shard.count > 0 || stability_finish(&run, pieces, error));
+                    (options->shard.count > 0 || finish(&run, pieces, error));
     pieces->plan = NULL;
-    stability_end(&run);
+    for (int i = 0; i < run.plan.count; i++) {
+        stability_scan_end(&run.plan.groups[i].scanned);
+        stability_grid_end(&run.plan.groups[i].mapped);
+    }
+    free(run.plan.groups);
+    free(run.plan.pieces);
+    contenders_free(&run.methods);
+    free(run.studies);
+    free(run.maps);
     return ok;
 }
