@@ -81,14 +81,6 @@ static BorderCell cell_at(const Borders *borders, int study, int method) {
                        &borders->studies[study].range);
 }
 
-/* Whether a study applies to the row's method. */
-static bool is_applicable(const CsvTable *table, const BorderRow *row) {
-    bool found = false;
-    for (int i = 0; !found && i < table->count; i++)
-        found = border_row(table, i)->verdict != CELL_NOT_APPLICABLE && border_same_method(border_row(table, i), row);
-    return found;
-}
-
 static const char *sign(double value) { return value < 0 ? "−" : ""; }
 
 /* "2 to 40 boxes"; without a unit "ratio 1 to 1000". */
@@ -105,64 +97,47 @@ static void name_extent(char text[STABILITY_TEXT_SIZE], const BorderRow *row, co
     chart_make_plain(text);
 }
 
-static bool add_study(Borders *borders, int i, Error *error) {
+static bool gather(Borders *borders, Error *error) {
     const CsvTable *table = borders->table;
-    const BorderRow *row = border_row(table, i);
-    for (int k = 0; k < borders->study_count; k++)
-        if (border_same_study(borders->studies[k].row, row)) return true;
-    if (borders->study_count == BORDERS_MAX_STUDIES)
-        return csv_table_error(table, i, 0, error, "more than %d studies: too many for a figure", BORDERS_MAX_STUDIES);
-    BorderStudy *study = &borders->studies[borders->study_count++];
-    study->row = row;
-    study->known = border_study(borders->own, row);
-    study->range = border_range(table, i, study->known);
-    study->struck = border_is_struck(table, i);
-    stability_axis_text(study->title, study->known != NULL ? study->known->title : row->study, "");
-    chart_make_plain(study->title);
-    name_extent(study->extent, row, &study->range);
-    borders->struck_count += study->struck;
-    borders->rigid = borders->rigid || (study->known != NULL && study->known->rigid != NULL);
-    return true;
-}
-
-/* A method to which no study applies is named at the foot, unless that is so of all. */
-static bool add_method(Borders *borders, int i, bool any, Error *error) {
-    const BorderRow *row = border_row(borders->table, i);
-    for (int k = 0; k < i; k++)
-        if (border_same_method(border_row(borders->table, k), row)) return true;
-    if (any && !is_applicable(borders->table, row)) {
-        left_out_add(&borders->foot, "Left out, as not applicable: ", row->method, row->setting);
-        return true;
-    }
-    if (borders->method_count == BORDERS_MAX_METHODS)
-        return csv_table_error(borders->table, i, 0, error, "more than %d methods: too many for a figure",
-                               BORDERS_MAX_METHODS);
-    BorderMethod *method = &borders->methods[borders->method_count++];
-    method->row = row;
-    stability_method_text(method->name, row->method, row->setting);
-    return true;
-}
-
-static bool borders_gather(Borders *borders, Error *error) {
-    const CsvTable *table = borders->table;
-    bool any = false, ok = true;
+    bool any = false;
     for (int i = 0; i < table->count; i++) any = any || border_row(table, i)->verdict != CELL_NOT_APPLICABLE;
-    for (int i = 0; ok && i < table->count; i++)
-        ok = add_study(borders, i, error) && add_method(borders, i, any, error);
-    return ok;
-}
-
-static void note_looks(Borders *borders, const BorderCell *cell) {
-    double decided = 0;
-    for (int i = 0; i < cell->count; i++) {
-        decided += cell->spans[i].to - cell->spans[i].from;
-        if (!cell->spans[i].holds) borders->used[cell->spans[i].look] = true;
+    for (int i = 0; i < table->count; i++) {
+        const BorderRow *row = border_row(table, i);
+        bool new_study = true, new_method = true, applies = false;
+        for (int k = 0; k < table->count; k++) {
+            const BorderRow *other = border_row(table, k);
+            if (k < i && border_same_study(other, row)) new_study = false;
+            if (k < i && border_same_method(other, row)) new_method = false;
+            applies |= other->verdict != CELL_NOT_APPLICABLE && border_same_method(other, row);
+        }
+        if (new_study) {
+            if (borders->study_count == BORDERS_MAX_STUDIES)
+                return csv_table_error(table, i, 0, error, "more than %d studies: too many for a figure",
+                                       BORDERS_MAX_STUDIES);
+            BorderStudy *study = &borders->studies[borders->study_count++];
+            study->row = row;
+            study->known = border_study(borders->own, row);
+            study->range = border_range(table, i, study->known);
+            study->struck = border_is_struck(table, i);
+            stability_axis_text(study->title, study->known != NULL ? study->known->title : row->study, "");
+            chart_make_plain(study->title);
+            name_extent(study->extent, row, &study->range);
+            borders->struck_count += study->struck;
+            borders->rigid = borders->rigid || (study->known != NULL && study->known->rigid != NULL);
+        }
+        /* A method to which no study applies is named at the foot, unless that is so of all. */
+        if (new_method && any && !applies)
+            left_out_add(&borders->foot, "Left out, as not applicable: ", row->method, row->setting);
+        else if (new_method) {
+            if (borders->method_count == BORDERS_MAX_METHODS)
+                return csv_table_error(table, i, 0, error, "more than %d methods: too many for a figure",
+                                       BORDERS_MAX_METHODS);
+            BorderMethod *method = &borders->methods[borders->method_count++];
+            method->row = row;
+            stability_method_text(method->name, row->method, row->setting);
+        }
     }
-    if (cell->row == NULL) return;
-    if (cell->row->verdict == CELL_NOT_APPLICABLE)
-        borders->used[CELL_NOT_APPLICABLE] = true;
-    else if (decided < 1 - least_seen)
-        borders->used[VERDICT_UNDECIDED] = true;
+    return true;
 }
 
 /* Struck studies tell where a method agrees with the reference. Without the reference it is the whole range that
@@ -175,7 +150,7 @@ static bool holds_as_far(const Borders *borders, int study, const BorderCell *ce
     return cell->count > 0 && cell->held >= far.held - least_seen;
 }
 
-static void borders_measure(Borders *borders) {
+static void measure(Borders *borders) {
     for (int i = 0; i < borders->study_count; i++)
         left_out_add_unconverged(&borders->foot, borders->unconverged, borders->studies[i].row->study);
     for (int study = 0; study < borders->study_count; study++) {
@@ -186,7 +161,15 @@ static void borders_measure(Borders *borders) {
             borders->methods[method].as_far += holds_as_far(borders, study, &cell);
             borders->studies[study].held += cell.held;
             applicable += cell.row != NULL && cell.row->verdict != CELL_NOT_APPLICABLE;
-            note_looks(borders, &cell);
+            double decided = 0;
+            for (int i = 0; i < cell.count; i++) {
+                decided += cell.spans[i].to - cell.spans[i].from;
+                if (!cell.spans[i].holds) borders->used[cell.spans[i].look] = true;
+            }
+            if (cell.row != NULL && cell.row->verdict == CELL_NOT_APPLICABLE)
+                borders->used[CELL_NOT_APPLICABLE] = true;
+            else if (cell.row != NULL && decided < 1 - least_seen)
+                borders->used[VERDICT_UNDECIDED] = true;
         }
         if (applicable > 0) borders->studies[study].held /= applicable;
     }
@@ -261,11 +244,6 @@ static void lay_out(Borders *borders) {
 /* mm: the left edge of a column. */
 static double column_left(const Borders *borders, int i) { return borders->label + borders->column * i; }
 
-/* From the top of the page to the first row. */
-static double head_height(const Borders *borders) {
-    return borders->tiers * (borders->lines * line_height(small_points) + head_gap) + head_gap;
-}
-
 /* The names of methods; a line leads from those of the upper tier to their column. */
 static void draw_head(const Borders *borders, double bottom) {
     const double tier = borders->lines * line_height(small_points) + head_gap;
@@ -294,7 +272,7 @@ static void draw_as_far(const Borders *borders, double y) {
     }
 }
 
-static void borders_fill(Sketch *sketch, double from, double to, double y, uint32_t colour) {
+static void fill(Sketch *sketch, double from, double to, double y, uint32_t colour) {
     sketch_rectangle(sketch, (Point){from, y - tile_height / 2}, (Point){to, y + tile_height / 2},
                      &(Pen){colour, 1, NO_COLOUR, 0, NULL});
 }
@@ -355,11 +333,11 @@ static void draw_cell(const Borders *borders, int study, int method, double y) {
         put_symbol(borders->sketch, left, left + width, y, CELL_NOT_APPLICABLE);
         return;
     }
-    borders_fill(borders->sketch, left, left + width, y, verdict_looks[VERDICT_UNDECIDED].fill);
+    fill(borders->sketch, left, left + width, y, verdict_looks[VERDICT_UNDECIDED].fill);
     for (int i = 0; i < cell.count; i++) {
         spans[i] = placed(&cell.spans[i], left, width);
-        borders_fill(borders->sketch, spans[i].from, spans[i].to, y,
-                     spans[i].holds ? verdict_looks[VERDICT_CREEPS].fill : verdict_looks[spans[i].look].fill);
+        fill(borders->sketch, spans[i].from, spans[i].to, y,
+             spans[i].holds ? verdict_looks[VERDICT_CREEPS].fill : verdict_looks[spans[i].look].fill);
     }
     const int numbered = number_border(borders->sketch, &cell, spans, y);
     for (int i = 0; i < cell.count; i++)
@@ -385,7 +363,7 @@ static void draw_heading(const Borders *borders, bool struck, double y) {
     const Pen rule = pen_line(0x909090, 0.8, NULL);
     const double top = y + heading_height / 2 - 0.6;
     sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
-    borders_fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_CREEPS].fill);
+    fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_CREEPS].fill);
     plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
               struck ? "as many boxes fall as with the reference" : "holds");
 }
@@ -401,7 +379,7 @@ static void draw_legend(const Borders *borders, double foot, int rows) {
     for (int sample = !borders->few; sample <= borders->rigid; sample++, next++) {
         const Point at = {edge + legend_item * (next % place.columns), place.top - LEGEND_ROW * (next / place.columns)};
         if (sample == 0)
-            borders_fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_CREEPS].fill);
+            fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_CREEPS].fill);
         else
             sketch_line(borders->sketch, (Point){at.x + 1.4, at.y - 1.5}, (Point){at.x + 1.4, at.y + 1.5}, &rigid_pen);
         plot_text(borders->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS,
@@ -424,7 +402,7 @@ static double draw_studies(const Borders *borders, double below) {
         }
         draw_study(borders, i, y -= row_height);
     }
-    return top + head_height(borders);
+    return top + borders->tiers * (borders->lines * line_height(small_points) + head_gap) + head_gap;
 }
 
 /* Rows of methods; above the columns the names of the studies and their ranges. */
@@ -450,18 +428,6 @@ static double draw_methods(const Borders *borders, double below) {
         for (int study = 0; study < borders->study_count; study++) draw_cell(borders, study, method, y);
     }
     return highest;
-}
-
-/* From the foot: what is left out, legend, rows, names. */
-static void borders_draw(Borders *borders) {
-    int items = borders->rigid + borders->few;
-    for (int look = 0; look < VERDICT_LOOKS; look++) items += borders->used[look];
-    const int columns = legend_columns(borders), rows = (items + columns - 1) / columns;
-    const double foot = NOTE_ROW * left_out_rows(&borders->foot, borders->width - edge - 1) + 1;
-    const double below = foot + LEGEND_ROW * rows + 1;
-    sketch_begin(borders->sketch, borders->width, 0);
-    borders->sketch->height = borders->few ? draw_methods(borders, below) : draw_studies(borders, below);
-    draw_legend(borders, foot, rows);
 }
 
 static void write_caption(const Borders *borders, PlotPage *page) {
@@ -490,13 +456,21 @@ static void write_caption(const Borders *borders, PlotPage *page) {
 bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged, const StabilityOwn *own,
                              PlotPage *page, Error *error) {
     Borders borders = {.table = table, .unconverged = unconverged, .own = own, .sketch = &page->sketch};
-    if (!borders_gather(&borders, error)) return false;
+    if (!gather(&borders, error)) return false;
     borders.few = borders.study_count <= FEW_STUDIES;
-    borders_measure(&borders);
+    measure(&borders);
     qsort(borders.studies, (size_t)borders.study_count, sizeof *borders.studies, by_study);
     qsort(borders.methods, (size_t)borders.method_count, sizeof *borders.methods, by_method);
     lay_out(&borders);
-    borders_draw(&borders);
+    /* From the foot: what is left out, legend, rows, names. */
+    int items = borders.rigid + borders.few;
+    for (int look = 0; look < VERDICT_LOOKS; look++) items += borders.used[look];
+    const int columns = legend_columns(&borders), rows = (items + columns - 1) / columns;
+    const double foot = NOTE_ROW * left_out_rows(&borders.foot, borders.width - edge - 1) + 1;
+    const double below = foot + LEGEND_ROW * rows + 1;
+    sketch_begin(borders.sketch, borders.width, 0);
+    borders.sketch->height = borders.few ? draw_methods(&borders, below) : draw_studies(&borders, below);
+    draw_legend(&borders, foot, rows);
     write_caption(&borders, page);
     return true;
 }

@@ -68,37 +68,21 @@ static bool is_without_push_out(const ChartLine *line) {
     return line->description != NULL && line->description->no_push_out;
 }
 
-static bool has_coloured_twin(const Chart *chart) {
-    for (int i = 0; i < chart->line_count; i++)
-        if (chart->lines[i].rank == CHART_COLOURED && chart_twin_word(&chart->lines[i]) != NULL &&
-            is_drawn(&chart->lines[i]))
-            return true;
-    return false;
-}
-
-static bool is_hidden(const Chart *chart) {
-    for (int i = 0; i < chart->line_count; i++)
-        if (chart->lines[i].rank == CHART_HIDDEN) return true;
-    return false;
-}
-
-static const ChartLine *find_shipped(const Chart *chart) {
-    for (int p = 0; p < CHART_PANELS; p++)
-        for (int i = 0; i < chart->panels[p].count; i++)
-            if (chart->panels[p].marks[i].shipped) return &chart->lines[chart->panels[p].marks[i].line];
-    return NULL;
-}
-
-static bool is_lost_drawn(const Chart *chart) {
-    for (int p = 0; p < CHART_PANELS; p++)
-        for (int i = 0; i < chart->panels[p].count; i++)
-            if (chart->panels[p].marks[i].lost) return true;
-    return false;
-}
-
 static void add_curves(const Caption *caption) {
     const Chart *chart = caption->chart;
-    const ChartLine *shipped = find_shipped(chart);
+    const ChartLine *shipped = NULL;
+    bool lost = false, twin = false, hidden = false;
+    for (int p = 0; p < CHART_PANELS; p++)
+        for (int i = 0; i < chart->panels[p].count; i++) {
+            const ChartMark *mark = &chart->panels[p].marks[i];
+            if (mark->shipped && shipped == NULL) shipped = &chart->lines[mark->line];
+            lost |= mark->lost;
+        }
+    for (int i = 0; i < chart->line_count; i++) {
+        const ChartLine *line = &chart->lines[i];
+        hidden |= line->rank == CHART_HIDDEN;
+        twin |= line->rank == CHART_COLOURED && chart_twin_word(line) != NULL && is_drawn(line);
+    }
     text_add(
         caption->text, caption->size,
         " A curve joins the settings of a method that no other of its settings beats in both time and error; chart.csv "
@@ -108,12 +92,9 @@ static void add_curves(const Caption *caption) {
                  " Ring and dotted lines: %s as shipped, with whose time and error the others are compared.",
                  shipped->name);
     add_names(caption, chart_is_program, "an external program, by its own clock, whose errors have the same measure.");
-    if (is_lost_drawn(chart))
-        text_add(caption->text, caption->size, " Crosses: the method lost the scene before the impact.");
-    if (has_coloured_twin(chart))
-        text_add(caption->text, caption->size, " Dashed, open: the method with its learned part switched off.");
-    if (is_hidden(chart))
-        text_add(caption->text, caption->size, " Switched-off variants of grey methods are in the table only.");
+    if (lost) text_add(caption->text, caption->size, " Crosses: the method lost the scene before the impact.");
+    if (twin) text_add(caption->text, caption->size, " Dashed, open: the method with its learned part switched off.");
+    if (hidden) text_add(caption->text, caption->size, " Switched-off variants of grey methods are in the table only.");
 }
 
 static void add_unnamed(const Caption *caption, const bool *named) {
@@ -136,19 +117,6 @@ static void add_left_out(const Caption *caption, const bool *named) {
         text_add(caption->text, caption->size, " Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
 }
 
-/* Methods, then keys of settings. */
-static void gather_words(WordList *words, const Chart *chart) {
-    for (int settings = 0; settings < 2; settings++)
-        for (int p = 0; p < CHART_PANELS; p++)
-            for (int i = 0; i < chart->panels[p].count; i++) {
-                const ChartMark *mark = &chart->panels[p].marks[i];
-                if (settings == 0)
-                    words_add_method(words, mark->method);
-                else if (chart->lines[mark->line].rank == CHART_COLOURED)
-                    words_add_settings(words, mark->method, mark->setting);
-            }
-}
-
 void chart_caption(const Chart *chart, const char *title, const bool *named, char *text, size_t size) {
     const Caption caption = {chart, text, size};
     WordList words = {0};
@@ -162,6 +130,14 @@ void chart_caption(const Chart *chart, const char *title, const bool *named, cha
               "error against the solution without the velocity that pushes overlapping boxes apart.");
     add_left_out(&caption, named);
     if (chart->times[0] != '\0') text_add(text, size, " %s", chart->times);
-    gather_words(&words, chart);
+    for (int settings = 0; settings < 2; settings++) /* methods, then keys of settings */
+        for (int p = 0; p < CHART_PANELS; p++)
+            for (int i = 0; i < chart->panels[p].count; i++) {
+                const ChartMark *mark = &chart->panels[p].marks[i];
+                if (settings == 0)
+                    words_add_method(&words, mark->method);
+                else if (chart->lines[mark->line].rank == CHART_COLOURED)
+                    words_add_settings(&words, mark->method, mark->setting);
+            }
     words_join(&words, text, size);
 }

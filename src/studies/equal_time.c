@@ -14,56 +14,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* For charts of at most `rows` rows. False with error set if out of memory; free it in any case. */
-static bool rival_curves_begin(RivalCurves *curves, int rows, Error *error) {
-    const size_t most = (size_t)rows + 1;
-    *curves = (RivalCurves){.families = malloc(most * sizeof *curves->families),
-                            .rows = malloc(most * sizeof *curves->rows),
-                            .family = malloc(most * sizeof *curves->family),
-                            .lost = malloc(most * sizeof *curves->lost),
-                            .points = malloc(most * sizeof *curves->points)};
-    return (curves->families != NULL && curves->rows != NULL && curves->family != NULL && curves->lost != NULL &&
-            curves->points != NULL) ||
-           error_memory(error, "equal_time");
-}
-
-static void rival_curves_free(RivalCurves *curves) {
-    free(curves->families);
-    free(curves->rows);
-    free(curves->family);
-    free(curves->lost);
-    free(curves->points);
-    *curves = (RivalCurves){0};
-}
-
-static bool counts(const ChartRow *row) {
-    const MethodDescription *method = method_describe(row->method);
-    return row->protocol == PROTOCOL_CLOSED && row->phase != PHASE_REST && row->us_solver > 0 &&
-           !isnan(row->error_mean) && (method == NULL || method->role == METHOD_COMPETES);
-}
-
-static int find_family(RivalCurves *curves, const ChartRow *row) {
-    char name[CHART_FAMILY_SIZE];
-    int i = 0;
-    chart_row_family(row, name);
-    while (i < curves->family_count && strcmp(curves->families[i].name, name) != 0) i++;
-    if (i == curves->family_count) {
-        CurveFamily *family = &curves->families[curves->family_count++];
-        strcpy(family->name, name);
-        strcpy(family->method, row->method);
-        family->description = method_describe(row->method);
-    }
-    return i;
-}
-
 /* Takes the rows of one scene; they must outlive their use. */
-static void rival_curves_scene(RivalCurves *curves, const ChartRow *rows, int count) {
+static void take_scene(RivalCurves *curves, const ChartRow *rows, int count) {
     curves->count = 0;
     for (int i = 0; i < count; i++) {
-        if (!counts(&rows[i])) continue;
-        curves->rows[curves->count] = &rows[i];
-        curves->family[curves->count] = find_family(curves, &rows[i]);
-        curves->lost[curves->count++] = chart_row_lost(rows, count, &rows[i]);
+        const ChartRow *row = &rows[i];
+        const MethodDescription *method = method_describe(row->method);
+        char name[CHART_FAMILY_SIZE];
+        int k = 0;
+        if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST || !(row->us_solver > 0) ||
+            isnan(row->error_mean) || (method != NULL && method->role != METHOD_COMPETES))
+            continue;
+        chart_row_family(row, name);
+        while (k < curves->family_count && strcmp(curves->families[k].name, name) != 0) k++;
+        if (k == curves->family_count) {
+            CurveFamily *family = &curves->families[curves->family_count++];
+            strcpy(family->name, name);
+            strcpy(family->method, row->method);
+            family->description = method;
+        }
+        curves->rows[curves->count] = row;
+        curves->family[curves->count] = k;
+        curves->lost[curves->count++] = chart_row_lost(rows, count, row);
     }
 }
 
@@ -76,8 +48,8 @@ static double curve_error(const ChartRow *row, CurveStatistic statistic) {
 static double positive(double error) { return fmax(error, REFERENCE_TOLERANCE); }
 
 /* The error of a family at a time, as error_curve_at(); NAN and CURVE_BEFORE too for a family without a curve. */
-static double rival_curves_error(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic,
-                                 double us, CurveReach *reach) {
+static double error_at(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic, double us,
+                       CurveReach *reach) {
     int count = 0;
     for (int i = 0; i < curves->count; i++) {
         const ChartRow *row = curves->rows[i];
@@ -93,13 +65,12 @@ static bool is_rival(const CurveFamily *family, const CurveFamily *other) {
     return other->description == NULL || other->description->twin == NULL;
 }
 
-static BestRival rival_curves_best(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic,
-                                   double us) {
+static BestRival find_best(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic, double us) {
     BestRival best = {-1, NAN, CURVE_BEFORE};
     for (int i = 0; i < curves->family_count; i++) {
         CurveReach reach;
         if (!is_rival(&curves->families[family], &curves->families[i])) continue;
-        const double error = rival_curves_error(curves, i, phase, statistic, us, &reach);
+        const double error = error_at(curves, i, phase, statistic, us, &reach);
         if (reach != CURVE_BEFORE && !(best.error <= error)) best = (BestRival){i, error, reach};
     }
     return best;
@@ -172,7 +143,7 @@ static const ChartRow *find_run(const RivalCurves *curves, Phase phase, const ch
 static EqualTimeRow compare_setting(const RivalCurves *curves, int i, CurveStatistic statistic) {
     const ChartRow *row = curves->rows[i];
     const double error = curve_error(row, statistic);
-    const BestRival rival = rival_curves_best(curves, curves->family[i], row->phase, statistic, row->us_solver);
+    const BestRival rival = find_best(curves, curves->family[i], row->phase, statistic, row->us_solver);
     const ChartRow *momentum = find_run(curves, row->phase, "momentum", "k=20");
     const ChartRow *net = find_run(curves, row->phase, "scene-net", "");
     return (EqualTimeRow){.scene = row->scene,
@@ -194,51 +165,54 @@ static EqualTimeRow compare_setting(const RivalCurves *curves, int i, CurveStati
                           .time_scene_net = net == NULL ? NAN : row->us_solver / net->us_solver};
 }
 
-/* The most sweeps of momentum, of these, that were run somewhere. */
-static const char *choose_time(const ChartRow *rows, int count) {
-    static const char *const times[] = {"k=100", "k=50"};
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < count; i++)
-            if (strcmp(rows[i].method, "momentum") == 0 && strcmp(rows[i].setting, times[k]) == 0) return times[k];
-    return "k=20";
-}
-
-static EqualMethodRow compare_method(const RivalCurves *curves, const char *scene, int family, double us) {
-    EqualMethodRow row = {.scene = scene, .method = curves->families[family].name, .us_solver = us, .family = family};
-    const BestRival rival = rival_curves_best(curves, family, PHASE_IMPACT, CURVE_MEAN, us);
-    row.error = rival_curves_error(curves, family, PHASE_IMPACT, CURVE_MEAN, us, &row.reach);
-    row.rival = name_rival(curves, &rival);
-    row.rival_error = rival.error;
-    row.ratio = row.error / rival.error;
-    row.below = which_below(row.error, rival.error);
-    return row;
-}
-
-static bool ran(const RivalCurves *curves, int family) {
-    for (int i = 0; i < curves->count; i++)
-        if (curves->family[i] == family && curves->rows[i]->phase == PHASE_IMPACT) return true;
-    return false;
-}
-
+/* The rows of a scene, and those of its methods in the time of momentum. */
 static void compare_scene(EqualTime *table, const ChartRow *rows, int count) {
     RivalCurves *curves = &table->curves;
-    rival_curves_scene(curves, rows, count);
+    take_scene(curves, rows, count);
     for (int i = 0; i < curves->count; i++)
         for (int statistic = 0; statistic < CURVE_STATISTICS; statistic++)
             table->rows[table->count++] = compare_setting(curves, i, (CurveStatistic)statistic);
     const ChartRow *time = find_run(curves, PHASE_IMPACT, "momentum", table->time);
-    for (int family = 0; time != NULL && family < curves->family_count; family++)
-        if (ran(curves, family))
-            table->methods[table->method_count++] = compare_method(curves, rows->scene, family, time->us_solver);
+    for (int family = 0; time != NULL && family < curves->family_count; family++) {
+        bool ran = false;
+        for (int i = 0; i < curves->count; i++)
+            ran |= curves->family[i] == family && curves->rows[i]->phase == PHASE_IMPACT;
+        if (!ran) continue;
+        EqualMethodRow *row = &table->methods[table->method_count++];
+        *row = (EqualMethodRow){.scene = rows->scene,
+                                .method = curves->families[family].name,
+                                .us_solver = time->us_solver,
+                                .family = family};
+        const BestRival rival = find_best(curves, family, PHASE_IMPACT, CURVE_MEAN, row->us_solver);
+        row->error = error_at(curves, family, PHASE_IMPACT, CURVE_MEAN, row->us_solver, &row->reach);
+        row->rival = name_rival(curves, &rival);
+        row->rival_error = rival.error;
+        row->ratio = row->error / rival.error;
+        row->below = which_below(row->error, rival.error);
+    }
 }
 
 bool equal_time_make(EqualTime *table, const ChartRow *rows, int count, Error *error) {
+    /* The most sweeps of momentum, of these, that were run somewhere. */
+    static const char *const times[] = {"k=100", "k=50"};
     const size_t most = (size_t)count + 1;
     *table = (EqualTime){.rows = malloc(CURVE_STATISTICS * most * sizeof *table->rows),
                          .methods = malloc(most * sizeof *table->methods),
-                         .time = choose_time(rows, count)};
-    bool ok = rival_curves_begin(&table->curves, count, error);
-    if (ok && (table->rows == NULL || table->methods == NULL)) ok = error_memory(error, "equal_time");
+                         .time = "k=20"};
+    for (int k = 1; k >= 0; k--)
+        for (int i = 0; i < count; i++)
+            if (strcmp(rows[i].method, "momentum") == 0 && strcmp(rows[i].setting, times[k]) == 0)
+                table->time = times[k];
+    RivalCurves *curves = &table->curves;
+    *curves = (RivalCurves){.families = malloc(most * sizeof *curves->families),
+                            .rows = malloc(most * sizeof *curves->rows),
+                            .family = malloc(most * sizeof *curves->family),
+                            .lost = malloc(most * sizeof *curves->lost),
+                            .points = malloc(most * sizeof *curves->points)};
+    const bool ok =
+        (table->rows != NULL && table->methods != NULL && curves->families != NULL && curves->rows != NULL &&
+         curves->family != NULL && curves->lost != NULL && curves->points != NULL) ||
+        error_memory(error, "equal_time");
     for (int begin = 0, end; ok && begin < count; begin = end) {
         for (end = begin; end < count && strcmp(rows[end].scene, rows[begin].scene) == 0;) end++;
         compare_scene(table, rows + begin, end - begin);
@@ -248,7 +222,12 @@ bool equal_time_make(EqualTime *table, const ChartRow *rows, int count, Error *e
 }
 
 void equal_time_free(EqualTime *table) {
-    rival_curves_free(&table->curves);
+    RivalCurves *curves = &table->curves;
+    free(curves->families);
+    free(curves->rows);
+    free(curves->family);
+    free(curves->lost);
+    free(curves->points);
     free(table->rows);
     free(table->methods);
     *table = (EqualTime){0};

@@ -64,11 +64,6 @@ static int find_twin(const RivalCurves *curves, int family) {
     return -1;
 }
 
-/* The learned method itself, not one of its variants. */
-static bool is_whole(const RivalCurves *curves, int family) {
-    return strcmp(curves->families[family].name, curves->families[family].method) == 0;
-}
-
 /* Of a method, or of any (-1), in a scene, or in any (NULL). */
 static bool has_ratio(const EqualTime *table, int family, const char *scene) {
     for (int i = 0; i < table->method_count; i++) {
@@ -80,8 +75,7 @@ static bool has_ratio(const EqualTime *table, int family, const char *scene) {
     return false;
 }
 
-static void equal_time_plot_add(Columns *columns, EqualTimeGrid *grid, const EqualTime *table, int family,
-                                bool joined) {
+static void add_column(Columns *columns, EqualTimeGrid *grid, const EqualTime *table, int family, bool joined) {
     if (!has_ratio(table, family, NULL))
         name_list_add(&grid->left_out, table->curves.families[family].name);
     else if (columns->count < EQUAL_TIME_COLUMNS) {
@@ -94,38 +88,13 @@ static void equal_time_plot_add(Columns *columns, EqualTimeGrid *grid, const Equ
 static void order_columns(Columns *columns, EqualTimeGrid *grid, const EqualTime *table) {
     const RivalCurves *curves = &table->curves;
     for (int i = 0; i < curves->family_count; i++)
-        if (twin_of(curves, i) == NULL) equal_time_plot_add(columns, grid, table, i, false);
+        if (twin_of(curves, i) == NULL) add_column(columns, grid, table, i, false);
     for (int i = 0; i < curves->family_count; i++) {
         const int twin = find_twin(curves, i);
-        if (twin_of(curves, i) == NULL || !is_whole(curves, i)) continue;
-        equal_time_plot_add(columns, grid, table, i, false);
-        if (twin >= 0) equal_time_plot_add(columns, grid, table, twin, has_ratio(table, i, NULL));
+        if (twin_of(curves, i) == NULL || strcmp(curves->families[i].name, curves->families[i].method) != 0) continue;
+        add_column(columns, grid, table, i, false);
+        if (twin >= 0) add_column(columns, grid, table, twin, has_ratio(table, i, NULL));
     }
-}
-
-static int find_scene(EqualTimeGrid *grid, const char *scene) {
-    char name[CHART_TEXT_SIZE];
-    int i = 0;
-    chart_plain(name, scene);
-    while (i < grid->rows && strcmp(grid->scenes[i], name) != 0) i++;
-    if (i == grid->rows && i < EQUAL_TIME_SCENES) strcpy(grid->scenes[grid->rows++], name);
-    return i;
-}
-
-static bool fill_cells(EqualTimeGrid *grid, const EqualTime *table, const Columns *columns, const char *path,
-                       Error *error) {
-    for (int i = 0; i < table->method_count; i++) {
-        const EqualMethodRow *row = &table->methods[i];
-        int column = 0;
-        while (column < columns->count && columns->family[column] != row->family) column++;
-        if (!has_ratio(table, -1, row->scene)) name_list_add(&grid->left_out, row->scene);
-        if (column == columns->count || !has_ratio(table, -1, row->scene)) continue;
-        const int scene = find_scene(grid, row->scene);
-        if (scene == EQUAL_TIME_SCENES)
-            return error_input(error, path, "a figure has at most %d scenes", EQUAL_TIME_SCENES);
-        grid->cells[scene][column] = (EqualTimeCell){true, row->ratio, row->below == BELOW_BOTH};
-    }
-    return true;
 }
 
 /* ERROR_INPUT with the path if the grid has no room. */
@@ -149,7 +118,22 @@ static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const c
         chart_plain(grid->methods[i], curves->families[columns.family[i]].name);
         grid->joined[i] = columns.joined[i];
     }
-    return fill_cells(grid, table, &columns, path, error);
+    for (int i = 0; i < table->method_count; i++) {
+        const EqualMethodRow *row = &table->methods[i];
+        char name[CHART_TEXT_SIZE];
+        int column = 0, scene = 0;
+        while (column < columns.count && columns.family[column] != row->family) column++;
+        const bool any = has_ratio(table, -1, row->scene);
+        if (!any) name_list_add(&grid->left_out, row->scene);
+        if (column == columns.count || !any) continue;
+        chart_plain(name, row->scene);
+        while (scene < grid->rows && strcmp(grid->scenes[scene], name) != 0) scene++;
+        if (scene == EQUAL_TIME_SCENES)
+            return error_input(error, path, "a figure has at most %d scenes", EQUAL_TIME_SCENES);
+        if (scene == grid->rows) strcpy(grid->scenes[grid->rows++], name);
+        grid->cells[scene][column] = (EqualTimeCell){true, row->ratio, row->below == BELOW_BOTH};
+    }
+    return true;
 }
 
 /* mm */
@@ -180,24 +164,19 @@ static BrokenName break_name(const char *name) {
     return broken;
 }
 
-typedef struct EqualTimePlotLayout {
+typedef struct Layout {
     const EqualTimeGrid *grid;
     Sketch *sketch;
     double width, height;               /* mm: of the page */
     double left, top;                   /* mm: left of the first cell, top of the first row */
     double columns[EQUAL_TIME_COLUMNS]; /* mm: left edges */
     double cells[EQUAL_TIME_COLUMNS];   /* mm: widths */
-} EqualTimePlotLayout;
+} Layout;
 
-static double longest_scene(const EqualTimeGrid *grid) {
-    double most = 0;
-    for (int i = 0; i < grid->rows; i++) most = fmax(most, type_width(grid->scenes[i], scene_points));
-    return most;
-}
-
-static EqualTimePlotLayout lay_out(const EqualTimeGrid *grid) {
-    EqualTimePlotLayout layout = {
-        .grid = grid, .left = longest_scene(grid) + 4, .top = foot + grid->rows * cell_height};
+static Layout lay_out(const EqualTimeGrid *grid) {
+    double longest = 0;
+    for (int i = 0; i < grid->rows; i++) longest = fmax(longest, type_width(grid->scenes[i], scene_points));
+    Layout layout = {.grid = grid, .left = longest + 4, .top = foot + grid->rows * cell_height};
     double right = layout.left - gap;
     int rows = 1;
     for (int i = 0; i < grid->columns; i++) {
@@ -213,11 +192,11 @@ static EqualTimePlotLayout lay_out(const EqualTimeGrid *grid) {
 }
 
 /* -1: the full colour of less error, 1: that of more. */
-static double equal_time_plot_strength(double ratio) { return fmax(-1, fmin(1, log(ratio) / log(strongest))); }
+static double strength(double ratio) { return fmax(-1, fmin(1, log(ratio) / log(strongest))); }
 
 static uint32_t colour_of(double ratio) {
     static const double less[] = {0x21, 0x66, 0xAC}, even[] = {0xF4, 0xF4, 0xF4}, more[] = {0xB3, 0x58, 0x06};
-    const double t = equal_time_plot_strength(ratio);
+    const double t = strength(ratio);
     uint32_t colour = 0;
     for (int i = 0; i < 3; i++)
         colour = colour << 8 | (uint32_t)lround(even[i] + fabs(t) * ((t < 0 ? less[i] : more[i]) - even[i]));
@@ -261,17 +240,7 @@ static void draw_power(Sketch *sketch, Point at, const TextStyle *style, double 
     sketch_power_of_ten(sketch, at, &left, 1, power);
 }
 
-static void draw_ratio(Sketch *sketch, Point at, const TextStyle *style, double ratio) {
-    char text[RATIO_SIZE];
-    if (fabs(log10(ratio)) >= log10(9995)) {
-        draw_power(sketch, at, style, ratio);
-        return;
-    }
-    name_ratio(text, ratio);
-    sketch_text(sketch, at, style, "%s", text);
-}
-
-static void draw_cell(const EqualTimePlotLayout *layout, int row, int column) {
+static void draw_cell(const Layout *layout, int row, int column) {
     const EqualTimeCell *cell = &layout->grid->cells[row][column];
     const double x = layout->columns[column], y = layout->top - (row + 1) * cell_height, edge = 0.25;
     if (!cell->ran) return;
@@ -281,13 +250,16 @@ static void draw_cell(const EqualTimePlotLayout *layout, int row, int column) {
              colour, !none && cell->below ? 0xB0B0B0 : NO_COLOUR);
     const Point middle = {x + layout->cells[column] / 2, y + cell_height / 2};
     const TextStyle style = {7.5, TEXT_CENTER, ink_on(colour), 0, false};
-    if (none)
-        sketch_text(layout->sketch, middle, &style, "–");
-    else
-        draw_ratio(layout->sketch, middle, &style, cell->ratio);
+    char text[RATIO_SIZE] = "–";
+    if (!none && fabs(log10(cell->ratio)) >= log10(9995)) {
+        draw_power(layout->sketch, middle, &style, cell->ratio);
+        return;
+    }
+    if (!none) name_ratio(text, cell->ratio);
+    sketch_text(layout->sketch, middle, &style, "%s", text);
 }
 
-static void draw_names(const EqualTimePlotLayout *layout) {
+static void draw_names(const Layout *layout) {
     const EqualTimeGrid *grid = layout->grid;
     for (int i = 0; i < grid->columns; i++) {
         const BrokenName name = break_name(grid->methods[i]);
@@ -303,7 +275,7 @@ static void draw_names(const EqualTimePlotLayout *layout) {
 }
 
 /* The scale of colours, as a bar of steps. */
-static void draw_scale(const EqualTimePlotLayout *layout) {
+static void draw_scale(const Layout *layout) {
     static const double marks[] = {1.0 / 1000, 1.0 / 30, 1, 30, 1000};
     enum { STEPS = 61 };
     Sketch *sketch = layout->sketch;
@@ -314,8 +286,8 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
                  colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)), NO_COLOUR);
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
         name_ratio(text, marks[i]);
-        plot_text(sketch, (Point){layout->left + bar_width * (equal_time_plot_strength(marks[i]) + 1) / 2, bottom - 2},
-                  TEXT_CENTER, 7, text);
+        plot_text(sketch, (Point){layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2}, TEXT_CENTER, 7,
+                  text);
     }
     snprintf(note, sizeof note, "in the time of momentum with %s sweeps per step",
              layout->grid->time + strcspn(layout->grid->time, "0123456789"));
@@ -341,10 +313,10 @@ static bool write_caption(const EqualTimeGrid *grid, const char *stem, Error *er
     return file_path(path, sizeof path, error, "%s.txt", stem) && file_write(path, caption, strlen(caption), error);
 }
 
-static bool equal_time_plot_draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
+static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
     char stem[PATH_MAX];
     Sketch sketch;
-    EqualTimePlotLayout layout = lay_out(grid);
+    Layout layout = lay_out(grid);
     layout.sketch = &sketch;
     if (!file_path(stem, sizeof stem, error, "%s/%s", folder, equal_time_layout.name)) return false;
     sketch_begin(&sketch, layout.width, layout.height);
@@ -378,7 +350,7 @@ bool equal_time_plot(const char *chart_csv, const char *folder, EqualTimeFigure 
             chart_make_plain(grid->times);
         }
         if (ok) *figure = (EqualTimeFigure){grid->columns > 0, grid->left_out};
-        ok = ok && (!figure->drawn || equal_time_plot_draw(grid, folder, error));
+        ok = ok && (!figure->drawn || draw(grid, folder, error));
         equal_time_free(&table);
     }
     free(grid);

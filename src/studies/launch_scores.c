@@ -54,17 +54,6 @@ static size_t part_size(const PartHead *head) {
     return size;
 }
 
-static void write_part(FILE *results, const LaunchScores *scores) {
-    const PartHead head = head_of(scores);
-    fwrite(&head, sizeof head, 1, results);
-    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
-        for (int phase = 0; phase < PHASES; phase++) {
-            const StepScores *steps = &scores->steps[protocol][phase];
-            stream_put(results, steps->error, sizeof(double), (size_t)steps->count);
-            stream_put(results, steps->share, sizeof(double), (size_t)steps->count);
-        }
-}
-
 void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged, int run_unconverged) {
     const LaunchHead head = {count, unconverged, run_unconverged};
     int64_t end = (int64_t)sizeof head + count * (int64_t)sizeof end;
@@ -74,10 +63,19 @@ void launch_scores_write(FILE *results, const LaunchScores *scores, int count, i
         end += (int64_t)part_size(&part);
         fwrite(&end, sizeof end, 1, results);
     }
-    for (int i = 0; i < count; i++) write_part(results, &scores[i]);
+    for (int i = 0; i < count; i++) {
+        const PartHead part = head_of(&scores[i]);
+        fwrite(&part, sizeof part, 1, results);
+        for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+            for (int phase = 0; phase < PHASES; phase++) {
+                const StepScores *steps = &scores[i].steps[protocol][phase];
+                stream_put(results, steps->error, sizeof(double), (size_t)steps->count);
+                stream_put(results, steps->share, sizeof(double), (size_t)steps->count);
+            }
+    }
 }
 
-static bool launch_scores_refuse(const StoredScores *stored, Error *error) {
+static bool refuse(const StoredScores *stored, Error *error) {
     return error_input(error, stored->path, "is no result of a launch; delete it, and run the command again");
 }
 
@@ -98,28 +96,16 @@ bool stored_scores_open(StoredScores *stored, const char *path, const char *byte
     if (size >= sizeof head) memcpy(&head, bytes, sizeof head);
     const size_t begin = sizeof head + (size_t)count * sizeof(int64_t);
     if (size < begin || head.count != count || !is_step_count(head.unconverged) || !is_step_count(head.run_unconverged))
-        return launch_scores_refuse(stored, error);
+        return refuse(stored, error);
     for (int i = 0; i < count; i++) {
         const int64_t end = part_begin(stored, i + 1);
         if (end > (int64_t)size || end < part_begin(stored, i) + (int64_t)sizeof(PartHead))
-            return launch_scores_refuse(stored, error);
+            return refuse(stored, error);
     }
-    if (part_begin(stored, count) != (int64_t)size) return launch_scores_refuse(stored, error);
+    if (part_begin(stored, count) != (int64_t)size) return refuse(stored, error);
     stored->unconverged = head.unconverged;
     stored->run_unconverged = head.run_unconverged;
     return true;
-}
-
-/* The counts fit the size of the part. */
-static bool launch_scores_fits(const PartHead *head, size_t size) {
-    size_t rest = (size - sizeof *head) / (2 * sizeof(double));
-    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
-        for (int phase = 0; phase < PHASES; phase++) {
-            const int32_t count = head->counts[protocol][phase];
-            if (count < 0 || (size_t)count > rest) return false;
-            rest -= (size_t)count;
-        }
-    return part_size(head) == size && is_step_count(head->unconverged);
 }
 
 /* Errors are not negative, shares at most 1. */
@@ -129,64 +115,55 @@ static bool are_scores(const double *values, int count, double most) {
     return true;
 }
 
-/* Of so many steps, at most as many have impulses. */
-static bool are_criteria(const CriteriaSum *sum, int count) {
-    return sum->signorini >= 0 && sum->cone >= 0 && sum->dissipation >= 0 && sum->steps >= 0 && sum->steps <= count;
-}
-
-static void append_criteria(CriteriaSum *all, const CriteriaSum *more) {
-    all->signorini += more->signorini;
-    all->cone += more->cone;
-    all->dissipation += more->dissipation;
-    all->steps += more->steps;
-}
-
-/* Adds `count` errors and shares. False if out of memory. */
-static bool launch_scores_append(PhaseScores *steps, const char *bytes, int count) {
-    const size_t before = (size_t)steps->count, more = (size_t)count;
-    if (!array_reserve((void **)&steps->error, &steps->error_capacity, before + more, sizeof(double)) ||
-        !array_reserve((void **)&steps->share, &steps->share_capacity, before + more, sizeof(double)))
-        return false;
-    if (count == 0) return true;
-    memcpy(steps->error + before, bytes, more * sizeof(double));
-    memcpy(steps->share + before, bytes + more * sizeof(double), more * sizeof(double));
-    steps->count += count;
-    return true;
-}
-
-static bool append_all(MethodScores *scores, const StoredScores *stored, const PartHead *head, const char *bytes,
-                       Error *error) {
+bool method_scores_add(MethodScores *scores, const StoredScores *stored, int method, Error *error) {
+    const int64_t begin = part_begin(stored, method);
+    const size_t size = (size_t)(part_begin(stored, method + 1) - begin);
+    PartHead head;
+    memcpy(&head, stored->bytes + begin, sizeof head);
+    /* The counts must fit the size of the part. */
+    size_t rest = (size - sizeof head) / (2 * sizeof(double));
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            const int32_t count = head.counts[protocol][phase];
+            if (count < 0 || (size_t)count > rest) return refuse(stored, error);
+            rest -= (size_t)count;
+        }
+    if (part_size(&head) != size || !is_step_count(head.unconverged)) return refuse(stored, error);
+    if (!array_reserve((void **)&scores->measures, &scores->measure_capacity, (size_t)scores->launches + 1,
+                       sizeof *scores->measures))
+        return error_memory(error, "study");
+    for (int phase = 0; scores->launches == 0 && phase < PHASES; phase++) scores->worst[phase] = NAN;
+    const char *bytes = stored->bytes + begin + sizeof head;
     for (int protocol = 0; protocol < PROTOCOLS; protocol++)
         for (int phase = 0; phase < PHASES; phase++) {
             PhaseScores *steps = &scores->steps[protocol][phase];
-            const int before = steps->count, count = head->counts[protocol][phase];
-            if (!are_criteria(&head->criteria[protocol][phase], count)) return launch_scores_refuse(stored, error);
-            append_criteria(&steps->criteria, &head->criteria[protocol][phase]);
-            if (!launch_scores_append(steps, bytes, count)) return error_memory(error, "study");
+            const CriteriaSum *more = &head.criteria[protocol][phase];
+            const int count = head.counts[protocol][phase];
+            const size_t before = (size_t)steps->count, part = (size_t)count * sizeof(double);
+            if (!(more->signorini >= 0 && more->cone >= 0 && more->dissipation >= 0) || more->steps < 0 ||
+                more->steps > count) /* of so many steps, at most as many have impulses */
+                return refuse(stored, error);
+            steps->criteria.signorini += more->signorini;
+            steps->criteria.cone += more->cone;
+            steps->criteria.dissipation += more->dissipation;
+            steps->criteria.steps += more->steps;
             if (count == 0) continue;
+            if (!array_reserve((void **)&steps->error, &steps->error_capacity, before + (size_t)count,
+                               sizeof(double)) ||
+                !array_reserve((void **)&steps->share, &steps->share_capacity, before + (size_t)count, sizeof(double)))
+                return error_memory(error, "study");
+            memcpy(steps->error + before, bytes, part);
+            memcpy(steps->share + before, bytes + part, part);
+            steps->count += count;
             if (!are_scores(steps->error + before, count, INFINITY) || !are_scores(steps->share + before, count, 1))
-                return launch_scores_refuse(stored, error);
-            bytes += 2 * sizeof(double) * (size_t)count;
+                return refuse(stored, error);
+            bytes += 2 * part;
             if (protocol != PROTOCOL_CLOSED) continue;
             const double mean = statistics_mean(steps->error + before, count);
             if (!(mean > scores->worst[phase]) && !isnan(scores->worst[phase])) continue;
             scores->worst[phase] = mean;
             scores->worst_launch[phase] = scores->launches;
         }
-    return true;
-}
-
-bool method_scores_add(MethodScores *scores, const StoredScores *stored, int method, Error *error) {
-    const int64_t begin = part_begin(stored, method);
-    const size_t size = (size_t)(part_begin(stored, method + 1) - begin);
-    PartHead head;
-    memcpy(&head, stored->bytes + begin, sizeof head);
-    if (!launch_scores_fits(&head, size)) return launch_scores_refuse(stored, error);
-    if (!array_reserve((void **)&scores->measures, &scores->measure_capacity, (size_t)scores->launches + 1,
-                       sizeof *scores->measures))
-        return error_memory(error, "study");
-    for (int phase = 0; scores->launches == 0 && phase < PHASES; phase++) scores->worst[phase] = NAN;
-    if (!append_all(scores, stored, &head, stored->bytes + begin + sizeof head, error)) return false;
     scores->measures[scores->launches++] = head.measures;
     scores->unconverged += head.unconverged;
     return true;

@@ -142,16 +142,6 @@ const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value)
     return run;
 }
 
-static bool stability_case_store(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
-    bool ok;
-#pragma omp critical(converged_runs)
-    {
-        ok = array_reserve((void **)&runs->runs, &runs->capacity, (size_t)runs->count + 1, sizeof *runs->runs);
-        if (ok) runs->runs[runs->count++] = run;
-    }
-    return ok || error_memory(error, "converged run");
-}
-
 const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
                                        Error *error) {
     const ConvergedRun *known = converged_runs_find(runs, value);
@@ -161,9 +151,14 @@ const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double
     run->value = value;
     bool ok = converged_run_once(&run->log, scene, error);
     if (ok) run->convergence = convergence_of(&run->log);
-    ok = ok && stability_truth(scene, judged, &run->truth, &run->convergence, error) &&
-         stability_case_store(runs, run, error);
-    if (ok) return run;
+    ok = ok && stability_truth(scene, judged, &run->truth, &run->convergence, error);
+    bool room = true;
+#pragma omp critical(converged_runs)
+    if (ok) {
+        room = array_reserve((void **)&runs->runs, &runs->capacity, (size_t)runs->count + 1, sizeof *runs->runs);
+        if (room) runs->runs[runs->count++] = run;
+    }
+    if (ok && (room || error_memory(error, "converged run"))) return run;
     energy_log_free(&run->log);
     free(run);
     return NULL;
@@ -214,33 +209,29 @@ static Scene *scene_at(const StabilityGrid *grid, double x, double y, Error *err
     return read_scene(grid, settings, 2, error);
 }
 
-static bool judge_scene(Run *run, int i, Scene *scene, const EnergyLog *converged, Error *error) {
-    const GridContext *context = run->context;
-    const StabilityMap *map = context->grid->map;
-    const StabilityPlace place = place_of(context->grid);
-    const VerdictRun judged = stability_verdict_run(&place, scene, map->stands, converged);
-    Verdict truth;
-    run->converged[i] = convergence_of(converged);
-    if (!stability_truth(scene, &judged, &truth, &run->converged[i], error)) return false;
-    for (int m = 0; m < context->method_count; m++) {
-        const Method *method = &context->methods[m]->method;
-        VerdictReading *reading = &run->readings[i * context->method_count + m];
-        if (!verdict_run(reading, scene, method, &judged, error) || !run_counter_add(&run->counter, map->name, error))
-            return false;
-        reading->verdict = stability_compare(reading, truth, method);
-    }
-    return true;
-}
-
 static bool judge_cell(void *piece, int i, Error *error) {
     Run *run = piece;
     const GridContext *context = run->context;
+    const StabilityMap *map = context->grid->map;
+    const StabilityPlace place = place_of(context->grid);
     const int cell = run->first + i;
     EnergyLog converged = {0};
+    Verdict truth;
     Scene *scene =
         scene_at(context->grid, context->x[cell % context->x_count], context->y[cell / context->x_count], error);
-    bool ok =
-        scene != NULL && converged_run_once(&converged, scene, error) && judge_scene(run, i, scene, &converged, error);
+    bool ok = scene != NULL && converged_run_once(&converged, scene, error);
+    if (ok) {
+        const VerdictRun judged = stability_verdict_run(&place, scene, map->stands, &converged);
+        run->converged[i] = convergence_of(&converged);
+        ok = stability_truth(scene, &judged, &truth, &run->converged[i], error);
+        for (int m = 0; ok && m < context->method_count; m++) {
+            const Method *method = &context->methods[m]->method;
+            VerdictReading *reading = &run->readings[i * context->method_count + m];
+            ok =
+                verdict_run(reading, scene, method, &judged, error) && run_counter_add(&run->counter, map->name, error);
+            if (ok) reading->verdict = stability_compare(reading, truth, method);
+        }
+    }
     energy_log_free(&converged);
     scene_destroy(scene);
     return ok;
@@ -271,37 +262,6 @@ static bool write_cell(const Run *run, int i, int m, FILE *results, Error *error
            unconverged_print(results, section, &row, &run->converged[i], error);
 }
 
-/* Tests the first and the last cell. False with error set if the system fails. */
-static bool find_whether_it_applies(const GridContext *context, const Method *method, bool *applies, Error *error) {
-    Error reason = {0};
-    *applies = true;
-    for (int i = 0; *applies && i < 2; i++) {
-        Scene *scene = scene_at(context->grid, context->x[i * (context->x_count - 1)],
-                                context->y[i * (context->y_count - 1)], &reason);
-        *applies = scene != NULL && stability_applies(method, scene, &reason);
-        scene_destroy(scene);
-    }
-    if (reason.kind == ERROR_SYSTEM) *error = reason;
-    return reason.kind != ERROR_SYSTEM;
-}
-
-/* Its panel of the reference shows the truth. */
-static bool is_struck(const GridContext *context) {
-    const StabilityMap *map = context->grid->map;
-    const StabilityPlace place = place_of(context->grid);
-    return stability_verdict_run(&place, context->typical, map->stands, NULL).struck != NULL;
-}
-
-static bool add_method(GridContext *context, const Contender *contender, Error *error) {
-    const Method *method = &contender->method;
-    bool applies;
-    if (method->kind->description->role == METHOD_REFERENCE && !is_struck(context)) return true;
-    if (context->grid->map->iterations && !stability_takes_iterations(method)) return true;
-    if (!find_whether_it_applies(context, method, &applies, error)) return false;
-    if (applies) context->methods[context->method_count++] = contender;
-    return true;
-}
-
 static int axis_values(const StabilityAxis *axis, bool quick, double values[BORDER_POINTS_MAX]) {
     BorderScan scan = axis->scan;
     if (quick) scan.points = axis->quick_points;
@@ -320,8 +280,25 @@ bool stability_grid_begin(GridContext *context, const StabilityGrid *grid, Error
     context->y_count = axis_values(&grid->map->y, grid->quick, context->y);
     context->methods = malloc((size_t)grid->methods->count * sizeof *context->methods);
     if (context->methods == NULL) return error_memory(error, grid->map->name);
-    for (int i = 0; i < grid->methods->count; i++)
-        if (!add_method(context, &grid->methods->items[i], error)) return false;
+    /* The panel of the reference shows the truth of a struck scene. */
+    const StabilityPlace place = place_of(grid);
+    const bool struck = stability_verdict_run(&place, context->typical, grid->map->stands, NULL).struck != NULL;
+    for (int i = 0; i < grid->methods->count; i++) {
+        const Contender *contender = &grid->methods->items[i];
+        const Method *method = &contender->method;
+        Error reason = {0};
+        if (method->kind->description->role == METHOD_REFERENCE && !struck) continue;
+        if (grid->map->iterations && !stability_takes_iterations(method)) continue;
+        bool applies = true;
+        for (int k = 0; applies && k < 2; k++) { /* the first and the last cell */
+            Scene *scene =
+                scene_at(grid, context->x[k * (context->x_count - 1)], context->y[k * (context->y_count - 1)], &reason);
+            applies = scene != NULL && stability_applies(method, scene, &reason);
+            scene_destroy(scene);
+        }
+        if (reason.kind == ERROR_SYSTEM) return *error = reason, false;
+        if (applies) context->methods[context->method_count++] = contender;
+    }
     return true;
 }
 

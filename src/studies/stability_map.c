@@ -18,7 +18,7 @@
 #include <string.h>
 
 /* Inserts a value into a sorted list, if it is new. False if the list is full. */
-static bool stability_map_insert(double values[MAP_MAX_VALUES], int *count, double value) {
+static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
     int at = 0;
     while (at < *count && values[at] < value) at++;
     if (at < *count && values[at] == value) return true;
@@ -29,23 +29,23 @@ static bool stability_map_insert(double values[MAP_MAX_VALUES], int *count, doub
     return true;
 }
 
-static int stability_map_find(const double *values, double value) {
+static int place_of(const double *values, double value) {
     int i = 0;
     while (values[i] != value) i++;
     return i;
 }
 
-static bool gather_values(MapPanels *map, const CsvTable *table, int first, int end, Error *error) {
-    for (int i = first; i < end; i++)
-        if (!stability_map_insert(map->x, &map->x_count, map_cell(table, i)->x) ||
-            !stability_map_insert(map->y, &map->y_count, map_cell(table, i)->y))
+bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *error) {
+    const int first = *row;
+    memset(map, 0, sizeof *map); /* a literal would lie on the stack first, where 0.4 MB may be all there is */
+    map->first = map_cell(table, first);
+    while (*row < table->count && strcmp(map_cell(table, *row)->map, map->first->map) == 0) ++*row;
+    for (int i = first; i < *row; i++)
+        if (!insert(map->x, &map->x_count, map_cell(table, i)->x) ||
+            !insert(map->y, &map->y_count, map_cell(table, i)->y))
             return csv_table_error(table, i, 0, error, "more than %d values of a parameter", MAP_MAX_VALUES);
-    return true;
-}
-
-static bool gather_looks(MapPanels *map, const CsvTable *table, int first, int end, Error *error) {
     memset(map->looks, CELL_MISSING, sizeof map->looks);
-    for (int i = first; i < end; i++) {
+    for (int i = first; i < *row; i++) {
         const MapCell *cell = map_cell(table, i);
         if (i == first || !map_cell_same_method(cell - 1, cell)) {
             if (map->panel_count == MAP_MAX_METHODS)
@@ -53,22 +53,13 @@ static bool gather_looks(MapPanels *map, const CsvTable *table, int first, int e
                                        MAP_MAX_METHODS);
             map->methods[map->panel_count++] = cell;
         }
-        unsigned char *look =
-            &map->looks[map->panel_count - 1][stability_map_find(map->x, cell->x)][stability_map_find(map->y, cell->y)];
+        unsigned char *look = &map->looks[map->panel_count - 1][place_of(map->x, cell->x)][place_of(map->y, cell->y)];
         if (*look != CELL_MISSING)
             return csv_table_error(table, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
                                    cell->x, cell->y_parameter, cell->y);
         *look = (unsigned char)cell->verdict;
     }
     return true;
-}
-
-bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *error) {
-    int first = *row;
-    memset(map, 0, sizeof *map); /* a literal would lie on the stack first, where 0.4 MB may be all there is */
-    map->first = map_cell(table, first);
-    while (*row < table->count && strcmp(map_cell(table, *row)->map, map->first->map) == 0) ++*row;
-    return gather_values(map, table, first, *row, error) && gather_looks(map, table, first, *row, error);
 }
 
 /* mm */
@@ -183,11 +174,6 @@ static const double most_symbol = 2.0, seam = 0.07, overlap = 0.02, least_with_s
 /* Symbol width relative to a tile's smaller side. */
 static const double symbol_share = 0.56;
 
-static double symbol_width(TileSize size) {
-    const double room = size.symbol_room > 0 ? size.symbol_room : fmin(size.width, size.height);
-    return fmin(symbol_share * room, most_symbol);
-}
-
 void verdict_draw_symbol(Sketch *sketch, const Tile *tile, double width) {
     const VerdictLook *look = &verdict_looks[tile->look];
     const PlotStyle style = {.symbol = look->symbol, .open = look->open, .colour = look->ink};
@@ -210,8 +196,9 @@ void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize s
         sketch_rectangle(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y},
                          &(Pen){fill, 1, NO_COLOUR, 0, NULL});
     }
+    const double room = size.symbol_room > 0 ? size.symbol_room : fmin(size.width, size.height);
     for (int i = 0; i < count; i++)
-        if (!tiles[i].bare) verdict_draw_symbol(sketch, &tiles[i], symbol_width(size));
+        if (!tiles[i].bare) verdict_draw_symbol(sketch, &tiles[i], fmin(symbol_share * room, most_symbol));
 }
 
 int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const LegendPlace *place) {
@@ -324,39 +311,21 @@ typedef struct Layout {
     bool used[VERDICT_LOOKS];
 } Layout;
 
-static void find_used(Layout *layout) {
-    const MapPanels *map = layout->map;
-    for (int p = 0; p < map->panel_count; p++)
-        for (int x = 0; x < map->x_count; x++)
-            for (int y = 0; y < map->y_count; y++) layout->used[map->looks[p][x][y]] = true;
-}
-
-static int count_used(const Layout *layout) {
-    int count = 0;
-    for (int look = 0; look < VERDICT_LOOKS; look++) count += layout->used[look];
-    return count;
-}
-
 /* The title of a panel, in lines. */
 static int wrap_title(char title[STABILITY_TEXT_SIZE], const MapPanels *map, int panel, double width) {
     stability_method_text(title, map->methods[panel]->method, map->methods[panel]->setting);
     return text_wrap(title, STABILITY_TEXT_SIZE, 8, width);
 }
 
-/* mm: above panels of this width. */
-static double room_of_titles(const MapPanels *map, double width) {
-    char title[STABILITY_TEXT_SIZE];
-    int lines = 1;
-    for (int panel = 0; panel < map->panel_count; panel++)
-        lines = (int)fmax(lines, wrap_title(title, map, panel, width));
-    return title_room + (lines - 1) * line_height(8);
-}
-
 /* A single panel is one column of a printed page wide; several fill the page. */
 static Layout lay_out(const MapPanels *map, const LeftOut *left_out, Sketch *sketch) {
     int panels = map->panel_count;
     Layout layout = {.map = map, .sketch = sketch};
-    find_used(&layout);
+    int used = 0;
+    for (int p = 0; p < panels; p++)
+        for (int x = 0; x < map->x_count; x++)
+            for (int y = 0; y < map->y_count; y++) layout.used[map->looks[p][x][y]] = true;
+    for (int look = 0; look < VERDICT_LOOKS; look++) used += layout.used[look];
     PlotGrid grid = {.width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH,
                      .left = label_room + map_axis_width(map->y, map->y_count),
                      .right = right,
@@ -365,12 +334,16 @@ static Layout lay_out(const MapPanels *map, const LeftOut *left_out, Sketch *ske
                                                            : 4,
                      .gap = gap};
     grid.rows = (panels + grid.columns - 1) / grid.columns;
-    grid.top = room_of_titles(map, plot_grid_box(&grid, 0).width);
+    char title[STABILITY_TEXT_SIZE];
+    int lines = 1;
+    for (int panel = 0; panel < panels; panel++)
+        lines = (int)fmax(lines, wrap_title(title, map, panel, plot_grid_box(&grid, 0).width));
+    grid.top = title_room + (lines - 1) * line_height(8);
     grid.row_gap = grid.top + row_gap;
     layout.foot = NOTE_ROW * left_out_rows(left_out, grid.width - grid.left - 1);
     layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
     /* The border is one more legend item. */
-    layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
+    layout.legend_rows = (used + layout.legend_columns) / layout.legend_columns;
     grid.bottom = layout.foot + LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
     char label[STABILITY_TEXT_SIZE];
     stability_axis_text(label, map->first->y_parameter, map->first->y_unit);
@@ -405,7 +378,7 @@ static void draw_tiles(const Layout *layout, int panel, const PlotPanel *plot) {
 }
 
 /* One holds and the other fails; cells without a verdict do neither. */
-static bool stability_map_differ(int look, int other) {
+static bool differ(int look, int other) {
     return look < VERDICTS && other < VERDICTS && verdict_holds((Verdict)look) != verdict_holds((Verdict)other);
 }
 
@@ -422,9 +395,9 @@ static void draw_border(const Layout *layout, int panel, const PlotPanel *plot) 
         for (int y = 0; y < map->y_count; y++) {
             const int here = map->looks[panel][x][y];
             const Point corner = plot_place(plot, x + 0.5, y + 0.5); /* the upper right one */
-            if (x + 1 < map->x_count && stability_map_differ(here, map->looks[panel][x + 1][y]))
+            if (x + 1 < map->x_count && differ(here, map->looks[panel][x + 1][y]))
                 draw_edge(layout, (Point){corner.x, corner.y - layout->cell_y}, corner);
-            if (y + 1 < map->y_count && stability_map_differ(here, map->looks[panel][x][y + 1]))
+            if (y + 1 < map->y_count && differ(here, map->looks[panel][x][y + 1]))
                 draw_edge(layout, (Point){corner.x - layout->cell_x, corner.y}, corner);
         }
 }
@@ -519,16 +492,6 @@ static bool process_maps(const CsvTable *table, const CsvTable *unconverged, con
     return ok;
 }
 
-static bool draw_borders(const CsvTable *table, const CsvTable *unconverged, const char *folder,
-                         const StabilityOwn *own, const Progress *progress, Error *error) {
-    if (table->count == 0) return true;
-    PlotPage page = {0};
-    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, unconverged, own, &page, error) &&
-              plot_page_write(&page, folder, "", "borders", error);
-    plot_page_free(&page);
-    return ok;
-}
-
 bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error) {
     CsvTable maps = {0};
     CsvTable borders = {0};
@@ -536,9 +499,15 @@ bool stability_figures_write(const char *folder, const StabilityOwn *own, const 
     bool ok = csv_table_read_from(&borders, folder, &border_layout, error) &&
               csv_table_read_from(&maps, folder, &map_layout, error) &&
               csv_table_read_from(&unconverged, folder, &unconverged_layout, error) &&
-              process_maps(&maps, &unconverged, folder, false, NULL, error) &&
-              draw_borders(&borders, &unconverged, folder, own, progress, error) &&
-              process_maps(&maps, &unconverged, folder, true, progress, error);
+              process_maps(&maps, &unconverged, folder, false, NULL, error);
+    if (ok && borders.count > 0) {
+        PlotPage page = {0};
+        ok = go_on(0, 1, folder, progress, error) &&
+             stability_borders_write(&borders, &unconverged, own, &page, error) &&
+             plot_page_write(&page, folder, "", "borders", error);
+        plot_page_free(&page);
+    }
+    ok = ok && process_maps(&maps, &unconverged, folder, true, progress, error);
     csv_table_free(&unconverged);
     csv_table_free(&maps);
     csv_table_free(&borders);

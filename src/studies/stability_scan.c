@@ -65,33 +65,11 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     return ok;
 }
 
-/* A run as a cell, without what it showed. */
-static MapCell cell_at(const StabilityStudy *study, double value, const char *unit, const char *method,
-                       const char *setting) {
-    return (MapCell){.map = study->name,
-                     .method = method,
-                     .setting = setting,
-                     .x_parameter = study->parameter,
-                     .x_unit = unit,
-                     .x = value,
-                     .y_parameter = study->fixed.name,
-                     .y_unit = "",
-                     .y = study->fixed.name[0] != '\0' ? study->fixed.value : NAN};
-}
-
 typedef struct ProbeContext {
     Run *run;
     const Method *method;
     Result *result;
 } ProbeContext;
-
-static bool store_run(Result *result, double value, const VerdictReading *reading, Error *error) {
-    if (!array_reserve((void **)&result->runs, &result->run_capacity, (size_t)result->run_count + 1,
-                       sizeof *result->runs))
-        return error_memory(error, "runs");
-    result->runs[result->run_count++] = (ScanRun){value, *reading};
-    return true;
-}
 
 static bool probe_value(void *context, double value, int seed, Verdict *verdict, Error *error) {
     const ProbeContext *probed = context;
@@ -100,20 +78,14 @@ static bool probe_value(void *context, double value, int seed, Verdict *verdict,
     if (!stability_scan_run(run->scan, probed->method, value, seed, &run->context->converged, &reading, error))
         return false;
     *verdict = reading.verdict;
-    if (seed == 0 && !store_run(probed->result, value, &reading, error)) return false;
+    Result *result = probed->result;
+    if (seed == 0) {
+        if (!array_reserve((void **)&result->runs, &result->run_capacity, (size_t)result->run_count + 1,
+                           sizeof *result->runs))
+            return error_memory(error, "runs");
+        result->runs[result->run_count++] = (ScanRun){value, reading};
+    }
     return run_counter_add(&run->counter, run->scan->study->name, error);
-}
-
-static bool is_side(const BorderList *borders, double value) {
-    for (int i = 0; i < borders->count; i++)
-        if (borders->items[i].holds_at == value || borders->items[i].fails_at == value) return true;
-    return false;
-}
-
-static bool has_sides(const BorderList *borders) {
-    for (int i = 0; i < borders->count; i++)
-        if (!isnan(borders->items[i].holds_at) || !isnan(borders->items[i].fails_at)) return true;
-    return false;
 }
 
 /* Other programs may give another result each time: on both sides of a border it would matter most. Without a side,
@@ -121,30 +93,22 @@ static bool has_sides(const BorderList *borders) {
 static bool repeat_runs(const ProbeContext *probed, Error *error) {
     Run *run = probed->run;
     Result *result = probed->result;
-    const bool sides = has_sides(&result->borders);
     for (int i = 0; i < result->run_count; i++) {
         const ScanRun *first = &result->runs[i];
         VerdictReading again;
-        if (first->reading.verdict == VERDICT_ADAPTER_FAILED) continue;
-        if (sides && !is_side(&result->borders, first->value)) continue;
+        bool sides = false, is_side = false;
+        for (int k = 0; k < result->borders.count; k++) {
+            const Border *border = &result->borders.items[k];
+            sides |= !isnan(border->holds_at) || !isnan(border->fails_at);
+            is_side |= border->holds_at == first->value || border->fails_at == first->value;
+        }
+        if (first->reading.verdict == VERDICT_ADAPTER_FAILED || (sides && !is_side)) continue;
         if (!stability_scan_run(run->scan, probed->method, first->value, 0, &run->context->converged, &again, error) ||
             !run_counter_add(&run->counter, run->scan->study->name, error))
             return false;
         if (again.state != first->reading.state || again.steps != first->reading.steps) result->differs = first->value;
     }
     return true;
-}
-
-/* Tests both ends of the scan: a network may fit the bodies of one value only. */
-static bool applies(const StabilityScan *scan, const Method *method, Error *reason) {
-    const double ends[] = {scan->study->scan.from, scan->study->scan.to};
-    bool ok = true;
-    for (int i = 0; ok && i < 2; i++) {
-        Scene *scene = stability_study_scene(scan->study, scan->scenes, ends[i], reason);
-        ok = scene != NULL && stability_applies(method, scene, reason);
-        scene_destroy(scene);
-    }
-    return ok;
 }
 
 static const Contender *contender_of(const Run *run, int i) { return &run->scan->methods->items[run->first + i]; }
@@ -159,7 +123,15 @@ static bool study_method(void *context, int i, Error *error) {
         result->part = PART_LEFT_OUT;
         return true;
     }
-    if (!applies(run->scan, probed.method, &result->reason)) {
+    /* Both ends of the scan are tried: a network may fit the bodies of one value only. */
+    const double ends[] = {study->scan.from, study->scan.to};
+    bool applies = true;
+    for (int k = 0; applies && k < 2; k++) {
+        Scene *scene = stability_study_scene(study, run->scan->scenes, ends[k], &result->reason);
+        applies = scene != NULL && stability_applies(probed.method, scene, &result->reason);
+        scene_destroy(scene);
+    }
+    if (!applies) {
         result->part = PART_REFUSED;
         return result->reason.kind == ERROR_INPUT || error_system(error, study->name, "%s", result->reason.message);
     }
@@ -187,15 +159,6 @@ static int by_value(const void *left, const void *right) {
     return (a->value > b->value) - (a->value < b->value);
 }
 
-static double finite_or_nan(double number) { return isfinite(number) ? number : NAN; }
-
-static bool write_unconverged(const Run *run, const RunRow *row, FILE *lines, Error *error) {
-    const ConvergedRun *converged = converged_runs_find(&run->context->converged, row->value);
-    MapCell cell = cell_at(run->scan->study, row->value, row->unit, row->method, row->setting);
-    cell.verdict = row->verdict;
-    return unconverged_print(lines, -1, &cell, &converged->convergence, error);
-}
-
 static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines, Error *error) {
     const Contender *contender = contender_of(run, i);
     const StabilityStudy *study = run->scan->study;
@@ -208,8 +171,8 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
                         .value = scan_run->value,
                         .steps = reading->steps,
                         .verdict = (int)reading->verdict,
-                        .drift = finite_or_nan(reading->drift),
-                        .energy = finite_or_nan(reading->gained),
+                        .drift = isfinite(reading->drift) ? reading->drift : NAN,
+                        .energy = isfinite(reading->gained) ? reading->gained : NAN,
                         .not_finite = reading->fallbacks.not_finite,
                         .outside_cone = reading->fallbacks.outside_cone,
                         .beyond_training = reading->fallbacks.beyond_training,
@@ -218,27 +181,21 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
     const bool may_fall_back = method->needs_network || method->falls_back;
     if (may_fall_back && !piece_tables_print(lines, &fallback_layout, -1, &row, error)) return false;
     if (study->rests && !piece_tables_print(lines, &rest_layout, -1, &row, error)) return false;
-    return write_unconverged(run, &row, lines, error);
+    const ConvergedRun *converged = converged_runs_find(&run->context->converged, row.value);
+    MapCell cell = {.map = study->name, /* a run as a cell, without what it showed */
+                    .method = row.method,
+                    .setting = row.setting,
+                    .x_parameter = study->parameter,
+                    .x_unit = row.unit,
+                    .x = row.value,
+                    .y_parameter = study->fixed.name,
+                    .y_unit = "",
+                    .y = study->fixed.name[0] != '\0' ? study->fixed.value : NAN,
+                    .verdict = row.verdict};
+    return unconverged_print(lines, -1, &cell, &converged->convergence, error);
 }
 
-static bool write_runs(const Run *run, int i, FILE *lines, Error *error) {
-    Result *result = &run->results[i];
-    if (result->run_count == 0) return true;
-    qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);
-    for (int k = 0; k < result->run_count; k++)
-        if (!write_run(run, i, &result->runs[k], lines, error)) return false;
-    return true;
-}
-
-static bool write_refusal(const Run *run, int i, FILE *lines, Error *error) {
-    const Contender *contender = contender_of(run, i);
-    char *reason = run->results[i].reason.message;
-    reason[strcspn(reason, "\n")] = '\0';
-    const RefusalRow row = {run->scan->study->name, contender->name, contender->setting, reason};
-    return write_border(run, i, NULL, lines, error) && piece_tables_print(lines, &refusal_layout, -1, &row, error);
-}
-
-/* Runs are ordered by their value. */
+/* What a program says that it is, and how often its adapter failed, first at the lowest value. */
 static bool write_engine(const Run *run, int i, FILE *lines, Error *error) {
     const Contender *contender = contender_of(run, i);
     const Result *result = &run->results[i];
@@ -251,7 +208,6 @@ static bool write_engine(const Run *run, int i, FILE *lines, Error *error) {
                      .runs = result->run_count,
                      .reason = "",
                      .differs = result->differs};
-    if (!contender->method.kind->description->external) return true;
     method_program(&contender->method, &program);
     for (int k = 0; k < result->run_count; k++) {
         const VerdictReading *reading = &result->runs[k].reading;
@@ -261,12 +217,20 @@ static bool write_engine(const Run *run, int i, FILE *lines, Error *error) {
 }
 
 static bool write_result(const Run *run, int i, FILE *lines, Error *error) {
-    const Result *result = &run->results[i];
+    const Contender *contender = contender_of(run, i);
+    Result *result = &run->results[i];
     if (result->part == PART_LEFT_OUT) return true;
     for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
         if (!write_border(run, i, &result->borders.items[k], lines, error)) return false;
-    return write_runs(run, i, lines, error) && write_engine(run, i, lines, error) &&
-           (result->part != PART_REFUSED || write_refusal(run, i, lines, error));
+    if (result->run_count > 0) qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);
+    for (int k = 0; k < result->run_count; k++)
+        if (!write_run(run, i, &result->runs[k], lines, error)) return false;
+    if (contender->method.kind->description->external && !write_engine(run, i, lines, error)) return false;
+    if (result->part == PART_STUDIED) return true;
+    char *reason = result->reason.message;
+    reason[strcspn(reason, "\n")] = '\0';
+    const RefusalRow row = {run->scan->study->name, contender->name, contender->setting, reason};
+    return write_border(run, i, NULL, lines, error) && piece_tables_print(lines, &refusal_layout, -1, &row, error);
 }
 
 bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error *error) {
