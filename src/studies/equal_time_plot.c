@@ -6,7 +6,6 @@
 #include "figures/plot.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
-#include "pictures/picture.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
 #include "studies/chart_data.h"
