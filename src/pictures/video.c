@@ -296,8 +296,8 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
 /* YUV4MPEG2, a format that video programs read from a pipe. 4:4:4, 8 bits, ITU-R BT.709, limited range, exact
    values rounded to nearest, halves up:
 
-     Y = 16 + 219 L, Cb = 128 + 224 (B - L) / 1.8556, Cr = 128 + 224 (R - L) / 1.5748, L = 0.2126 R + 0.7152 G + 0.0722
-     B
+     Y = 16 + 219 L, Cb = 128 + 224 (B - L) / 1.8556, Cr = 128 + 224 (R - L) / 1.5748,
+     L = 0.2126 R + 0.7152 G + 0.0722 B
 
    with R, G, B = channel / 255. The format has no field that marks BT.709. */
 

@@ -74,8 +74,7 @@ def check_launches(checks, browser):
             page.run("player.choose('bomb_x', $0)", launches.uniform(x["from"], x["to"]))
             check_hashes(checks, page, scene, METHODS, "launched")
             checks.equal(f"{scene}: problem", page.run(PROBLEM), "")
-        if isinstance(browser, Chromium):
-            checks.quiet(scene, page)
+        checks.quiet(scene, page)
         page.close()
 
 

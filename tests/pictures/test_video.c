@@ -34,40 +34,36 @@ static VideoOptions options_for(const char *path) {
     return (VideoOptions){folder, 0, FRAMES - 1, 60, hashes, path, false};
 }
 
-/* Frames, rate and size according to a decoder. */
-static void probe(const char *path, int *frames, double *rate, int *width, int *height) {
-    char text[256], name[300];
-    int over, under;
+static void run_words(const char *const *argv, char *text, size_t size) {
     Error error = {0};
     Process process;
-    snprintf(name, sizeof name, "file:%s", path);
-    const char *argv[] = {"ffprobe",
-                          "-v",
-                          "error",
-                          "-count_frames",
-                          "-show_entries",
-                          "stream=width,height,avg_frame_rate,nb_read_frames",
-                          "-of",
-                          "csv=p=0",
-                          name,
-                          NULL};
     assert_ok(process_start(&process, argv, &error), error);
-    assert_ok(process_finish(&process, text, sizeof text, &error), error);
+    assert_ok(process_finish(&process, text, size, &error), error);
+}
+
+/* What ffprobe says of a video, of each of its streams or packets. */
+static void ask(const char *path, const char *entries, char *text, size_t size) {
+    char name[300];
+    snprintf(name, sizeof name, "file:%s", path);
+    run_words((const char *[]){"ffprobe", "-v", "error", "-count_frames", "-show_entries", entries, "-of", "csv=p=0",
+                               name, NULL},
+              text, size);
+}
+
+/* Frames, rate and size according to a decoder. */
+static void probe(const char *path, int *frames, double *rate, int *width, int *height) {
+    char text[256];
+    int over, under;
+    ask(path, "stream=width,height,avg_frame_rate,nb_read_frames", text, sizeof text);
     if (sscanf(text, "%d,%d,%d/%d,%d", width, height, &over, &under, frames) != 5) fail_msg("%s", text);
     *rate = (double)over / under;
 }
 
 /* The most frames from one key frame to the next, or to the end. */
 static int longest_seek(const char *path) {
-    char text[4096], name[300];
+    char text[4096];
     int longest = 0, since = 0;
-    Error error = {0};
-    Process process;
-    snprintf(name, sizeof name, "file:%s", path);
-    const char *argv[] = {"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries", "packet=flags", "-of",
-                          "csv=p=0", name, NULL};
-    assert_ok(process_start(&process, argv, &error), error);
-    assert_ok(process_finish(&process, text, sizeof text, &error), error);
+    ask(path, "packet=flags", text, sizeof text);
     assert_int_equal(text[0], 'K');
     for (const char *line = text; *line != '\0'; line += strcspn(line, "\n"), line += *line == '\n') {
         since = *line == 'K' ? 0 : since + 1;
@@ -89,15 +85,12 @@ static double film_error(const VideoOptions *options) {
     enum { PIXELS = WIDTH * HEIGHT };
     char from[300], text[256], decoded[300];
     static uint8_t rgb[3 * PIXELS];
-    Error error = {0};
-    Process process;
     double squares = 0;
     snprintf(from, sizeof from, "file:%s", options->path);
     snprintf(decoded, sizeof decoded, "file:%s", temporary_path("decoded"));
-    const char *argv[] = {"ffmpeg", "-y",       "-v",       "error", "-i",    from,
-                          "-f",     "rawvideo", "-pix_fmt", "rgb24", decoded, NULL};
-    assert_ok(process_start(&process, argv, &error), error);
-    assert_ok(process_finish(&process, text, sizeof text, &error), error);
+    run_words((const char *[]){"ffmpeg", "-y", "-v", "error", "-i", from, "-f", "rawvideo", "-pix_fmt", "rgb24",
+                               decoded, NULL},
+              text, sizeof text);
     FILE *file = fopen(decoded + strlen("file:"), "rb");
     assert_non_null(file);
     for (int frame = 0; frame < FRAMES; frame++) {
@@ -133,14 +126,8 @@ TEST(each_form_has_all_its_frames_as_they_are) {
         if (most > 2) fail_msg("%s: %d frames of 0.4 s without a key frame", names[i], most);
         const double found = film_error(&options);
         if (!(found < 5)) fail_msg("%s: %g levels", names[i], found);
-        char text[256], name[300];
-        Process process;
-        snprintf(name, sizeof name, "file:%s", options.path);
-        const char *argv[] = {
-            "ffprobe", "-v", "error", "-show_entries", "stream=color_space,color_transfer,color_primaries", "-of",
-            "csv=p=0", name, NULL};
-        assert_ok(process_start(&process, argv, &error), error);
-        assert_ok(process_finish(&process, text, sizeof text, &error), error);
+        char text[256];
+        ask(options.path, "stream=color_space,color_transfer,color_primaries", text, sizeof text);
         assert_string_equal(text, "bt709,bt709,bt709\n");
     }
     assert_nothing_left(temporary_folder);
