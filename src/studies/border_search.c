@@ -75,12 +75,12 @@ static bool evaluate(const Search *search, Sample *sample, int first, int last, 
     return true;
 }
 
-static bool border_search_check(const Search *search, Sample *sample, Error *error) {
+static bool check(const Search *search, Sample *sample, Error *error) {
     return sample->checked || evaluate(search, sample, 1, search->probe->seeds, error);
 }
 
 /* Evaluates a value and inserts it at an index. checked: with all seeds, else with seed 0 only. */
-static bool border_search_insert(Search *search, int place, double value, bool checked, Error *error) {
+static bool insert(Search *search, int place, double value, bool checked, Error *error) {
     Sample sample = {.value = value};
     if (!evaluate(search, &sample, 0, checked ? search->probe->seeds : 1, error)) return false;
     if (!array_reserve((void **)&search->samples, &search->capacity, (size_t)search->count + 1, sizeof sample))
@@ -88,14 +88,6 @@ static bool border_search_insert(Search *search, int place, double value, bool c
     memmove(&search->samples[place + 1], &search->samples[place], (size_t)(search->count - place) * sizeof sample);
     search->samples[place] = sample;
     search->count++;
-    return true;
-}
-
-static bool scan_coarsely(Search *search, Error *error) {
-    double values[BORDER_POINTS_MAX];
-    int count = border_scan_values(search->scan, values);
-    for (int i = 0; i < count; i++)
-        if (!border_search_insert(search, i, values[i], false, error)) return false;
     return true;
 }
 
@@ -107,7 +99,7 @@ static bool check_beside(Search *search, int i, int direction, bool *found, Erro
     const double outward = beside(search->scan, value, direction);
     if (direction * (limit - outward) <= 0) return true;
     *found = true;
-    return border_search_insert(search, direction > 0 ? next : i, outward, true, error);
+    return insert(search, direction > 0 ? next : i, outward, true, error);
 }
 
 /* Refines until differing neighbours are within the resolution and they and the values beside them have been evaluated
@@ -119,11 +111,10 @@ static bool refine(Search *search, Error *error) {
         if (low->side == high->side) {
             i++;
         } else if (!resolved(search->scan, low->value, high->value) && between > low->value && between < high->value) {
-            if (!border_search_insert(search, i + 1, between,
-                                      low->side == SIDE_UNDECIDED || high->side == SIDE_UNDECIDED, error))
+            if (!insert(search, i + 1, between, low->side == SIDE_UNDECIDED || high->side == SIDE_UNDECIDED, error))
                 return false;
         } else if (!low->checked || !high->checked) {
-            if (!border_search_check(search, low, error) || !border_search_check(search, high, error)) return false;
+            if (!check(search, low, error) || !check(search, high, error)) return false;
             /* The lower one may now differ from its predecessor. */
             if (i > 0) i--;
         } else {
@@ -144,27 +135,11 @@ static const Sample *sample_at(const Search *search, int i) {
     return &search->samples[search->scan->fails_low ? search->count - 1 - i : i];
 }
 
-static bool border_search_add(BorderList *list, const Sample *holds, const Sample *fails, Verdict verdict,
-                              Error *error) {
+static bool add_border(BorderList *list, const Sample *holds, const Sample *fails, Verdict verdict, Error *error) {
     if (list->count == BORDERS_MAX) return error_input(error, "border", "more than %d borders found", BORDERS_MAX);
     list->items[list->count++] =
         (Border){holds != NULL ? holds->value : NAN, fails != NULL ? fails->value : NAN, verdict};
     return true;
-}
-
-/* No border: all decided values hold, or all fail. */
-static bool add_one_sided(const Search *search, BorderList *list, Error *error) {
-    const Sample *last = NULL, *first = NULL; /* last that holds, before any that is undecided; first that fails */
-    bool decided = true;
-    Verdict worst = VERDICT_SETTLES;
-    for (int i = 0; i < search->count; i++) {
-        const Sample *sample = sample_at(search, i);
-        if (sample->verdict > worst) worst = sample->verdict;
-        decided = decided && sample->side != SIDE_UNDECIDED;
-        if (sample->side == SIDE_HOLDS && decided) last = sample;
-        if (sample->side == SIDE_FAILS && first == NULL) first = sample;
-    }
-    return border_search_add(list, last, first, first != NULL ? first->verdict : worst, error);
 }
 
 static bool list_borders(const Search *search, BorderList *list, Error *error) {
@@ -177,15 +152,25 @@ static bool list_borders(const Search *search, BorderList *list, Error *error) {
             continue;
         }
         const Sample *holds = now->side == SIDE_HOLDS ? now : before, *fails = now->side == SIDE_HOLDS ? before : now;
-        if (before != NULL && before->side != now->side &&
-            !border_search_add(list, holds, fails, fails->verdict, error))
+        if (before != NULL && before->side != now->side && !add_border(list, holds, fails, fails->verdict, error))
             return false;
         before = now;
         worst = VERDICT_SETTLES;
     }
-    if (list->count == 0) return add_one_sided(search, list, error);
-    if (worst > VERDICT_SETTLES && before->side == SIDE_HOLDS)
-        return border_search_add(list, before, NULL, worst, error);
+    if (list->count == 0) {                       /* all decided values hold, or all fail */
+        const Sample *last = NULL, *first = NULL; /* that holds, before any that is undecided; that fails */
+        bool decided = true;
+        worst = VERDICT_SETTLES;
+        for (int i = 0; i < search->count; i++) {
+            const Sample *sample = sample_at(search, i);
+            if (sample->verdict > worst) worst = sample->verdict;
+            decided = decided && sample->side != SIDE_UNDECIDED;
+            if (sample->side == SIDE_HOLDS && decided) last = sample;
+            if (sample->side == SIDE_FAILS && first == NULL) first = sample;
+        }
+        return add_border(list, last, first, first != NULL ? first->verdict : worst, error);
+    }
+    if (worst > VERDICT_SETTLES && before->side == SIDE_HOLDS) return add_border(list, before, NULL, worst, error);
     return true;
 }
 
@@ -193,7 +178,10 @@ bool border_search(BorderList *list, const BorderScan *scan, const BorderProbe *
     BorderScan turned = *scan;
     Search search = {.scan = &turned, .probe = probe};
     list->count = 0;
-    bool ok = scan_coarsely(&search, error);
+    double values[BORDER_POINTS_MAX];
+    const int count = border_scan_values(scan, values);
+    bool ok = true;
+    for (int i = 0; ok && i < count; i++) ok = insert(&search, i, values[i], false, error);
     const Sample *first = search.samples;
     if (ok && scan->either && first != NULL)
         turned.fails_low = first->side == SIDE_FAILS && first[search.count - 1].side == SIDE_HOLDS;

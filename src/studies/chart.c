@@ -214,20 +214,6 @@ static bool add_times(const Assembly *assembly, ChartRow *rows, char cpu[CPU_NAM
     return ok;
 }
 
-/* Fills rows[contenders of the scene * ROWS_EACH]. Their texts are the scene's, but for cpu[CPU_NAME_SIZE]. Memory: of
-   some methods on all launches, and of one piece. ERROR_INPUT for a piece whose results are damaged. */
-static bool chart_assemble(const Pieces *pieces, const ChartScene *scene, ChartRow *rows, char cpu[CPU_NAME_SIZE],
-                           SceneSolves *solves, Error *error) {
-    *solves = (SceneSolves){0};
-    const size_t count = (size_t)scene->study.contender_count;
-    const Assembly assembly = {pieces, scene, solves, calloc(count + 1, sizeof *assembly.scores)};
-    if (assembly.scores == NULL) return error_memory(error, "study");
-    const bool ok = add_scores(&assembly, rows, error) && add_times(&assembly, rows, cpu, error);
-    for (size_t i = 0; i < count; i++) method_scores_free(&assembly.scores[i]);
-    free(assembly.scores);
-    return ok;
-}
-
 /* On two cores, the full study of three scenes takes some minutes, the quick one less than one. */
 static const StudySize full_size = {.launches = 40,
                                     .closed = {.after = 6, .rest = 30},
@@ -289,8 +275,15 @@ static bool assemble_chart(Run *run, const Pieces *pieces, Error *error) {
         const ChartScene *scene = &run->plan.scenes[i];
         SpeedAccuracyScene *summary = &run->scenes[i];
         *summary = summarise(run, &scene->study);
-        if (!chart_assemble(pieces, scene, run->rows + run->row_count, run->cpus[i], &summary->solves, error))
-            return false;
+        /* Memory: of some methods on all launches, and of one piece. */
+        const size_t contenders = (size_t)scene->study.contender_count;
+        const Assembly assembly = {pieces, scene, &summary->solves, calloc(contenders + 1, sizeof(MethodScores))};
+        ChartRow *rows = run->rows + run->row_count;
+        const bool ok = (assembly.scores != NULL || error_memory(error, "study")) &&
+                        add_scores(&assembly, rows, error) && add_times(&assembly, rows, run->cpus[i], error);
+        for (size_t k = 0; assembly.scores != NULL && k < contenders; k++) method_scores_free(&assembly.scores[k]);
+        free(assembly.scores);
+        if (!ok) return false;
         run->row_count += summary->contenders * ROWS_EACH;
     }
     return true;

@@ -67,8 +67,3 @@ typedef struct ChartPicture {
 bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *scene, const ChartLook *look,
                         Error *error);
 void chart_picture_free(ChartPicture *picture);
-
-/* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
-void chart_mark_place(const ChartPicture *picture, int panel, const ChartMark *mark, double *left, double *top);
-
-extern const char *const chart_panel_titles[CHART_PANELS];

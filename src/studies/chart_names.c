@@ -95,17 +95,13 @@ static const ChartMark *find_chief(const ChartDrawing *drawing, int line) {
     return chief;
 }
 
-/* A silenced twin stands beside its method, in its colour: "net=off". */
-static const char *name_of(const ChartLine *line) {
-    const char *word = chart_twin_word(line);
-    return word != NULL ? word : line->name;
-}
-
 /* The name of a coloured line; of a mark, how its setting stands to the engine as shipped. */
 static Label label_of(const ChartDrawing *drawing, int line, const ChartMark *mark) {
     const ChartMark *shipped = chart_find_shipped(drawing->panel);
     Label label = {.ink = chart_line_style(&drawing->chart->lines[line]).ink};
-    label_row(&label, CHART_NAME_POINTS, name_of(&drawing->chart->lines[line]));
+    /* A silenced twin stands beside its method, in its colour: "net=off". */
+    const char *word = chart_twin_word(&drawing->chart->lines[line]);
+    label_row(&label, CHART_NAME_POINTS, word != NULL ? word : drawing->chart->lines[line].name);
     if (mark == NULL || mark == shipped) return label;
     label_row(&label, CHART_SMALL_POINTS, mark->label);
     if (shipped != NULL && line != shipped->line && !chart_is_program(&drawing->chart->lines[line])) {
@@ -129,31 +125,24 @@ static const ChartMark *name_mark(ChartDrawing *drawing, const ChartMark *chief,
     return NULL;
 }
 
-/* Of a coloured line. */
-static void name_coloured(ChartDrawing *drawing, int line) {
-    const ChartMark *chief = find_chief(drawing, line);
-    if (chief == NULL) return;
-    const ChartMark *mark = name_mark(drawing, chief, true);
-    drawing->told[line] = mark;
-    drawing->named[line] |= mark != NULL || name_mark(drawing, chief, false) != NULL;
-}
-
-static int next_coloured(const ChartDrawing *drawing, const bool *named) {
-    int next = -1;
-    double least = INFINITY;
-    for (int i = 0; i < drawing->chart->line_count; i++) {
-        if (drawing->chart->lines[i].rank != CHART_COLOURED || named[i]) continue;
-        const ChartMark *chief = find_chief(drawing, i);
-        const double error = chief != NULL ? chief->error : HUGE_VAL;
-        if (next < 0 || error < least) next = i, least = error;
-    }
-    return next;
-}
-
 /* The most accurate first: below them is room. */
-static void name_all_coloured(ChartDrawing *drawing) {
+static void name_coloured(ChartDrawing *drawing) {
     bool named[CHART_MAX_LINES] = {false};
-    for (int line; (line = next_coloured(drawing, named)) >= 0; named[line] = true) name_coloured(drawing, line);
+    for (;;) {
+        const ChartMark *chief = NULL;
+        int next = -1;
+        for (int i = 0; i < drawing->chart->line_count; i++) {
+            if (drawing->chart->lines[i].rank != CHART_COLOURED || named[i]) continue;
+            const ChartMark *mark = find_chief(drawing, i);
+            named[i] = mark == NULL;
+            if (mark != NULL && (chief == NULL || mark->error < chief->error)) next = i, chief = mark;
+        }
+        if (next < 0) return;
+        named[next] = true;
+        const ChartMark *told = name_mark(drawing, chief, true);
+        drawing->told[next] = told;
+        drawing->named[next] |= told != NULL || name_mark(drawing, chief, false) != NULL;
+    }
 }
 
 /* The ends of a grey line: the last mark is the most accurate one. */
@@ -198,7 +187,7 @@ static void draw_names(ChartDrawing *drawing) {
         label_row(&label, CHART_SMALL_POINTS, text);
         place_label(drawing, shipped, &label, 20);
     }
-    name_all_coloured(drawing);
+    name_coloured(drawing);
     for (int i = 0; i < chart->line_count; i++)
         if (chart->lines[i].rank == CHART_COLOURED) name_settings(drawing, i);
     for (int i = 0; i < chart->line_count; i++)

@@ -39,7 +39,7 @@ static const struct {
              [CHART_COLUMN] = {FIGURE_COLUMN_WIDTH, 144, 0, 15, 1},
              [CHART_SLIDE] = {160, 90, 8, 0, 2}};
 
-const char *const chart_panel_titles[CHART_PANELS] = {"At the impact", "In the 60 frames after it"};
+static const char *const panel_titles[CHART_PANELS] = {"At the impact", "In the 60 frames after it"};
 
 /* words: mm that the caption takes below. */
 static void lay_out(ChartPicture *picture, double words) {
@@ -61,7 +61,7 @@ static void lay_out(ChartPicture *picture, double words) {
         const char *error_axis = p == 0 || pages[size].columns == 1 ? "Mean velocity error (m/s)" : NULL;
         picture->panels[p] =
             (PlotPanel){.box = plot_grid_box(&grid, p),
-                        .title = chart_panel_titles[p],
+                        .title = panel_titles[p],
                         .x = plot_log_axis(chart->us_least, chart->us_most, "Solver time per step (µs)"),
                         .y = plot_log_axis(chart->error_least, chart->error_most, error_axis),
                         .points = AXIS_POINTS};
@@ -243,29 +243,13 @@ bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *s
 
 void chart_picture_free(ChartPicture *picture) { sketch_free(&picture->sketch); }
 
-void chart_mark_place(const ChartPicture *picture, int panel, const ChartMark *mark, double *left, double *top) {
-    const Point at = plot_place(&picture->panels[panel], mark->us, mark->error);
-    *left = at.x / picture->width;
-    *top = 1 - at.y / picture->height;
-}
-
-static bool write_picture(const ChartPicture *picture, const char *stem, Error *error) {
-    char caption[PATH_MAX];
-    return sketch_draw(&picture->sketch, stem, SKETCH_PDF, error) &&
-           file_path(caption, sizeof caption, error, "%s.txt", stem) &&
-           file_write(caption, picture->caption, strlen(picture->caption), error);
-}
-
-/* A table from another source must not make us write outside the folder. */
-static bool check_name(const char *csv_path, const char *scene, Error *error) {
-    return (scene[0] != '\0' && strchr(scene, '/') == NULL) ||
-           error_input(error, csv_path, "'%s' is not a valid scene name", scene);
-}
-
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, const ChartLook *look, Error *error) {
-    char stem[PATH_MAX];
-    if (!check_name(csv_path, scene, error)) return false;
-    if (!file_path(stem, sizeof stem, error, "%s/chart-%s", folder, scene)) return false;
+    char stem[PATH_MAX], caption[PATH_MAX];
+    if (scene[0] == '\0' || strchr(scene, '/') != NULL) /* another's table must not make us write outside the folder */
+        return error_input(error, csv_path, "'%s' is not a valid scene name", scene);
+    if (!file_path(stem, sizeof stem, error, "%s/chart-%s", folder, scene) ||
+        !file_path(caption, sizeof caption, error, "%s.txt", stem))
+        return false;
     CsvTable table;
     if (!csv_table_read(&table, csv_path, &chart_layout, error)) return false;
     Chart chart;
@@ -274,7 +258,8 @@ bool chart_plot(const char *csv_path, const char *scene, const char *folder, con
     if (drawn) {
         drawn = chart_picture_make(&picture, &chart, scene, look, error);
         if (drawn) {
-            drawn = write_picture(&picture, stem, error);
+            drawn = sketch_draw(&picture.sketch, stem, SKETCH_PDF, error) &&
+                    file_write(caption, picture.caption, strlen(picture.caption), error);
             chart_picture_free(&picture);
         }
         chart_free(&chart);

@@ -20,7 +20,7 @@ static MethodRuns default_runs(const MethodDescription *method, ContenderStudy s
     return runs != NULL ? runs : one_run;
 }
 
-static bool contenders_add(ContenderList *list, const char *name, const char *setting, Error *error) {
+static bool add(ContenderList *list, const char *name, const char *setting, Error *error) {
     Contender contender;
     char text[CHART_NAME_SIZE + CHART_SETTING_SIZE + 1];
     if (strlen(name) >= sizeof contender.name || strlen(setting) >= sizeof contender.setting)
@@ -41,29 +41,12 @@ static bool contenders_add(ContenderList *list, const char *name, const char *se
 
 static bool add_runs(ContenderList *list, const char *name, MethodRuns runs, Error *error) {
     for (; *runs != NULL; runs++)
-        if (!contenders_add(list, name, *runs, error)) return false;
+        if (!add(list, name, *runs, error)) return false;
     return true;
 }
 
-/* A method with the settings that follow its name, if any. */
-static bool add_as_given(ContenderList *list, char *word, Error *error) {
-    char *colon = strchr(word, ':');
-    if (colon == NULL) return contenders_add(list, word, "", error);
-    if (colon[1] == '\0') return method_parse(&(Method){0}, word, error); /* refused */
-    *colon = '\0';
-    return contenders_add(list, word, colon + 1, error);
-}
-
-/* A name without settings: the default runs of a chart, or one run of a method that has no default. */
-static bool add_word(ContenderList *list, char *word, ContenderStudy study, Error *error) {
-    const MethodDescription *method = method_describe(word);
-    if (study == STUDY_STABILITY || strchr(word, ':') != NULL || method == NULL) return add_as_given(list, word, error);
-    const MethodRuns runs = default_runs(method, study);
-    return *runs != NULL ? add_runs(list, word, runs, error) : contenders_add(list, word, "", error);
-}
-
 /* Ends the first word of the list, at a comma that no setting follows. Returns the next word, or NULL. */
-static char *contenders_split(char *text) {
+static char *split(char *text) {
     for (char *comma = strchr(text, ','); comma != NULL; comma = strchr(comma + 1, ',')) {
         size_t word = strcspn(comma + 1, ",:=");
         if (comma[1 + word] == '=') continue;
@@ -95,8 +78,18 @@ static bool add_words(ContenderList *list, const char *text, ContenderStudy stud
     char *copy = strdup(text), *word = copy;
     bool ok = copy != NULL || error_memory(error, "contenders");
     while (ok && word != NULL) {
-        char *next = contenders_split(word);
-        ok = add_word(list, word, study, error);
+        char *next = split(word), *colon = strchr(word, ':');
+        const MethodDescription *method = method_describe(word);
+        const MethodRuns runs = method != NULL ? default_runs(method, study) : NULL;
+        if (colon != NULL && colon[1] == '\0')
+            ok = method_parse(&(Method){0}, word, error); /* refused */
+        else if (colon != NULL) {
+            *colon = '\0';
+            ok = add(list, word, colon + 1, error);
+        } else if (study == STUDY_STABILITY || runs == NULL || *runs == NULL)
+            ok = add(list, word, "", error);
+        else /* a name without settings: the default runs of a chart */
+            ok = add_runs(list, word, runs, error);
         word = next;
     }
     free(copy);

@@ -50,37 +50,20 @@ static bool check_line(const Tables *tables, const char *line, int sections, Err
                         (int)strcspn(line, "\n"), line);
 }
 
-static bool read_piece(const Tables *tables, const Pieces *pieces, int64_t piece, int sections, Error *error) {
-    size_t size;
-    char *text = tables->texts[piece] = pieces_read(pieces, piece, &size, NULL, error);
-    if (text == NULL) return false;
-    if (size != strlen(text) || (size > 0 && text[size - 1] != '\n'))
-        return error_system(error, "tables", "a piece is not made of lines");
-    for (const char *line = text; *line != '\0'; line += strcspn(line, "\n") + 1)
-        if (!check_line(tables, line, sections, error)) return false;
-    return true;
-}
-
 static bool read_pieces(const Tables *tables, const Pieces *pieces, Error *error) {
     for (int g = 0; g < tables->group_count; g++) {
         const PieceGroup *group = &tables->groups[g];
-        for (int64_t i = group->first; i < group->first + group->count; i++)
-            if (!read_piece(tables, pieces, i, group->sections, error)) return false;
+        for (int64_t i = group->first; i < group->first + group->count; i++) {
+            size_t size;
+            char *text = tables->texts[i] = pieces_read(pieces, i, &size, NULL, error);
+            if (text == NULL) return false;
+            if (size != strlen(text) || (size > 0 && text[size - 1] != '\n'))
+                return error_system(error, "tables", "a piece is not made of lines");
+            for (const char *line = text; *line != '\0'; line += strcspn(line, "\n") + 1)
+                if (!check_line(tables, line, group->sections, error)) return false;
+        }
     }
     return true;
-}
-
-/* The rows of a group in a section; -1: those without one. */
-static void print_section(FILE *out, const Tables *tables, const CsvLayout *layout, const PieceGroup *group,
-                          int section) {
-    char tag[CSV_NAME_SIZE + 16] = "";
-    text_add(tag, sizeof tag, "%s", layout->name);
-    if (section >= 0) text_add(tag, sizeof tag, "/%d", section);
-    text_add(tag, sizeof tag, ":");
-    const size_t length = strlen(tag);
-    for (int64_t i = group->first; i < group->first + group->count; i++)
-        for (const char *line = tables->texts[i]; *line != '\0'; line += strcspn(line, "\n") + 1)
-            if (strncmp(line, tag, length) == 0) fwrite(line + length, 1, strcspn(line, "\n") + 1 - length, out);
 }
 
 typedef struct Table {
@@ -91,9 +74,20 @@ typedef struct Table {
 static void print_table(FILE *out, const void *context) {
     const Table *table = context;
     csv_header_print(out, table->layout);
-    for (int g = 0; g < table->tables->group_count; g++)
-        for (int section = -1; section < table->tables->groups[g].sections; section++)
-            print_section(out, table->tables, table->layout, &table->tables->groups[g], section);
+    for (int g = 0; g < table->tables->group_count; g++) {
+        const PieceGroup *group = &table->tables->groups[g];
+        for (int section = -1; section < group->sections; section++) { /* -1: rows without one */
+            char tag[CSV_NAME_SIZE + 16] = "";
+            text_add(tag, sizeof tag, "%s", table->layout->name);
+            if (section >= 0) text_add(tag, sizeof tag, "/%d", section);
+            text_add(tag, sizeof tag, ":");
+            const size_t length = strlen(tag);
+            for (int64_t i = group->first; i < group->first + group->count; i++)
+                for (const char *line = table->tables->texts[i]; *line != '\0'; line += strcspn(line, "\n") + 1)
+                    if (strncmp(line, tag, length) == 0)
+                        fwrite(line + length, 1, strcspn(line, "\n") + 1 - length, out);
+        }
+    }
 }
 
 bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayout *const *layouts, int layout_count,

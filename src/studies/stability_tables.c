@@ -46,15 +46,16 @@ const char stability_unconverged_words[] =
     "From a step on that did not converge no run is judged by the reference, and "
     "what a strike must do is undecided.";
 
-static bool same_place(const MapCell *a, const MapCell *b) {
-    return strcmp(a->map, b->map) == 0 && a->x == b->x && (a->y == b->y || (isnan(a->y) && isnan(b->y)));
-}
-
 /* The first row of its values: other methods have the same converged runs. */
 static bool is_first_there(const CsvTable *table, int i) {
-    bool first = true;
-    for (int k = 0; first && k < i; k++) first = !same_place(map_cell(table, k), map_cell(table, i));
-    return first;
+    const MapCell *cell = map_cell(table, i);
+    for (int k = 0; k < i; k++) {
+        const MapCell *other = map_cell(table, k);
+        if (strcmp(other->map, cell->map) == 0 && other->x == cell->x &&
+            (other->y == cell->y || (isnan(other->y) && isnan(cell->y))))
+            return false;
+    }
+    return true;
 }
 
 /* "at rows 22", or of a map "at rows/rate 22/60"; further places without the names. */
@@ -118,22 +119,12 @@ void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, 
     text[0] = (char)toupper((unsigned char)text[0]);
 }
 
-static bool is_file_name(const char *name) {
-    for (const char *c = name; *c != '\0'; c++)
-        if (!isalnum((unsigned char)*c) && *c != '_' && *c != '-') return false;
-    return name[0] != '\0';
-}
-
-static bool same_axes(const MapCell *a, const MapCell *b) {
-    return strcmp(a->x_parameter, b->x_parameter) == 0 && strcmp(a->x_unit, b->x_unit) == 0 &&
-           strcmp(a->y_parameter, b->y_parameter) == 0 && strcmp(a->y_unit, b->y_unit) == 0;
-}
-
 /* Row i is the first of a map, or of a method of one: neither may have appeared before. */
 static bool check_first(const CsvTable *table, int i, bool new_map, Error *error) {
     const MapCell *cell = map_cell(table, i);
-    if (new_map && !is_file_name(cell->map))
-        return csv_table_error(table, i, 0, error, "map: '%s' is not a file name", cell->map);
+    bool is_name = cell->map[0] != '\0';
+    for (const char *c = cell->map; *c != '\0'; c++) is_name &= isalnum((unsigned char)*c) || *c == '_' || *c == '-';
+    if (new_map && !is_name) return csv_table_error(table, i, 0, error, "map: '%s' is not a file name", cell->map);
     for (int k = 0; k < i; k++) {
         if (strcmp(map_cell(table, k)->map, cell->map) != 0) continue;
         if (new_map) return csv_table_error(table, i, 0, error, "the rows of map '%s' are not together", cell->map);
@@ -149,7 +140,8 @@ static bool check_cells(const CsvTable *table, Error *error) {
     for (int i = 0; i < table->count; i++) {
         const MapCell *cell = map_cell(table, i), *last = i > 0 ? cell - 1 : cell;
         bool new_map = i == 0 || strcmp(last->map, cell->map) != 0;
-        if (!new_map && !same_axes(last, cell))
+        if (!new_map && (strcmp(last->x_parameter, cell->x_parameter) != 0 || strcmp(last->x_unit, cell->x_unit) != 0 ||
+                         strcmp(last->y_parameter, cell->y_parameter) != 0 || strcmp(last->y_unit, cell->y_unit) != 0))
             return csv_table_error(table, i, 0, error, "the parameters differ from those of the row before");
         if (!new_map && map_cell_same_method(last, cell)) continue;
         if (++firsts > STABILITY_MAX_PANELS)

@@ -112,19 +112,12 @@ static void print_text(FILE *out, const void *context) {
     text->whole = text->write(text->context, out, text->error);
 }
 
-char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error) {
-    Text printed = {write, context, true, error};
-    char *text = file_print(print_text, &printed, size);
-    if (text != NULL && printed.whole) return text;
-    if (printed.whole) error_memory(error, what);
-    free(text);
-    return NULL;
-}
-
 bool text_write(const char *path, TextWrite *write, void *context, Error *error) {
     size_t size;
-    char *text = text_print(write, context, &size, path, error);
-    const bool written = text != NULL && file_write(path, text, size, error);
+    Text printed = {write, context, true, error};
+    char *text = file_print(print_text, &printed, &size);
+    if (text == NULL && printed.whole) error_memory(error, path);
+    const bool written = text != NULL && printed.whole && file_write(path, text, size, error);
     free(text);
     return written;
 }

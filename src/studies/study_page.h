@@ -29,12 +29,6 @@ bool study_page_write(StudyPage *page, const char *scene, const ContenderList *m
 void study_link_put(FILE *out, const StudyPage *page, const char *set, const char *method, const char *setting,
                     const char *text);
 
-/* Texts that are complete in memory before they become files. */
-
+/* Writes to a file, which appears whole, what `write` writes. */
 typedef bool TextWrite(void *context, FILE *out, Error *error);
-
-/* The text that `write` writes, to be freed. NULL with error set where it fails; `what` is without memory. */
-char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error);
-
-/* Writes it to a file. */
 bool text_write(const char *path, TextWrite *write, void *context, Error *error);
