@@ -31,7 +31,6 @@ typedef struct ChartScene {
     int working;                        /* launches that are being scored */
 } ChartScene;
 
-/* chart_plan_free(), also after a failure. */
 typedef struct ChartPlan {
     ChartScene *scenes; /* [count] */
     int count;
@@ -114,12 +113,6 @@ static bool chart_plan_make(ChartPlan *plan, const char *const *paths, int count
         plan->plan.count += study->launch_count + 1;
     }
     return true;
-}
-
-static void chart_plan_free(ChartPlan *plan) {
-    for (int i = 0; i < plan->count; i++) scene_study_end(&plan->scenes[i].study);
-    free(plan->scenes);
-    *plan = (ChartPlan){0};
 }
 
 /* chart.csv from the pieces. */
@@ -341,25 +334,21 @@ static void print_html(FILE *out, const void *context) {
     house_page_end(out);
 }
 
-static bool write_pages(Run *run, Error *error) {
+/* What follows from the pieces, once all are there: the table, what is drawn of it, pages. */
+static bool finish(Run *run, const Pieces *pieces, Error *error) {
     const SpeedAccuracyOptions *options = run->options;
-    char path[CSV_PATH_SIZE];
+    char path[CSV_PATH_SIZE], html[CSV_PATH_SIZE];
+    if (!csv_table_path(path, options->folder, &chart_layout, error) ||
+        !file_path(html, sizeof html, error, "%s/chart.html", options->folder) || !assemble_chart(run, pieces, error) ||
+        !csv_table_write(path, &chart_layout, run->rows, run->row_count, error) ||
+        !options->draw(options, run->scenes, error))
+        return false;
     run->pages = calloc((size_t)run->plan.count + 1, sizeof *run->pages);
     if (run->pages == NULL) return error_memory(error, "study");
     for (int i = 0; i < run->plan.count; i++)
         if (!study_page_write(&run->pages[i], options->scenes[i], &run->contenders, options->folder, error))
             return false;
-    return file_path(path, sizeof path, error, "%s/chart.html", options->folder) &&
-           file_write_text(path, print_html, run, error);
-}
-
-/* What follows from the pieces, once all are there. */
-static bool chart_finish(Run *run, const Pieces *pieces, Error *error) {
-    const SpeedAccuracyOptions *options = run->options;
-    char path[CSV_PATH_SIZE];
-    return csv_table_path(path, options->folder, &chart_layout, error) && assemble_chart(run, pieces, error) &&
-           csv_table_write(path, &chart_layout, run->rows, run->row_count, error) &&
-           options->draw(options, run->scenes, error) && write_pages(run, error) && pieces_end(pieces, error);
+    return file_write_text(html, print_html, run, error) && pieces_end(pieces, error);
 }
 
 bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, const Progress *progress,
@@ -377,9 +366,10 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
     ok = ok && find_key(options, &run.contenders, &key, error) &&
          pieces_open(pieces, options->folder, &key, &options->shard, error) &&
          pieces_do(pieces, &run.plan.plan, progress, error) &&
-         (options->shard.count > 0 || chart_finish(&run, pieces, error));
+         (options->shard.count > 0 || finish(&run, pieces, error));
     pieces->plan = NULL;
-    chart_plan_free(&run.plan);
+    for (int i = 0; i < run.plan.count; i++) scene_study_end(&run.plan.scenes[i].study);
+    free(run.plan.scenes);
     contenders_free(&run.contenders);
     free(run.rows);
     free(run.cpus);

@@ -97,26 +97,6 @@ static void add_curves(const Caption *caption) {
     if (hidden) text_add(caption->text, caption->size, " Switched-off variants of grey methods are in the table only.");
 }
 
-static void add_unnamed(const Caption *caption, const bool *named) {
-    const char *separator = " Without room for a name: ";
-    for (int i = 0; i < caption->chart->line_count; i++) {
-        if (named[i] || !is_drawn(&caption->chart->lines[i])) continue;
-        text_add(caption->text, caption->size, "%s%s", separator, caption->chart->lines[i].name);
-        separator = ", ";
-    }
-    if (separator[0] == ',') text_add(caption->text, caption->size, ".");
-}
-
-static void add_left_out(const Caption *caption, const bool *named) {
-    add_beyond(caption);
-    add_unnamed(caption, named);
-    add_counts(caption, " Unstable before the impact, and left out: ", offsetof(ChartLine, lost));
-    add_counts(caption, " Without time or error: ", offsetof(ChartLine, left_out));
-    add_counts(caption, " Times here that vary: ", offsetof(ChartLine, varying));
-    if (caption->chart->floored > 0)
-        text_add(caption->text, caption->size, " Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
-}
-
 void chart_caption(const Chart *chart, const char *title, const bool *named, char *text, size_t size) {
     const Caption caption = {chart, text, size};
     WordList words = {0};
@@ -128,7 +108,18 @@ void chart_caption(const Chart *chart, const char *title, const bool *named, cha
     add_curves(&caption);
     add_names(&caption, is_without_push_out,
               "error against the solution without the velocity that pushes overlapping boxes apart.");
-    add_left_out(&caption, named);
+    add_beyond(&caption);
+    const char *separator = " Without room for a name: ";
+    for (int i = 0; i < chart->line_count; i++) {
+        if (named[i] || !is_drawn(&chart->lines[i])) continue;
+        text_add(text, size, "%s%s", separator, chart->lines[i].name);
+        separator = ", ";
+    }
+    if (separator[0] == ',') text_add(text, size, ".");
+    add_counts(&caption, " Unstable before the impact, and left out: ", offsetof(ChartLine, lost));
+    add_counts(&caption, " Without time or error: ", offsetof(ChartLine, left_out));
+    add_counts(&caption, " Times here that vary: ", offsetof(ChartLine, varying));
+    if (chart->floored > 0) text_add(text, size, " Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
     if (chart->times[0] != '\0') text_add(text, size, " %s", chart->times);
     for (int settings = 0; settings < 2; settings++) /* methods, then keys of settings */
         for (int p = 0; p < CHART_PANELS; p++)

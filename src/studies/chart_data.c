@@ -58,16 +58,6 @@ void chart_line_name(const char *key, char name[CHART_TEXT_SIZE]) {
     chart_plain(name, text);
 }
 
-static bool colour_lines(Chart *chart, const ColourChoices *choices, Error *error) {
-    const char *keys[CHART_MAX_LINES];
-    RunColours colours[CHART_MAX_LINES];
-    for (int i = 0; i < chart->line_count; i++) keys[i] = chart->lines[i].key;
-    const ColourChoices these = colours_of_these(choices, keys, chart->line_count);
-    if (!colours_assign(keys, chart->line_count, &these, colours, error)) return false;
-    for (int i = 0; i < chart->line_count; i++) chart->lines[i].colours = colours[i];
-    return true;
-}
-
 bool chart_colours_check(const ColourChoices *choices, const ChartRow *rows, int count, Error *error) {
     char keys[CHART_MAX_LINES][CHART_FAMILY_SIZE];
     const char *methods[CHART_MAX_LINES];
@@ -446,7 +436,12 @@ bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const 
         ok = chart->panels[0].count + chart->panels[1].count > 0 ||
              error_input(error, path, "no row of the scene '%s' in closed loop has a time and an error", scene);
     }
-    ok = ok && colour_lines(chart, &look->colours, error);
+    const char *keys[CHART_MAX_LINES];
+    RunColours colours[CHART_MAX_LINES];
+    for (int i = 0; i < chart->line_count; i++) keys[i] = chart->lines[i].key;
+    const ColourChoices these = colours_of_these(&look->colours, keys, chart->line_count);
+    ok = ok && colours_assign(keys, chart->line_count, &these, colours, error);
+    for (int i = 0; ok && i < chart->line_count; i++) chart->lines[i].colours = colours[i];
     if (!ok) chart_free(chart);
     return ok;
 }

@@ -19,15 +19,6 @@ bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Err
                        method, log->frames);
 }
 
-static void closed_loop_measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
-    const int launch = scene->bomb.frame < log->frames ? scene->bomb.frame : log->frames;
-    result->energy_put_in = result->energy_most = log->at[launch].energy;
-    for (int frame = 1; frame <= log->frames; frame++) {
-        result->penetration = fmax(result->penetration, log->at[frame].penetration);
-        if (frame > launch) result->energy_most = fmax(result->energy_most, log->at[frame].energy);
-    }
-}
-
 static const double apart_distance = 0.1; /* m */
 
 static double frames_apart(const RunLog *log, const RunLog *other, int frames) {
@@ -50,7 +41,12 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
                            .momentum_error = log->momentum_error,
                            .steps = log->frames,
                            .fallen_back = log->fallen_back};
-    closed_loop_measure(log, launched, result);
+    const int launch = launched->bomb.frame < log->frames ? launched->bomb.frame : log->frames;
+    result->energy_put_in = result->energy_most = log->at[launch].energy;
+    for (int frame = 1; frame <= log->frames; frame++) {
+        result->penetration = fmax(result->penetration, log->at[frame].penetration);
+        if (frame > launch) result->energy_most = fmax(result->energy_most, log->at[frame].energy);
+    }
     return true;
 }
 
