@@ -398,30 +398,6 @@ TEST(a_chart_explains_its_words) {
     assert_null(strstr(caption, "substeps:"));
 }
 
-/* Links of chart.html have their places by the height that the words give. */
-TEST(marks_stay_on_the_page_of_a_high_chart) {
-    CsvTable table;
-    Chart chart;
-    assert_ok(csv_table_read(&table, SAMPLE, &chart_layout, &error), error);
-    assert_ok(chart_gather(&chart, &table, "pyramid_settled", SAMPLE, &page, &error), error);
-    double tops[2], heights[2];
-    for (int words = 0; words < 2; words++) {
-        ChartPicture picture;
-        double left;
-        assert_ok(chart_picture_make(&picture, &chart, "pyramid_settled", &(ChartLook){.words = words == 1}, &error),
-                  error);
-        chart_mark_place(&picture, 0, &(ChartMark){.us = chart.us_least, .error = chart.error_least}, &left,
-                         &tops[words]);
-        heights[words] = picture.height;
-        chart_picture_free(&picture);
-    }
-    /* The same distance from the upper edge, in mm, above the axis, which ends 9 mm above the lower edge. */
-    assert_true(heights[1] > heights[0] + 10);
-    assert_true(fabs(tops[0] * heights[0] - tops[1] * heights[1]) < 1e-9);
-    assert_in_range((int)(tops[0] * heights[0]), 70, 83);
-    free_chart(&chart, &table);
-}
-
 /* Two networks of one name in different folders. */
 TEST(equal_names_stay_distinct) {
     CsvTable table;
