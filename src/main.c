@@ -28,28 +28,12 @@ static void print_help(FILE *file) {
             program_begin);
 }
 
-static const Command *find_command(const char *name) {
-    for (const Command *command = commands; command->name != NULL; command++)
-        if (strcmp(command->name, name) == 0) return command;
-    return NULL;
+/* Whether the word is one of the two. */
+static bool is(const char *word, const char *name, const char *letter) {
+    return strcmp(word, name) == 0 || strcmp(word, letter) == 0;
 }
 
-static bool is_help(const char *word) {
-    return strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
-}
-
-static bool is_version(const char *word) { return strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0; }
-
-static bool is_verbose(const char *word) { return strcmp(word, "--verbose") == 0 || strcmp(word, "-v") == 0; }
-
-static int refuse_command(const char *name) {
-    Error error = {0};
-    NameList known = {0};
-    for (const Command *command = commands; command->name != NULL; command++) name_list_add(&known, command->name);
-    error_unknown(&error, "twinbox", name, "a command", &known);
-    fprintf(stderr, "%s\n", error.message);
-    return ERROR_INPUT;
-}
+static bool is_help(const char *word) { return strcmp(word, "help") == 0 || is(word, "--help", "-h"); }
 
 /* OpenMP exits with status 1 when it gets no memory or no thread, which must not pass for "different". Help that cannot
    be written is no success; argp exits after it. */
@@ -60,29 +44,10 @@ static void check_exit(int status, void *command_ended) {
     _exit(ERROR_SYSTEM);
 }
 
-/* The next file would get the number of a closed stream. Writing to /dev/full fails, as it would there. */
-static void replace_closed_streams(void) {
-    for (int stream = STDOUT_FILENO; stream <= STDERR_FILENO; stream++) {
-        if (fcntl(stream, F_GETFD) >= 0) continue;
-        const int full = open("/dev/full", O_WRONLY);
-        if (full < 0 || full == stream) continue;
-        dup2(full, stream);
-        close(full);
-    }
-}
-
-/* OpenMP takes any number that the environment asks for, and an area of the stack for each. More threads than
-   processors gain nothing. */
-static void limit_threads(void) {
-    enum { ENOUGH = 256 };
-    const int processors = omp_get_num_procs(), most = processors > ENOUGH ? processors : ENOUGH;
-    if (omp_get_max_threads() > most) omp_set_num_threads(most);
-}
-
 static bool ended; /* the command */
 
 /* The words begin with the one of the command. */
-static int main_run(const Command *command, int argc, char **argv) {
+static int run(const Command *command, int argc, char **argv) {
     char name[64];
     Error error = {0};
     snprintf(name, sizeof name, "twinbox %s", command->name);
@@ -104,28 +69,46 @@ static int main_run(const Command *command, int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    replace_closed_streams();
+    /* The next file would get the number of a closed stream. Writing to /dev/full fails, as it would there. */
+    for (int stream = STDOUT_FILENO; stream <= STDERR_FILENO; stream++) {
+        const int full = fcntl(stream, F_GETFD) >= 0 ? -1 : open("/dev/full", O_WRONLY);
+        if (full < 0 || full == stream) continue;
+        dup2(full, stream);
+        close(full);
+    }
     on_exit(check_exit, &ended);
     interrupt_handle();
-    limit_threads();
+    /* OpenMP takes any number that the environment asks for, and an area of the stack for each. More threads than
+       processors gain nothing. */
+    const int enough = 256, processors = omp_get_num_procs(), most = processors > enough ? processors : enough;
+    if (omp_get_max_threads() > most) omp_set_num_threads(most);
     signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
     if (argc < 2) {
         print_help(stderr);
         return ERROR_INPUT;
     }
-    bool help = is_help(argv[1]);
+    const bool help = is_help(argv[1]);
     if (help && (argc == 2 || is_help(argv[2]))) {
         print_help(stdout);
         return 0;
     }
     const char *wanted = argv[help ? 2 : 1];
-    const Command *command = find_command(wanted);
-    if (is_version(argv[argc == 3 && command != NULL ? 2 : 1])) {
+    const Command *command = commands;
+    while (command->name != NULL && strcmp(command->name, wanted) != 0) command++;
+    const bool known = command->name != NULL;
+    if (is(argv[argc == 3 && known ? 2 : 1], "--version", "-V")) {
         puts("twinbox " TWINBOX_VERSION);
-        if (argc == 3 && is_verbose(argv[2])) print_contexts(stdout);
+        if (argc == 3 && is(argv[2], "--verbose", "-v")) print_contexts(stdout);
         return 0;
     }
-    if (command == NULL) return refuse_command(wanted);
+    if (!known) {
+        Error error = {0};
+        NameList names = {0};
+        for (const Command *other = commands; other->name != NULL; other++) name_list_add(&names, other->name);
+        error_unknown(&error, "twinbox", wanted, "a command", &names);
+        fprintf(stderr, "%s\n", error.message);
+        return ERROR_INPUT;
+    }
     if (help) argv[2] = "--help";
-    return main_run(command, argc - 1, argv + 1);
+    return run(command, argc - 1, argv + 1);
 }

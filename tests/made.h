@@ -6,7 +6,10 @@
 #include "base/npz.h"
 #include "nets/nets.h"
 #include "pixels/png.h"
+#include "runs/compare_runs.h"
 #include "runs/runs.h"
+#include "runs/runs_internal.h"
+#include "runs/trajectory.h"
 
 static inline Scene *scene_from(const char *path) {
     Error error = {0};

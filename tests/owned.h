@@ -18,6 +18,7 @@
 #include "nets/nets.h"
 #include "pixels/png.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "studies/contenders.h"
 

@@ -3,6 +3,7 @@
    and friction of 0 to 2; every other one is struck. The same seed gives the same scene on every machine. */
 #pragma once
 #include "base/base.h"
+#include "base/random.h"
 #include "scenes/scenes.h"
 
 #include <math.h>

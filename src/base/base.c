@@ -35,7 +35,7 @@ PRINTF_LIKE(2, 0) static void append(Error *error, const char *format, va_list a
 }
 
 PRINTF_LIKE(4, 0)
-static void base_set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
+static void set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
     if (error->kind != ERROR_NONE) return;
     error->kind = kind;
     const size_t length = visible_text(error->message, WHERE_SIZE, where, VISIBLE_ONE_LINE);
@@ -47,7 +47,7 @@ static void base_set(Error *error, ErrorKind kind, const char *where, const char
     bool name(Error *error, const char *where, const char *format, ...) { \
         va_list arguments;                                                \
         va_start(arguments, format);                                      \
-        base_set(error, kind, where, format, arguments);                  \
+        set(error, kind, where, format, arguments);                       \
         va_end(arguments);                                                \
         return false;                                                     \
     }
@@ -60,7 +60,7 @@ bool error_failure(Error *error, MethodFailure failure, const char *where, const
     va_list arguments;
     if (error->kind == ERROR_NONE) error->failure = failure;
     va_start(arguments, format);
-    base_set(error, ERROR_INPUT, where, format, arguments);
+    set(error, ERROR_INPUT, where, format, arguments);
     va_end(arguments);
     return false;
 }
@@ -121,7 +121,7 @@ static bool is_obeyed(uint32_t c) {
            (c >= 0x2066 && c <= 0x2069);
 }
 
-static Shown base_show(const char *text, VisibleLines lines) {
+static Shown show(const char *text, VisibleLines lines) {
     uint32_t c = 0;
     const unsigned byte = (unsigned char)text[0];
     const size_t read = utf8_decode(text, strnlen(text, 4), &c);
@@ -141,10 +141,10 @@ static Shown base_show(const char *text, VisibleLines lines) {
 }
 
 /* Shows text from *at while it is at most `most` bytes; moves *at behind it. */
-static size_t base_put(char *out, const char **at, size_t most, VisibleLines lines) {
+static size_t put(char *out, const char **at, size_t most, VisibleLines lines) {
     size_t length = 0;
     while (**at != '\0') {
-        const Shown shown = base_show(*at, lines);
+        const Shown shown = show(*at, lines);
         if (length + shown.length > most) break;
         if (out != NULL) memcpy(out + length, shown.text, shown.length);
         length += shown.length;
@@ -156,16 +156,16 @@ static size_t base_put(char *out, const char **at, size_t most, VisibleLines lin
 size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines) {
     static const char gap[] = "...";
     const char *at = text;
-    size_t left = base_put(NULL, &at, SIZE_MAX, lines), length = 0;
+    size_t left = put(NULL, &at, SIZE_MAX, lines), length = 0;
     at = text;
     if (left >= size) {
         const size_t half = (size - sizeof gap) / 2;
-        length = base_put(out, &at, half, lines);
-        for (left -= length; left > half; at += base_show(at, lines).read) left -= base_show(at, lines).length;
+        length = put(out, &at, half, lines);
+        for (left -= length; left > half; at += show(at, lines).read) left -= show(at, lines).length;
         memcpy(out + length, gap, sizeof gap - 1);
         length += sizeof gap - 1;
     }
-    length += base_put(out + length, &at, SIZE_MAX, lines);
+    length += put(out + length, &at, SIZE_MAX, lines);
     out[length] = '\0';
     return length;
 }
@@ -217,39 +217,25 @@ const char *nearest_word(const char *word, const char *const *words, int count) 
     return nearest;
 }
 
-static bool base_has(const NameList *list, const char *name, size_t length) {
-    for (const char *at = list->text; (at = strstr(at, name)) != NULL; at++) {
-        bool begins = at == list->text || at[-1] == ' ', ends = at[length] == '\0' || at[length] == ',';
-        if (begins && ends) return true;
-    }
-    return false;
-}
-
 void name_list_add(NameList *list, const char *name) {
-    size_t length = strlen(name);
-    if (length == 0 || list->used + length + 3 > sizeof list->text || base_has(list, name, length)) return;
+    const size_t length = strlen(name);
+    if (length == 0 || list->used + length + 3 > sizeof list->text) return;
+    for (const char *at = list->text; (at = strstr(at, name)) != NULL; at++)
+        if ((at == list->text || at[-1] == ' ') && (at[length] == '\0' || at[length] == ',')) return; /* it has it */
     list->used += (size_t)snprintf(list->text + list->used, sizeof list->text - list->used, "%s%s",
                                    list->used > 0 ? ", " : "", name);
 }
 
-/* The listed name that is nearest; empty if none is near. */
-static void find_nearest(const NameList *list, const char *name, char *nearest, size_t size) {
+bool error_unknown(Error *error, const char *where, const char *name, const char *what, const NameList *known) {
     enum { WORDS = 256 };
-    char text[sizeof list->text], *rest = NULL;
+    char text[sizeof known->text], *rest = NULL;
     const char *words[WORDS];
     int count = 0;
-    memcpy(text, list->text, sizeof text);
+    memcpy(text, known->text, sizeof text);
     for (char *word = strtok_r(text, ", ", &rest); word != NULL && count < WORDS; word = strtok_r(NULL, ", ", &rest))
         words[count++] = word;
-    const char *found = nearest_word(name, words, count);
-    snprintf(nearest, size, "%s", found != NULL ? found : "");
-}
-
-bool error_unknown(Error *error, const char *where, const char *name, const char *what, const NameList *known) {
-    char nearest[64];
-    find_nearest(known, name, nearest, sizeof nearest);
-    if (nearest[0] != '\0')
-        return error_input(error, where, "'%.64s' is not %s; did you mean '%s'?", name, what, nearest);
+    const char *nearest = nearest_word(name, words, count);
+    if (nearest != NULL) return error_input(error, where, "'%.64s' is not %s; did you mean '%s'?", name, what, nearest);
     return error_input(error, where, "'%.64s' is not %s; known: %s", name, what,
                        known->used > 0 ? known->text : "none");
 }

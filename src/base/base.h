@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What every file may need: errors, text, arrays, numbers and settings from text. No files, no threads. */
+/* What every file may need: errors, text, numbers from text, arrays. No files, no threads.
+
+     bool half(const char *text, float *value, Error *error) {
+         return parse_float(text, value) || error_input(error, "--half", "'%s' is not a number", text);
+     } */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -196,85 +200,6 @@ bool array_block_reserve(ArrayBlock *block, const ArrayPart *parts, size_t count
 #define ARRAY_BLOCK_RESERVE(block, ...)                            \
     array_block_reserve((block), (const ArrayPart[]){__VA_ARGS__}, \
                         sizeof((const ArrayPart[]){__VA_ARGS__}) / sizeof(ArrayPart))
-
-/* SplitMix64: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014). */
-
-static inline uint64_t split_mix(uint64_t *state) {
-    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return z ^ (z >> 31);
-}
-
-/* In [0, 1), in [-1, 1), and below a count. */
-static inline double random_unit(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-53; }
-static inline double random_signed(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-52 - 1; }
-static inline int random_below(uint64_t *state, int count) { return (int)(split_mix(state) % (uint64_t)count); }
-
-/* Fills weights[count] with numbers in [-bound, bound); returns what follows them. */
-static inline double *weights_uniform(double *weights, int count, double bound, uint64_t *state) {
-    for (int i = 0; i < count; i++) *weights++ = bound * random_signed(state);
-    return weights;
-}
-
-/* The settings of a method, as on the command line: `name:key=value,key=value`. */
-
-enum { SETTINGS_MAX = 16, SETTING_KEY_SIZE = 32, SETTING_VALUE_SIZE = 512 };
-
-typedef struct Setting {
-    char key[SETTING_KEY_SIZE];
-    char value[SETTING_VALUE_SIZE];
-} Setting;
-
-typedef struct Settings {
-    int count;
-    Setting items[SETTINGS_MAX];
-} Settings;
-
-typedef enum SettingType {
-    SETTING_IS_OWN, /* whoever has the table reads it with settings_get */
-    SETTING_IS_INT,
-    SETTING_IS_FLOAT,
-    SETTING_IS_BOOL /* on|off */
-} SettingType;
-
-/* A key that a method knows ("*": any), what it means, and the member that gets its value; a table of these ends with
-   {0}. */
-typedef struct SettingSpec {
-    const char *key, *summary;
-    SettingType type;   /* type and what follows: one of the macros below */
-    size_t at;          /* of the member, bytes */
-    double least, most; /* numbers: bounds */
-} SettingSpec;
-
-#define SETTING_AT(T, member, is) (offsetof(T, member) + 0 * sizeof(_Generic(&((T *)NULL)->member, is * : 0)))
-#define SETTING_OWN .type = SETTING_IS_OWN
-#define SETTING_BOOL(T, member) .type = SETTING_IS_BOOL, .at = SETTING_AT(T, member, bool)
-#define SETTING_INT(T, member, minimum, maximum) \
-    .type = SETTING_IS_INT, .at = SETTING_AT(T, member, int), .least = (minimum), .most = (maximum)
-#define SETTING_FLOAT(T, member, minimum, maximum) \
-    .type = SETTING_IS_FLOAT, .at = SETTING_AT(T, member, float), .least = (double)(minimum), .most = (double)(maximum)
-
-/* Parses "key=value,..." (may be empty). Every key must be in the table (NULL: none), once. `where` begins the
-   message. */
-bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where, Error *error);
-
-/* True if the table, which may be NULL, has the key. */
-bool settings_known(const SettingSpec *known, const char *key);
-
-/* The value of key, or NULL. */
-const char *settings_get(const Settings *settings, const char *key);
-
-/* Sets key to value unless it is set. False if there is no room. */
-bool settings_default(Settings *settings, const char *key, const char *value);
-
-/* Sets the members of *values for which a setting is given; the table has their types and bounds. */
-bool settings_read(const Settings *settings, const SettingSpec *known, void *values, Error *error);
-
-/* A copy of the `size` bytes of *standard with the settings, which the caller frees; NULL with error set. what: begins
-   the message when memory is short. */
-void *settings_make(const Settings *settings, const SettingSpec *known, const void *standard, size_t size,
-                    const char *what, Error *error);
 
 /* Numbers from text, for scene files and options. The whole text must be a number: no locale, no surrounding space, no
    NaN, no infinity. */

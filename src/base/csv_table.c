@@ -23,49 +23,36 @@ static double number_of(const CsvColumn *column, const void *row) {
     return column->kind == CSV_FLOAT ? (double)*(const float *)member : *(const double *)member;
 }
 
-static bool is_printable(const char *text) {
-    for (; *text != '\0'; text++)
-        if ((unsigned char)*text < 0x20 || *text == 0x7f) return false;
-    return true;
-}
-
-static bool check_field(const char *where, const CsvColumn *column, const void *row, Error *error) {
-    switch (column->kind) {
-    case CSV_TEXT:
-    case CSV_NAME:
-        return is_printable(text_of(column, row)) || error_input(error, where, "%s: a control character in '%s'",
-                                                                 column->name, csv_show(text_of(column, row)).text);
-    case CSV_WORD:
-    case CSV_INTEGER: return true;
-    default: {
-        const double number = number_of(column, row);
-        return isfinite(number) || (isnan(number) && column->kind == CSV_OPTIONAL) ||
-               error_input(error, where, "%s: %g cannot be written", column->name, number);
-    }
-    }
-}
-
+/* Whether the row can be read back. */
 static bool check_row(const char *where, const CsvLayout *layout, const void *row, Error *error) {
-    for (int i = 0; i < layout->column_count; i++)
-        if (!check_field(where, &layout->columns[i], row, error)) return false;
-    return true;
-}
-
-static void print_field(FILE *file, const CsvColumn *column, const void *row) {
-    switch (column->kind) {
-    case CSV_TEXT:
-    case CSV_NAME: csv_put(file, text_of(column, row), column->quoted); break;
-    case CSV_WORD: csv_put(file, column->words[integer_of(column, row)], false); break;
-    case CSV_INTEGER: fprintf(file, "%d", integer_of(column, row)); break;
-    default:
-        if (!isnan(number_of(column, row)))
-            fprintf(file, "%.*g", column->digits > 0 ? column->digits : 6, number_of(column, row));
+    for (int i = 0; i < layout->column_count; i++) {
+        const CsvColumn *column = &layout->columns[i];
+        const bool text = column->kind == CSV_TEXT || column->kind == CSV_NAME;
+        if (column->kind == CSV_WORD || column->kind == CSV_INTEGER) continue;
+        for (const char *c = text ? text_of(column, row) : ""; *c != '\0'; c++)
+            if ((unsigned char)*c < 0x20 || *c == 0x7f)
+                return error_input(error, where, "%s: a control character in '%s'", column->name,
+                                   csv_show(text_of(column, row)).text);
+        if (text) continue;
+        const double number = number_of(column, row);
+        if (!isfinite(number) && !(isnan(number) && column->kind == CSV_OPTIONAL))
+            return error_input(error, where, "%s: %g cannot be written", column->name, number);
     }
+    return true;
 }
 
 static void print_row(FILE *file, const CsvLayout *layout, const void *row) {
     for (int i = 0; i < layout->column_count; i++) {
-        print_field(file, &layout->columns[i], row);
+        const CsvColumn *column = &layout->columns[i];
+        switch (column->kind) {
+        case CSV_TEXT:
+        case CSV_NAME: csv_put(file, text_of(column, row), column->quoted); break;
+        case CSV_WORD: csv_put(file, column->words[integer_of(column, row)], false); break;
+        case CSV_INTEGER: fprintf(file, "%d", integer_of(column, row)); break;
+        default:
+            if (!isnan(number_of(column, row)))
+                fprintf(file, "%.*g", column->digits > 0 ? column->digits : 6, number_of(column, row));
+        }
         fputc(i + 1 < layout->column_count ? ',' : '\n', file);
     }
 }
@@ -147,58 +134,40 @@ static bool read_text(const CsvCell *cell, const char **member, Error *error) {
     return true;
 }
 
-static bool read_word(const CsvCell *cell, int *member, Error *error) {
-    const char *const *words = cell->column->words;
-    NameList known = {0};
-    char what[256];
-    *member = csv_word(words, cell_text(cell));
-    if (*member >= 0) return true;
-    for (int i = 0; words[i] != NULL; i++) name_list_add(&known, words[i]);
-    snprintf(what, sizeof what, "is not one of %.200s", known.text);
-    return refuse_cell(cell, error, what);
-}
-
-static bool is_in_range(const CsvCell *cell, double value, Error *error) {
-    const double minimum = cell->column->minimum, maximum = cell->column->maximum;
-    char what[64];
-    if (value >= minimum && value <= maximum) return true;
-    snprintf(what, sizeof what, "is %s than %g", value < minimum ? "less" : "greater",
-             value < minimum ? minimum : maximum);
-    return refuse_cell(cell, error, what);
-}
-
-static bool read_integer(const CsvCell *cell, int *member, Error *error) {
-    int64_t value;
-    if (!parse_int(cell_text(cell), INT64_MIN, INT64_MAX, &value))
-        return refuse_cell(cell, error, "is not a whole number");
-    *member = (int)value;
-    return is_in_range(cell, (double)value, error);
-}
-
-static bool read_float(const CsvCell *cell, float *member, Error *error) {
-    return parse_float(cell_text(cell), member) ? is_in_range(cell, (double)*member, error)
-                                                : refuse_cell(cell, error, "is not a number");
-}
-
-static bool read_number(const CsvCell *cell, double *member, Error *error) {
-    const char *text = cell_text(cell);
-    *member = NAN;
-    if (text[0] == '\0' && cell->column->kind == CSV_OPTIONAL) return true;
-    return parse_double(text, member) ? is_in_range(cell, *member, error) : refuse_cell(cell, error, "is not a number");
-}
-
 /* Reads the field into its member of the row's struct. False with an error at the field if it is not of its column's
    kind or range. */
 static bool read_cell(const CsvCell *cell, void *row, Error *error) {
-    void *member = (char *)row + cell->column->offset;
-    switch (cell->column->kind) {
-    case CSV_TEXT:
-    case CSV_NAME: return read_text(cell, member, error);
-    case CSV_WORD: return read_word(cell, member, error);
-    case CSV_INTEGER: return read_integer(cell, member, error);
-    case CSV_FLOAT: return read_float(cell, member, error);
-    default: return read_number(cell, member, error);
+    const CsvColumn *column = cell->column;
+    void *member = (char *)row + column->offset;
+    const char *text = cell_text(cell);
+    char what[256];
+    double value;
+    if (column->kind == CSV_TEXT || column->kind == CSV_NAME) return read_text(cell, member, error);
+    if (column->kind == CSV_WORD) {
+        NameList known = {0};
+        if ((*(int *)member = csv_word(column->words, text)) >= 0) return true;
+        for (int i = 0; column->words[i] != NULL; i++) name_list_add(&known, column->words[i]);
+        snprintf(what, sizeof what, "is not one of %.200s", known.text);
+        return refuse_cell(cell, error, what);
     }
+    if (column->kind == CSV_INTEGER) {
+        int64_t whole;
+        if (!parse_int(text, INT64_MIN, INT64_MAX, &whole)) return refuse_cell(cell, error, "is not a whole number");
+        *(int *)member = (int)whole;
+        value = (double)whole;
+    } else if (column->kind == CSV_FLOAT) {
+        if (!parse_float(text, member)) return refuse_cell(cell, error, "is not a number");
+        value = (double)*(float *)member;
+    } else {
+        *(double *)member = NAN;
+        if (text[0] == '\0' && column->kind == CSV_OPTIONAL) return true;
+        if (!parse_double(text, member)) return refuse_cell(cell, error, "is not a number");
+        value = *(double *)member;
+    }
+    if (value >= column->minimum && value <= column->maximum) return true;
+    snprintf(what, sizeof what, "is %s than %g", value < column->minimum ? "less" : "greater",
+             value < column->minimum ? column->minimum : column->maximum);
+    return refuse_cell(cell, error, what);
 }
 
 /* A file that is being read. */
@@ -208,18 +177,9 @@ typedef struct Reading {
     Error *error;
 } Reading;
 
-static bool read_field(const CsvCell *cell, void *row, Error *error) {
+static bool read_rows(const Reading *reading) {
     static const char *const empty = "";
     static const double unknown = NAN;
-    if (cell->field >= 0) return read_cell(cell, row, error);
-    if (cell->column->optional && cell->column->kind == CSV_TEXT)
-        memcpy((char *)row + cell->column->offset, &empty, sizeof empty);
-    if (cell->column->optional && cell->column->kind == CSV_OPTIONAL)
-        memcpy((char *)row + cell->column->offset, &unknown, sizeof unknown);
-    return true;
-}
-
-static bool read_rows(const Reading *reading) {
     const CsvLayout *layout = reading->layout;
     CsvTable *table = reading->table;
     table->count = table->csv.rows - 1;
@@ -229,48 +189,42 @@ static bool read_rows(const Reading *reading) {
         for (int i = 0; i < layout->column_count; i++) {
             const CsvCell cell = {&table->csv, row, table->fields[i], &layout->columns[i]};
             void *target = (char *)table->rows + (size_t)(row - 1) * layout->row_size;
-            if (!read_field(&cell, target, reading->error)) return false;
+            if (cell.field >= 0) {
+                if (!read_cell(&cell, target, reading->error)) return false;
+            } else if (cell.column->optional && cell.column->kind == CSV_TEXT) {
+                memcpy((char *)target + cell.column->offset, &empty, sizeof empty);
+            } else if (cell.column->optional && cell.column->kind == CSV_OPTIONAL) {
+                memcpy((char *)target + cell.column->offset, &unknown, sizeof unknown);
+            }
         }
     return true;
 }
 
-static int find_column(const CsvLayout *layout, const char *name) {
-    int i = 0;
-    while (i < layout->column_count && strcmp(layout->columns[i].name, name) != 0) i++;
-    return i;
-}
-
-static bool refuse_column(const Reading *reading, int field) {
-    const CsvLayout *layout = reading->layout;
-    NameList names = {0};
-    for (int i = 0; i < layout->column_count; i++) name_list_add(&names, layout->columns[i].name);
-    return csv_error(&reading->table->csv, 0, field, reading->error, "unknown column '%s'; the columns are %s",
-                     csv_show(csv_text(&reading->table->csv, 0, field)).text, names.text);
-}
-
-static bool place_column(const Reading *reading, int field) {
-    const CsvLayout *layout = reading->layout;
-    const Csv *csv = &reading->table->csv;
-    const char *name = csv_text(csv, 0, field);
-    const int column = find_column(layout, name);
-    if (layout->header == CSV_EXACT && column != field && field < layout->column_count)
-        return csv_error(csv, 0, field, reading->error, "column %d must be '%s' (got '%s')", field + 1,
-                         layout->columns[field].name, csv_show(name).text);
-    if (column == layout->column_count) return layout->header == CSV_ALL || refuse_column(reading, field);
-    if (reading->table->fields[column] >= 0)
-        return csv_error(csv, 0, field, reading->error, "the column '%s' appears twice", name);
-    reading->table->fields[column] = field;
-    return true;
-}
-
+/* Finds the columns. */
 static bool read_header(const Reading *reading) {
     const CsvLayout *layout = reading->layout;
     const Csv *csv = &reading->table->csv;
-    for (int i = 0; i < CSV_MAX_COLUMNS; i++) reading->table->fields[i] = -1;
-    for (int field = 0; field < csv->width; field++)
-        if (!place_column(reading, field)) return false;
+    int *fields = reading->table->fields;
+    for (int i = 0; i < CSV_MAX_COLUMNS; i++) fields[i] = -1;
+    for (int field = 0; field < csv->width; field++) {
+        const char *name = csv_text(csv, 0, field);
+        int column = 0;
+        while (column < layout->column_count && strcmp(layout->columns[column].name, name) != 0) column++;
+        if (layout->header == CSV_EXACT && column != field && field < layout->column_count)
+            return csv_error(csv, 0, field, reading->error, "column %d must be '%s' (got '%s')", field + 1,
+                             layout->columns[field].name, csv_show(name).text);
+        if (column == layout->column_count) {
+            NameList names = {0};
+            if (layout->header == CSV_ALL) continue;
+            for (int i = 0; i < layout->column_count; i++) name_list_add(&names, layout->columns[i].name);
+            return csv_error(csv, 0, field, reading->error, "unknown column '%s'; the columns are %s",
+                             csv_show(name).text, names.text);
+        }
+        if (fields[column] >= 0) return csv_error(csv, 0, field, reading->error, "the column '%s' appears twice", name);
+        fields[column] = field;
+    }
     for (int i = 0; layout->header != CSV_SUBSET && i < layout->column_count; i++)
-        if (reading->table->fields[i] < 0 && !layout->columns[i].optional)
+        if (fields[i] < 0 && !layout->columns[i].optional)
             return csv_error(csv, 0, 0, reading->error, "the column '%s' is missing", layout->columns[i].name);
     return true;
 }
@@ -294,16 +248,13 @@ static int compare_keys(const void *left, const void *right) {
     return 0;
 }
 
-static bool has_keys(const Reading *reading) {
-    for (int i = 0; i < reading->layout->column_count; i++)
-        if (reading->layout->columns[i].key && reading->table->fields[i] >= 0) return true;
-    return false;
-}
-
 /* Rows with equal keys are neighbours once sorted. */
 static bool check_keys(const Reading *reading) {
     const CsvTable *table = reading->table;
-    if (!has_keys(reading) || table->count == 0) return true;
+    bool keyed = false;
+    for (int i = 0; i < reading->layout->column_count; i++)
+        keyed = keyed || (reading->layout->columns[i].key && table->fields[i] >= 0);
+    if (!keyed || table->count == 0) return true;
     KeyedRow *sorted = malloc((size_t)table->count * sizeof *sorted);
     if (sorted == NULL) return error_memory(reading->error, table->csv.path);
     for (int i = 0; i < table->count; i++) sorted[i] = (KeyedRow){reading, i + 1};

@@ -230,7 +230,7 @@ typedef struct Walk {
 } Walk;
 
 /* Adds `folder` + `name` + `ending`. */
-static bool file_add(FolderList *list, const char *folder, const char *name, const char *ending, Error *error) {
+static bool add(FolderList *list, const char *folder, const char *name, const char *ending, Error *error) {
     size_t size = strlen(folder) + strlen(name) + strlen(ending) + 1;
     char *whole = malloc(size);
     if (whole == NULL || !array_reserve((void **)&list->names, &list->capacity, list->count + 1, sizeof *list->names)) {
@@ -242,13 +242,7 @@ static bool file_add(FolderList *list, const char *folder, const char *name, con
     return true;
 }
 
-static bool add_file(Walk *walk, const char *folder, const char *name, Error *error) {
-    if (walk->recursive || folder[0] == '\0') return file_add(walk->list, folder, name, "", error);
-    walk->list->skipped++;
-    return true;
-}
-
-/* Whether a link leads to a place that the walk reaches without it. */
+/* A link leads to a place that the walk reaches without it, or is refused. */
 static bool check_link(Walk *walk, const char *path, Error *error) {
     char target[PATH_MAX];
     if (walk->real[0] == '\0' && realpath(walk->root, walk->real) == NULL) return folder_error(walk->root, error);
@@ -261,26 +255,27 @@ static bool check_link(Walk *walk, const char *path, Error *error) {
            error_input(error, path, "is a link to %s, which is hidden; such links are not followed", target);
 }
 
-static bool add_link(Walk *walk, int at, const char *folder, const char *name, Error *error) {
-    char path[PATH_MAX];
-    struct stat target;
-    if (!file_path(path, sizeof path, error, "%s/%s%s", walk->root, folder, name)) return false;
-    bool file = walk->wanted(name), inside = folder[0] != '\0';
-    if (fstatat(at, name, &target, 0) != 0)
-        return (!file && (errno == ENOENT || errno == ELOOP)) || folder_error(path, error);
-    bool is_folder = S_ISDIR(target.st_mode);
-    if ((!is_folder && !file) || (!walk->recursive && (is_folder || inside))) return true;
-    return check_link(walk, path, error) && (is_folder || add_file(walk, folder, name, error));
-}
-
 static bool add_entry(Walk *walk, int at, const char *folder, const char *name, Error *error) {
-    struct stat status;
+    struct stat status, target;
+    char path[PATH_MAX];
+    const bool wanted = walk->wanted(name), inside = folder[0] != '\0';
     if (name[0] == '.') return true;
     if (fstatat(at, name, &status, AT_SYMLINK_NOFOLLOW) != 0)
         return error_system(error, name, "in %s/%s: cannot be read: %s", walk->root, folder, strerror(errno));
-    if (S_ISLNK(status.st_mode)) return add_link(walk, at, folder, name, error);
-    if (S_ISDIR(status.st_mode)) return file_add(&walk->folders, folder, name, "/", error);
-    return !walk->wanted(name) || add_file(walk, folder, name, error);
+    if (S_ISDIR(status.st_mode)) return add(&walk->folders, folder, name, "/", error);
+    if (S_ISLNK(status.st_mode)) {
+        if (!file_path(path, sizeof path, error, "%s/%s%s", walk->root, folder, name)) return false;
+        if (fstatat(at, name, &target, 0) != 0)
+            return (!wanted && (errno == ENOENT || errno == ELOOP)) || folder_error(path, error);
+        const bool is_folder = S_ISDIR(target.st_mode);
+        if ((!is_folder && !wanted) || (!walk->recursive && (is_folder || inside))) return true;
+        if (!check_link(walk, path, error)) return false;
+        if (is_folder) return true;
+    }
+    if (!wanted) return true;
+    if (walk->recursive || !inside) return add(walk->list, folder, name, "", error);
+    walk->list->skipped++;
+    return true;
 }
 
 static bool read_folder(Walk *walk, const char *folder, Error *error) {

@@ -1,25 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The machine and the process: memory, clocks, work on all threads or on a second one, its progress, and programs that
-   are run. */
+/* Work on this machine: its progress, all threads, a second thread, clocks, processor and memory.
+
+     bool piece(void *context, int i, Error *error);
+     parallel_for(&(ParallelWork){piece, context}, count, "launches", progress, &error) */
 #pragma once
 #include "base/base.h"
-
-#include <stdio.h>
-#include <sys/types.h>
-
-/* The processor's model, as the system names it, in plain characters of ASCII: "Intel(R) Xeon(R) CPU @ 2.20GHz"; else
-   the architecture. */
-enum { CPU_NAME_SIZE = 96 };
-void cpu_name(char name[CPU_NAME_SIZE]);
-
-/* The limit that a shell or a service sets on the memory of a process: the likely reason where a library fails without
-   giving one. */
-
-typedef struct MemoryLimit {
-    char text[80]; /* "; the memory of a process is limited to 200 MiB (ulimit -v)"; empty without a limit */
-} MemoryLimit;
-
-MemoryLimit memory_limit(void);
 
 /* Progress reports of long work. The library never prints: cli/ supplies the bar. */
 
@@ -66,12 +51,6 @@ typedef struct ParallelWork {
    fails, for any number of threads, or with "what: error: stopped after ..." if progress requests a stop. */
 bool parallel_for(const ParallelWork *work, int count, const char *what, const Progress *progress, Error *error);
 
-/* Seconds of a clock that never steps back. */
-double clock_seconds(void);
-
-/* Processor time of the calling thread: other programs do not count. */
-double clock_thread_seconds(void);
-
 /* A second thread that works on one item after the other, in the order in which they are given, while the caller makes
    the next. */
 
@@ -92,64 +71,22 @@ bool background_wait(Background *background, Error *error);
 /* Ends the thread when its item is done. */
 void background_stop(Background *background);
 
-/* Runs another program and writes to its standard input, without a shell. Own code: popen() needs a shell, and a
-   program that stops reading would end this one by SIGPIPE (tests/base/test_process.c). */
+/* Seconds of a clock that never steps back. */
+double clock_seconds(void);
 
-typedef struct Process {
-    const char *name;
-    pid_t pid;
-    int input;    /* connected to its standard input */
-    FILE *output; /* its standard output and error */
-    int unsent;   /* errno, if the system kept input from it; 0: none */
-} Process;
+/* Processor time of the calling thread: other programs do not count. */
+double clock_thread_seconds(void);
 
-/* Starts argv[0], found in PATH; argv ends with NULL and must outlive the process. ERROR_SYSTEM if it is missing. */
-bool process_start(Process *process, const char *const *argv, Error *error);
+/* The processor's model, as the system names it, in plain characters of ASCII: "Intel(R) Xeon(R) CPU @ 2.20GHz"; else
+   the architecture. */
+enum { CPU_NAME_SIZE = 96 };
+void cpu_name(char name[CPU_NAME_SIZE]);
 
-/* False if the program no longer reads, or the system fails; process_finish() then returns its output, or the
-   reason. */
-bool process_write(Process *process, const void *data, size_t size);
+/* The limit that a shell or a service sets on the memory of a process: the likely reason where a library fails without
+   giving one. */
 
-/* Closes its input, waits, and copies its output (cut to size - 1 bytes) into text. ERROR_SYSTEM with that text unless
-   it exits with 0. */
-bool process_finish(Process *process, char *text, size_t size, Error *error);
+typedef struct MemoryLimit {
+    char text[80]; /* "; the memory of a process is limited to 200 MiB (ulimit -v)"; empty without a limit */
+} MemoryLimit;
 
-/* Kills it. */
-void process_kill(Process *process);
-
-/* Talks with another program, which answers on its standard output, without a shell. It has a process group of its own,
-   which ends as a whole. Nothing here but talk_end() waits longer than `until`, by clock_seconds(), or takes more
-   memory than it is told. */
-
-enum { TALK_WHY_SIZE = 400, TALK_COMPLAINT_SIZE = 4096 };
-
-typedef struct Talk {
-    pid_t pid;
-    int input, output,
-        complaints; /* connected to its standard input, output and error; complaints -1: it closed that one */
-    char *unread;   /* [end] of its output, from `begin` on */
-    size_t begin, end, capacity;
-    char complaint[TALK_COMPLAINT_SIZE]; /* what it wrote to standard error first; the rest is read and forgotten */
-    size_t complaint_size;
-    char why[TALK_WHY_SIZE]; /* after a failure: what it did, "has ended (status 1)" */
-} Talk;
-
-/* Starts argv[0], found in PATH; argv ends with NULL. After a failure there is nothing to end. */
-bool talk_start(Talk *talk, const char *const *argv);
-
-/* Sends all of it, while the program reads. */
-bool talk_send(Talk *talk, const void *data, size_t size, double until);
-
-/* The next `size` bytes of its answer, or its next line, ended by NUL instead of its line end (LF or CRLF) and of at
-   most `most` bytes; valid until the next call. NULL after a failure. */
-char *talk_read(Talk *talk, size_t size, double until);
-char *talk_line(Talk *talk, size_t most, double until);
-
-/* Whether it runs, and has written nothing that was not read. */
-bool talk_is_quiet(Talk *talk);
-
-/* Kills the program and all of its process group; waits 2 s at most for its end. */
-void talk_end(Talk *talk);
-
-/* Kills all programs that talk. A handler of signals may call it, before it ends the process. */
-void talks_kill(void);
+MemoryLimit memory_limit(void);

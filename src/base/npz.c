@@ -36,42 +36,37 @@ static const StoredArray *npz_find(const NpzFile *file, const char *name) {
     return NULL;
 }
 
-/* The member's name without ".npy". Only letters, digits, '_', '-' and '.', since messages print it on a terminal. */
-static bool take_name(NpzFile *file, const char *member, char name[NPZ_NAME_SIZE], Error *error) {
-    size_t length = strlen(member);
-    bool plain = length > 4 && length - 4 < NPZ_NAME_SIZE;
-    for (size_t i = 0; plain && i < length; i++) plain = isalnum((unsigned char)member[i]) || strchr("_-.", member[i]);
-    if (!plain || strcmp(member + length - 4, ".npy") != 0)
-        return error_input(error, file->path, "holds a member that is not a named .npy array");
-    memcpy(name, member, length - 4);
-    if (npz_find(file, name) != NULL) return error_input(error, file->path, "holds array '%s' twice", name);
-    return true;
-}
-
-static bool read_head(NpzFile *file, int64_t index, StoredArray *array, uint64_t declared, Error *error) {
-    char text[NPY_HEAD_MAX];
-    const int64_t size = npz_archive_begin(file->archive, index, array->name, text, sizeof text, error);
-    if (size < 0) return false;
-    if (!npy_parse_head(&array->head, text, (size_t)size, array->reason))
-        return array->head.is_foreign || error_input(error, file->path, "'%s' is %s", array->name, array->reason);
-    const uint64_t whole = array->head.head_size + array->head.data_size;
-    return whole == declared ||
-           error_input(error, file->path, "array '%s' is damaged: %" PRIu64 " bytes instead of %" PRIu64, array->name,
-                       declared, whole);
-}
-
+/* Names have only letters, digits, '_', '-' and '.', since messages print them on a terminal. */
 static bool read_directory(NpzFile *file, Error *error) {
     const int64_t count = npz_archive_count(file->archive);
     if (count < 1 || count > NPZ_MAX_ARRAYS)
         return error_input(error, file->path, "holds %" PRId64 " arrays; expected 1 to %d", count, NPZ_MAX_ARRAYS);
-    for (; file->count < count; file->count++) {
-        StoredArray *array = &file->arrays[file->count];
-        const char *member = npz_archive_name(file->archive, file->count, error);
-        uint64_t size;
-        if (member == NULL || !take_name(file, member, array->name, error) ||
-            !npz_archive_check(file->archive, file->count, array->name, &size, error) ||
-            !read_head(file, file->count, array, size, error))
-            return false;
+    for (int64_t k = 0; k < count; k++) {
+        StoredArray *array = &file->arrays[k];
+        const char *member = npz_archive_name(file->archive, k, error);
+        if (member == NULL) return false;
+        const size_t length = strlen(member);
+        bool plain = length > 4 && length - 4 < NPZ_NAME_SIZE;
+        for (size_t i = 0; plain && i < length; i++)
+            plain = isalnum((unsigned char)member[i]) || strchr("_-.", member[i]);
+        if (!plain || strcmp(member + length - 4, ".npy") != 0)
+            return error_input(error, file->path, "holds a member that is not a named .npy array");
+        memcpy(array->name, member, length - 4);
+        if (npz_find(file, array->name) != NULL)
+            return error_input(error, file->path, "holds array '%s' twice", array->name);
+        char text[NPY_HEAD_MAX];
+        uint64_t declared;
+        if (!npz_archive_check(file->archive, k, array->name, &declared, error)) return false;
+        const int64_t size = npz_archive_begin(file->archive, k, array->name, text, sizeof text, error);
+        if (size < 0) return false;
+        const bool known = npy_parse_head(&array->head, text, (size_t)size, array->reason);
+        if (!known && !array->head.is_foreign)
+            return error_input(error, file->path, "'%s' is %s", array->name, array->reason);
+        const uint64_t whole = array->head.head_size + array->head.data_size;
+        if (known && whole != declared)
+            return error_input(error, file->path, "array '%s' is damaged: %" PRIu64 " bytes instead of %" PRIu64,
+                               array->name, declared, whole);
+        file->count++;
     }
     return true;
 }
@@ -81,27 +76,25 @@ uint64_t npz_budget(uint64_t size) {
     return budget < NPZ_MAX_BYTES ? budget : NPZ_MAX_BYTES;
 }
 
-/* A bomb is refused here, whatever reads it. */
-static bool check_budget(NpzFile *file, Error *error) {
-    uint64_t total = 0;
-    for (int64_t i = 0; i < file->count; i++) total += file->arrays[i].head.data_size;
-    file->budget = npz_budget(file->size);
-    if (total <= file->budget) return true;
-    if (total > NPZ_MAX_BYTES) return error_input(error, file->path, "its arrays are larger than 2 GiB together");
-    return error_input(error, file->path,
-                       "its arrays take %" PRIu64 " bytes; expected at most %" PRIu64
-                       " (%d MiB and %d times the size of the file); store them with less compression",
-                       total, file->budget, (int)(NPZ_ALWAYS >> 20), (int)NPZ_RATIO);
-}
-
 NpzFile *npz_open(const char *path, Error *error) {
     NpzFile *file = calloc(1, sizeof *file);
+    uint64_t total = 0;
     if (file != NULL) file->path = strdup(path);
-    if (file == NULL || file->path == NULL)
-        error_memory(error, path);
-    else if ((file->archive = npz_archive_open(path, &file->size, error)) != NULL && read_directory(file, error) &&
-             check_budget(file, error))
-        return file;
+    bool ok = (file != NULL && file->path != NULL) || error_memory(error, path);
+    ok = ok && (file->archive = npz_archive_open(path, &file->size, error)) != NULL && read_directory(file, error);
+    if (ok) {
+        /* A bomb is refused here, whatever reads it. */
+        for (int64_t i = 0; i < file->count; i++) total += file->arrays[i].head.data_size;
+        file->budget = npz_budget(file->size);
+        if (total <= file->budget) return file;
+        if (total > NPZ_MAX_BYTES)
+            error_input(error, path, "its arrays are larger than 2 GiB together");
+        else
+            error_input(error, path,
+                        "its arrays take %" PRIu64 " bytes; expected at most %" PRIu64
+                        " (%d MiB and %d times the size of the file); store them with less compression",
+                        total, file->budget, (int)(NPZ_ALWAYS >> 20), (int)NPZ_RATIO);
+    }
     npz_close(file);
     return NULL;
 }
@@ -127,18 +120,14 @@ static bool is_stored_as(const NpyHead *head, NpzType type, int rank) {
     return head->type == type && head->rank == rank && !head->big_endian && !(head->fortran && rank > 1);
 }
 
-/* Whether npz_read() can make an array of this type and rank of it. */
-static bool is_convertible(const NpyHead *head, NpzType type, int rank) {
-    bool one_number = rank == 0 && head->rank == 1 && head->shape[0] == 1;
-    return (head->type == NPZ_TEXT) == (type == NPZ_TEXT) && (head->rank == rank || one_number);
-}
-
 static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {
     const StoredArray *array = npz_find(file, name);
     if (array == NULL) return error_input(error, file->path, "has no array '%s'", name), NULL;
     const NpyHead *head = &array->head;
     if (head->is_foreign) return error_input(error, file->path, "'%s' is %s", name, array->reason), NULL;
-    if (is_stored_as(head, type, rank) || (file->converts && is_convertible(head, type, rank))) return array;
+    const bool one_number = rank == 0 && head->rank == 1 && head->shape[0] == 1;
+    const bool converts = file->converts && (head->type == NPZ_TEXT) == (type == NPZ_TEXT);
+    if (is_stored_as(head, type, rank) || (converts && (head->rank == rank || one_number))) return array;
     error_input(error, file->path, "array '%s' is %s of %d dimensions%s%s; expected %s of %d", name,
                 npy_type_name(head->type), head->rank, head->big_endian ? ", big-endian" : "",
                 head->fortran ? ", in Fortran order" : "", npy_type_name(type), rank);
@@ -181,24 +170,6 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
     return NULL;
 }
 
-/* Replaces `data`, which it frees, by a block of the type. */
-static void *convert_npz(NpzFile *file, const StoredArray *array, void *data, NpzType type, Error *error) {
-    size_t size = npy_count(&array->head) * npy_type_size(type);
-    char reason[NPY_REASON_SIZE];
-    void *converted = malloc(size > 0 ? size : 1);
-    bool done = false;
-    if (converted == NULL)
-        error_memory(error, file->path);
-    else if (!npy_convert(&array->head, data, type, converted, reason))
-        error_input(error, file->path, "array '%s': %s", array->name, reason);
-    else
-        done = true;
-    free(data);
-    if (done) return converted;
-    free(converted);
-    return NULL;
-}
-
 /* The array, if it has this type, rank and shape. */
 static const StoredArray *find_shaped(const NpzFile *file, const char *name, NpzType type, int rank,
                                       const int64_t *shape, Error *error) {
@@ -226,20 +197,16 @@ void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const in
     const uint64_t converted = npy_count(&array->head) * npy_type_size(type), stored = array->head.data_size;
     if (converted > stored && !spend(file, converted - stored, error)) return NULL;
     void *data = read_data(file, array, error);
-    return data == NULL || is_stored_as(&array->head, type, array->head.rank)
-               ? data
-               : convert_npz(file, array, data, type, error);
-}
-
-/* Appends one character; false if it is not one (NUL, surrogate, too large), or has no room with a NUL behind it. */
-static bool npz_append(uint32_t character, char *text, size_t *used, size_t size) {
-    char bytes[4];
-    if (character == 0 || character > 0x10ffff || (character >= 0xd800 && character < 0xe000)) return false;
-    size_t length = utf8_put(bytes, character);
-    if (*used + length >= size) return false;
-    memcpy(text + *used, bytes, length);
-    *used += length;
-    return true;
+    if (data == NULL || is_stored_as(&array->head, type, array->head.rank)) return data;
+    char reason[NPY_REASON_SIZE];
+    void *block = malloc(converted > 0 ? (size_t)converted : 1);
+    bool done = block != NULL || error_memory(error, file->path);
+    if (done && !npy_convert(&array->head, data, type, block, reason))
+        done = error_input(error, file->path, "array '%s': %s", array->name, reason);
+    free(data);
+    if (done) return block;
+    free(block);
+    return NULL;
 }
 
 bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Error *error) {
@@ -254,7 +221,16 @@ bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Err
     while (count > 0 && characters[count - 1] == 0) count--;
     size_t used = 0;
     bool done = true;
-    for (int64_t i = 0; done && i < count; i++) done = npz_append(characters[i], text, &used, size);
+    for (int64_t i = 0; done && i < count; i++) {
+        /* A NUL, a surrogate or a number that is too large is no character; one needs room with a NUL behind it. */
+        const uint32_t c = characters[i];
+        char bytes[4];
+        done = c != 0 && c <= 0x10ffff && (c < 0xd800 || c >= 0xe000);
+        const size_t length = done ? utf8_put(bytes, c) : 0;
+        done = done && used + length < size;
+        if (done) memcpy(text + used, bytes, length);
+        if (done) used += length;
+    }
     text[used] = '\0';
     free(characters);
     return done || error_input(error, file->path, "text '%s' is damaged, or longer than %zu bytes", name, size - 1);

@@ -100,21 +100,18 @@ static bool put_block(Pack *pack, Error *error) {
     return done;
 }
 
-static bool put_large(Pack *pack, const unsigned char *data, size_t size, Error *error) {
-    for (size_t at = 0, piece; at < size; at += piece) {
-        piece = size_min(size - at, BLOCK_SIZE - pack->block_used);
-        memcpy(pack->block + pack->block_used, data + at, piece);
-        pack->block_used += piece;
-        if (pack->block_used == BLOCK_SIZE && !put_block(pack, error)) return false;
-    }
-    return true;
-}
-
 static bool pack_put(Pack *pack, const void *data, size_t size, Error *error) {
     if (size == 0) return true;
     pack->crc = libdeflate_crc32(pack->crc, data, size); /* ten times as fast as zlib's */
     pack->size += size;
-    return pack->block != NULL ? put_large(pack, data, size, error) : deflate_all(pack, data, size, Z_NO_FLUSH, error);
+    if (pack->block == NULL) return deflate_all(pack, data, size, Z_NO_FLUSH, error);
+    for (size_t at = 0, piece; at < size; at += piece) {
+        piece = size_min(size - at, BLOCK_SIZE - pack->block_used);
+        memcpy(pack->block + pack->block_used, (const char *)data + at, piece);
+        pack->block_used += piece;
+        if (pack->block_used == BLOCK_SIZE && !put_block(pack, error)) return false;
+    }
+    return true;
 }
 
 static bool pack_end(Pack *pack, Error *error) {
@@ -217,7 +214,7 @@ static bool add_size(Zip *zip, uint64_t size, Error *error) {
     return true;
 }
 
-static bool npz_write_put(Zip *zip, const void *data, size_t size, Error *error) {
+static bool put(Zip *zip, const void *data, size_t size, Error *error) {
     return add_size(zip, size, error) && file_draft_write(zip->draft, zip->path, data, size, error);
 }
 
@@ -225,20 +222,7 @@ static bool npz_write_put(Zip *zip, const void *data, size_t size, Error *error)
 static bool zip_begin(Zip *zip, Member *member, Error *error) {
     member->offset = (uint32_t)zip->used;
     Record header = local_header(member);
-    return npz_write_put(zip, header.bytes, header.used, error) &&
-           npz_write_put(zip, member->name, strlen(member->name), error);
-}
-
-static bool overwrite(int file, const unsigned char *data, size_t size, off_t at) {
-    while (size > 0) {
-        ssize_t written = pwrite(file, data, size, at);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return false;
-        data += written;
-        at += written;
-        size -= (size_t)written;
-    }
-    return true;
+    return put(zip, header.bytes, header.used, error) && put(zip, member->name, strlen(member->name), error);
 }
 
 /* Ends it: checksum and size of its data before compression, and number of bytes written. */
@@ -247,18 +231,18 @@ static bool zip_end(Zip *zip, Member *member, uint32_t crc, uint64_t size, uint6
     member->packed = packed;
     member->crc = crc;
     member->size = size;
-    Record header = local_header(member);
-    return overwrite(zip->draft, header.bytes, header.used, member->offset) ||
-           error_system(error, zip->path, "cannot write: %s", strerror(errno));
+    const Record header = local_header(member);
+    for (size_t done = 0; done < header.used;) {
+        const ssize_t written =
+            pwrite(zip->draft, header.bytes + done, header.used - done, (off_t)(member->offset + done));
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return error_system(error, zip->path, "cannot write: %s", strerror(errno));
+        done += (size_t)written;
+    }
+    return true;
 }
 
-/* After the last member: the entry of each in the directory, then the end of the directory that began at `start`. */
-static bool zip_list(Zip *zip, const Member *member, Error *error) {
-    Record entry = directory_entry(member);
-    return npz_write_put(zip, entry.bytes, entry.used, error) &&
-           npz_write_put(zip, member->name, strlen(member->name), error);
-}
-
+/* After the last member: the end of the directory that began at `start`. */
 static bool zip_finish(Zip *zip, int count, uint64_t start, Error *error) {
     Record end = {.used = 0};
     put32(&end, 0x06054b50);
@@ -270,7 +254,7 @@ static bool zip_finish(Zip *zip, int count, uint64_t start, Error *error) {
     put32(&end, (uint32_t)start);
     put16(&end, 0); /* comment */
     assert(end.used == END_SIZE);
-    return npz_write_put(zip, end.bytes, end.used, error);
+    return put(zip, end.bytes, end.used, error);
 }
 
 /* An array of the stream. */
@@ -335,7 +319,7 @@ static bool decode_text(Column *column, const NpzArray *array, const char *path,
     return true;
 }
 
-static bool npz_write_measure(NpzStream *stream, Column *column, Error *error) {
+static bool measure(NpzStream *stream, Column *column, Error *error) {
     return npy_measure(&column->head) || error_input(error, stream->zip.path, "cannot store '%.*s': larger than 2 GiB",
                                                      (int)strlen(column->member.name) - 4, column->member.name);
 }
@@ -352,11 +336,11 @@ int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error) {
     if (array->type == NPZ_TEXT && !decode_text(column, array, stream->zip.path, error)) return -1;
     if (array->data == NULL && array->rank > 0) {
         column->head.shape[0] = 1;
-        if (!npz_write_measure(stream, column, error)) return -1;
+        if (!measure(stream, column, error)) return -1;
         column->row_size = column->head.data_size;
         column->head.shape[0] = array->shape[0];
     }
-    return npz_write_measure(stream, column, error) ? stream->count - 1 : -1;
+    return measure(stream, column, error) ? stream->count - 1 : -1;
 }
 
 /* What was kept and all that follows goes into a file. */
@@ -375,7 +359,7 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
     assert(array >= 0 && array < stream->count && column->data == NULL);
     size_t size = (size_t)((uint64_t)count * column->row_size);
     column->head.shape[0] += count;
-    if (!npz_write_measure(stream, column, error)) return false;
+    if (!measure(stream, column, error)) return false;
     if (size == 0) return true;
     if (column->spill < 0 && column->used + size >= NPZ_LARGE && !spill(stream, column, error)) return false;
     if (column->spill >= 0) return pack_put(&column->pack, rows, size, error);
@@ -396,11 +380,6 @@ static bool write_small(NpzStream *stream, Column *column, const char *head, Err
            pack_end(pack, error) && zip_end(&stream->zip, &column->member, pack->crc, pack->size, pack->packed, error);
 }
 
-static bool copy_spilled(NpzStream *stream, const Column *column, Error *error) {
-    return file_copy(stream->zip.draft, column->spill) ||
-           error_system(error, stream->zip.path, "cannot write: %s", strerror(errno));
-}
-
 /* The header is a block of its own: of rows that were appended, it is known last. */
 static bool write_large(NpzStream *stream, Column *column, const char *head, Error *error) {
     Pack whole = {0}, *pack = &whole;
@@ -411,7 +390,8 @@ static bool write_large(NpzStream *stream, Column *column, const char *head, Err
                 pack_put_stored(&whole, head, head_size, error);
     if (done && spilled) {
         pack = &column->pack;
-        done = pack_end(pack, error) && copy_spilled(stream, column, error);
+        done = pack_end(pack, error) && (file_copy(stream->zip.draft, column->spill) ||
+                                         error_system(error, stream->zip.path, "cannot write: %s", strerror(errno)));
         pack->packed += whole.packed;
     } else if (done) {
         done = pack_put(pack, column->data, column->head.data_size, error) && pack_end(pack, error);
@@ -425,22 +405,25 @@ static bool write_large(NpzStream *stream, Column *column, const char *head, Err
     return done;
 }
 
-static bool write_column(NpzStream *stream, Column *column, Error *error) {
-    char head[NPY_HEAD_MAX];
-    npy_write_head(&column->head, head);
-    bool done = (column->head.data_size >= NPZ_LARGE ? write_large : write_small)(stream, column, head, error);
-    column_free(column);
-    return done;
-}
-
 bool npz_stream_finish(NpzStream *stream, Error *error) {
-    for (int i = 0; i < stream->count; i++)
-        if (!write_column(stream, &stream->columns[i], error)) return false;
-    const uint64_t start = stream->zip.used;
-    for (int i = 0; i < stream->count; i++)
-        if (!zip_list(&stream->zip, &stream->columns[i].member, error)) return false;
-    return zip_finish(&stream->zip, stream->count, start, error) &&
-           file_draft_publish(stream->zip.draft, stream->zip.path, error);
+    Zip *zip = &stream->zip;
+    for (int i = 0; i < stream->count; i++) {
+        Column *column = &stream->columns[i];
+        char head[NPY_HEAD_MAX];
+        npy_write_head(&column->head, head);
+        const bool done =
+            (column->head.data_size >= NPZ_LARGE ? write_large : write_small)(stream, column, head, error);
+        column_free(column);
+        if (!done) return false;
+    }
+    const uint64_t start = zip->used;
+    for (int i = 0; i < stream->count; i++) { /* the entry of each in the directory */
+        const Member *member = &stream->columns[i].member;
+        const Record entry = directory_entry(member);
+        if (!put(zip, entry.bytes, entry.used, error) || !put(zip, member->name, strlen(member->name), error))
+            return false;
+    }
+    return zip_finish(zip, stream->count, start, error) && file_draft_publish(zip->draft, zip->path, error);
 }
 
 bool npz_write(const char *path, const NpzArray *arrays, size_t count, Error *error) {

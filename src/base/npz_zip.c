@@ -86,15 +86,6 @@ static bool check_directory(int descriptor, uint64_t size, const char *path, Err
     return done;
 }
 
-static bool refuse_pointer(int descriptor, const char *path, Error *error) {
-    char start[64];
-    ssize_t size = -1;
-    do size = pread(descriptor, start, sizeof start, 0);
-    while (size < 0 && errno == EINTR);
-    return size < 0 ? error_system(error, path, "cannot read: %s", strerror(errno))
-                    : lfs_pointer_refuse(start, (size_t)size, path, error);
-}
-
 /* Opens the file and checks that it is safe to pass to libzip. */
 static int open_checked(const char *path, uint64_t *size, Error *error) {
     /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
@@ -112,9 +103,15 @@ static int open_checked(const char *path, uint64_t *size, Error *error) {
         done = error_input(error, path, "not a regular file");
     else if ((uint64_t)status.st_size > NPZ_MAX_BYTES)
         done = error_input(error, path, "larger than 2 GiB");
-    else
-        done = refuse_pointer(descriptor, path, error) &&
+    else {
+        char start[64];
+        ssize_t got;
+        do got = pread(descriptor, start, sizeof start, 0);
+        while (got < 0 && errno == EINTR);
+        done = (got >= 0 || error_system(error, path, "cannot read: %s", strerror(errno))) &&
+               lfs_pointer_refuse(start, (size_t)got, path, error) &&
                check_directory(descriptor, (uint64_t)status.st_size, path, error);
+    }
     if (done) trace_line("read %s, %jd bytes", path, (intmax_t)status.st_size);
     *size = done ? (uint64_t)status.st_size : 0;
     if (done) return descriptor;
@@ -201,22 +198,19 @@ int64_t npz_archive_begin(NpzArchive *archive, int64_t index, const char *array,
     return got;
 }
 
-/* To the end of the member: libzip compares the checksum only there. */
-static bool inflate_data(const NpzArchive *archive, const char *array, zip_file_t *member, size_t head, void *data,
-                         uint64_t size, Error *error) {
-    char skipped[NPY_HEAD_MAX], more;
-    const zip_int64_t before = zip_fread(member, skipped, head), got = before < 0 ? -1 : zip_fread(member, data, size),
-                      after = got < 0 ? -1 : zip_fread(member, &more, 1);
-    if ((uint64_t)got == size && after == 0) return true;
-    if (after < 0) return refuse_damaged(archive, array, zip_file_get_error(member), error);
-    return error_input(error, archive->path, "array '%s' is damaged: %s", array, after > 0 ? "too long" : "cut off");
-}
-
 bool npz_archive_read(NpzArchive *archive, int64_t index, const char *array, size_t head, void *data, uint64_t size,
                       Error *error) {
     zip_file_t *member = open_member(archive, index, array, error);
     if (member == NULL) return false;
-    const bool done = inflate_data(archive, array, member, head, data, size, error);
+    /* To the end of the member: libzip compares the checksum only there. */
+    char skipped[NPY_HEAD_MAX], more;
+    const zip_int64_t before = zip_fread(member, skipped, head), got = before < 0 ? -1 : zip_fread(member, data, size),
+                      after = got < 0 ? -1 : zip_fread(member, &more, 1);
+    const bool done = (uint64_t)got == size && after == 0;
+    if (after < 0)
+        refuse_damaged(archive, array, zip_file_get_error(member), error);
+    else if (!done)
+        error_input(error, archive->path, "array '%s' is damaged: %s", array, after > 0 ? "too long" : "cut off");
     zip_fclose(member);
     return done;
 }

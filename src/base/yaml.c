@@ -54,13 +54,6 @@ void source_printable(char *out, size_t room, const char *text) {
 
 static bool ends_line(char c) { return c == '\n' || c == '\r'; }
 
-/* The end of the line that contains `at`; "\r\n" is one end, as in YAML. */
-static size_t next_line(const Source *source, size_t at) {
-    while (at < source->size && !ends_line(source->text[at])) at++;
-    if (at < source->size) at += source->text[at] == '\r' && source->text[at + 1] == '\n' ? 2 : 1;
-    return at;
-}
-
 static bool in_line(const Source *source, size_t at) { return at < source->size && !ends_line(source->text[at]); }
 
 /* Bytes of the character at `at`; 1 for a byte that is not UTF-8. */
@@ -75,7 +68,9 @@ static size_t character_length(const Source *source, size_t at) {
 static size_t find_place(const Source *source, Place *place) {
     size_t start = 0;
     for (int line = 0; line < place->line; line++) {
-        size_t next = next_line(source, start);
+        size_t next = start; /* behind the end of this line; "\r\n" is one end, as in YAML */
+        while (in_line(source, next)) next++;
+        if (next < source->size) next += source->text[next] == '\r' && source->text[next + 1] == '\n' ? 2 : 1;
         if (next >= source->size) *place = (Place){line, INT_MAX};
         start = next < source->size ? next : start;
     }
@@ -172,21 +167,18 @@ bool yaml_error_at(const YamlTree *tree, int node, size_t byte, Error *error, co
 
 /* Reads mappings by tables of keys, and values of types that need no other room. */
 
-/* The known key that is nearest to a mistyped one, or NULL. */
-static const char *nearest_key(const Field *fields, const char *key) {
-    const char *keys[FIELDS_MAX];
-    int count = 0;
-    for (const Field *field = fields; field->key != NULL; field++) keys[count++] = field->key;
-    return nearest_word(key, keys, count);
-}
-
 static bool unknown_key(const YamlTree *tree, int node, const char *what, const Field *fields, Error *error) {
-    YamlShown shown = yaml_show(tree, node);
-    const char *nearest = nearest_key(fields, yaml_text(tree, node));
+    const YamlShown shown = yaml_show(tree, node);
+    const char *keys[FIELDS_MAX];
+    NameList known = {0};
+    int count = 0;
+    for (const Field *field = fields; field->key != NULL; field++) {
+        keys[count++] = field->key;
+        name_list_add(&known, field->key);
+    }
+    const char *nearest = nearest_word(yaml_text(tree, node), keys, count);
     if (nearest != NULL)
         return yaml_error(tree, node, error, "'%s' is not a key of %s; did you mean '%s'?", shown.text, what, nearest);
-    NameList known = {0};
-    for (const Field *field = fields; field->key != NULL; field++) name_list_add(&known, field->key);
     return yaml_error(tree, node, error, "'%s' is not a key of %s; known: %s", shown.text, what, known.text);
 }
 
@@ -197,14 +189,6 @@ static const Field *find_field(const Field *fields, const char *key) {
 
 int fields_node(const Field *fields, const int nodes[FIELDS_MAX], const char *key) {
     return nodes[find_field(fields, key) - fields];
-}
-
-static bool all_there(const YamlTree *tree, int node, const char *what, const Field *fields, const int *nodes,
-                      Error *error) {
-    for (int i = 0; fields[i].key != NULL; i++)
-        if (fields[i].required && nodes[i] == 0)
-            return yaml_error(tree, node, error, "%s needs the key '%s'", what, fields[i].key);
-    return true;
 }
 
 bool fields_read(const YamlTree *tree, int node, const char *what, const Field *fields, void *target,
@@ -224,7 +208,10 @@ bool fields_read(const YamlTree *tree, int node, const char *what, const Field *
         if (!field->parse(tree, value, field, (char *)target + field->offset, error)) return false;
         key = tree->nodes[value].end;
     }
-    return all_there(tree, node, what, fields, nodes, error);
+    for (int i = 0; fields[i].key != NULL; i++)
+        if (fields[i].required && nodes[i] == 0)
+            return yaml_error(tree, node, error, "%s needs the key '%s'", what, fields[i].key);
+    return true;
 }
 
 bool field_switch(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {

@@ -11,37 +11,25 @@
 
 /* Checks of the text before it is parsed. */
 
-static bool ends_line(char c) { return c == '\n' || c == '\r'; }
-
-/* What libyaml refuses without a place, and what it takes for the end of a line but editors do not. */
-static bool is_allowed(uint32_t character) {
-    return !(character >= 0x80 && character < 0xa0) && character != 0x2028 && character != 0x2029 &&
-           character != 0xfeff && character != 0xfffe && character != 0xffff;
-}
-
-static bool check_character(const Source *source, size_t at, uint32_t character, Place *place, Error *error) {
-    if (ends_line(source->text[at])) {
-        bool inside_pair = source->text[at] == '\r' && source->text[at + 1] == '\n';
-        *place = (Place){place->line + !inside_pair, 0};
-        return true;
-    }
-    if ((character < 0x20 && character != '\t') || character == 0x7f)
-        return source_error(source, *place, error, "control character 0x%02x", (unsigned)character);
-    if (!is_allowed(character))
-        return source_error(source, *place, error, "the character U+%04X is not allowed", (unsigned)character);
-    if (place->column == 0 && character == '%')
-        return source_error(source, *place, error, "YAML directives are not allowed");
-    place->column++;
-    return true;
-}
-
+/* Refuses also what libyaml refuses without a place, and what it takes for the end of a line but editors do not. */
 static bool check_text(const Source *source, Error *error) {
     Place place = {0, 0};
     for (size_t at = 0, length; at < source->size; at += length) {
-        uint32_t character;
-        length = utf8_decode(source->text + at, source->size - at, &character);
+        const char *text = source->text + at;
+        uint32_t c;
+        length = utf8_decode(text, source->size - at, &c);
         if (length == 0) return source_error(source, place, error, "not UTF-8 text");
-        if (!check_character(source, at, character, &place, error)) return false;
+        if (*text == '\n' || *text == '\r') {
+            const bool inside_pair = *text == '\r' && text[1] == '\n';
+            place = (Place){place.line + !inside_pair, 0};
+            continue;
+        }
+        if ((c < 0x20 && c != '\t') || c == 0x7f)
+            return source_error(source, place, error, "control character 0x%02x", (unsigned)c);
+        if ((c >= 0x80 && c < 0xa0) || c == 0x2028 || c == 0x2029 || c == 0xfeff || c == 0xfffe || c == 0xffff)
+            return source_error(source, place, error, "the character U+%04X is not allowed", (unsigned)c);
+        if (place.column == 0 && c == '%') return source_error(source, place, error, "YAML directives are not allowed");
+        place.column++;
     }
     return true;
 }
@@ -99,26 +87,18 @@ typedef struct Builder {
     Place place;              /* of the last event that had one */
 } Builder;
 
-static bool yaml_read_fail(const Builder *builder, Error *error, const char *what) {
+static bool fail(const Builder *builder, Error *error, const char *what) {
     return source_error(&builder->tree->source, builder->place, error, "%s", what);
-}
-
-/* Here a mapping counts keys and values; yaml_read() halves the count. */
-static bool count_in_parent(Builder *builder, Error *error) {
-    if (builder->depth == 0) return true;
-    YamlNode *parent = &builder->tree->nodes[builder->open[builder->depth - 1]];
-    parent->count++;
-    if (parent->kind == YAML_MAPPING && parent->count > 2 * YAML_MAX_KEYS)
-        return source_error(&builder->tree->source, builder->place, error, "a mapping must have at most %d keys",
-                            YAML_MAX_KEYS);
-    return true;
 }
 
 static bool add_node(Builder *builder, YamlKind kind, Error *error) {
     YamlTree *tree = builder->tree;
     if (tree->node_count == YAML_MAX_NODES)
         return source_error(&tree->source, builder->place, error, "more than %d values in one file", YAML_MAX_NODES);
-    if (!count_in_parent(builder, error)) return false;
+    YamlNode *parent = builder->depth > 0 ? &tree->nodes[builder->open[builder->depth - 1]] : NULL;
+    if (parent != NULL) parent->count++; /* of a mapping: keys and values, until it is closed */
+    if (parent != NULL && parent->kind == YAML_MAPPING && parent->count > 2 * YAML_MAX_KEYS)
+        return source_error(&tree->source, builder->place, error, "a mapping must have at most %d keys", YAML_MAX_KEYS);
     void *nodes = tree->nodes;
     bool room = array_reserve(&nodes, &builder->node_capacity, (size_t)tree->node_count + 1, sizeof *tree->nodes);
     tree->nodes = nodes;
@@ -130,8 +110,7 @@ static bool add_node(Builder *builder, YamlKind kind, Error *error) {
 
 static bool add_scalar(Builder *builder, const void *text, size_t length, Error *error) {
     if (!add_node(builder, YAML_SCALAR, error)) return false;
-    if (memchr(text, '\0', length) != NULL)
-        return yaml_read_fail(builder, error, "a text must not contain the character \\0");
+    if (memchr(text, '\0', length) != NULL) return fail(builder, error, "a text must not contain the character \\0");
     void *texts = builder->tree->texts;
     bool room = array_reserve(&texts, &builder->text_capacity, builder->text_size + length + 1, 1);
     builder->tree->texts = texts;
@@ -151,42 +130,28 @@ static bool open_node(Builder *builder, YamlKind kind, Error *error) {
     return true;
 }
 
-static void close_node(Builder *builder) {
-    YamlNode *node = &builder->tree->nodes[builder->open[--builder->depth]];
-    node->end = builder->tree->node_count;
-    if (node->kind == YAML_MAPPING) node->count /= 2;
-}
-
 /* Aliases need an anchor before them, so without anchors there are no valid aliases. */
 static bool refuse_extras(const Builder *builder, const void *anchor, const void *tag, Error *error) {
-    if (anchor != NULL) return yaml_read_fail(builder, error, "anchors (&) are not allowed");
-    return tag == NULL || yaml_read_fail(builder, error, "tags (!) are not allowed");
-}
-
-/* `dt:` without a value; `dt: ""` has one. */
-static bool is_missing_value(const yaml_event_t *event) {
-    return event->type == YAML_SCALAR_EVENT && event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
-           event->data.scalar.length == 0;
+    if (anchor != NULL) return fail(builder, error, "anchors (&) are not allowed");
+    return tag == NULL || fail(builder, error, "tags (!) are not allowed");
 }
 
 static Place place_of(yaml_mark_t mark) { return (Place){(int)mark.line, (int)mark.column}; }
 
-/* A text begins behind its quote. */
-static Place place_of_event(const yaml_event_t *event) {
-    Place place = place_of(event->start_mark);
-    if (event->type != YAML_SCALAR_EVENT || event->data.scalar.anchor != NULL || event->data.scalar.tag != NULL)
-        return place;
-    const yaml_scalar_style_t style = event->data.scalar.style;
-    place.column += style == YAML_SINGLE_QUOTED_SCALAR_STYLE || style == YAML_DOUBLE_QUOTED_SCALAR_STYLE;
-    return place;
-}
-
 static bool take_event(Builder *builder, const yaml_event_t *event, Error *error) {
-    /* A missing value is shown at its key. */
-    if (!is_missing_value(event)) builder->place = place_of_event(event);
+    const bool scalar = event->type == YAML_SCALAR_EVENT;
+    const yaml_scalar_style_t style = scalar ? event->data.scalar.style : YAML_ANY_SCALAR_STYLE;
+    YamlNode *closed;
+    /* A missing value, `dt:` (`dt: ""` has one), is shown at its key; a text begins behind its quote. */
+    if (style != YAML_PLAIN_SCALAR_STYLE || event->data.scalar.length > 0) {
+        builder->place = place_of(event->start_mark);
+        if (scalar && event->data.scalar.anchor == NULL && event->data.scalar.tag == NULL)
+            builder->place.column +=
+                style == YAML_SINGLE_QUOTED_SCALAR_STYLE || style == YAML_DOUBLE_QUOTED_SCALAR_STYLE;
+    }
     switch (event->type) {
     case YAML_DOCUMENT_START_EVENT:
-        return ++builder->documents == 1 || yaml_read_fail(builder, error, "a file must hold one document only");
+        return ++builder->documents == 1 || fail(builder, error, "a file must hold one document only");
     case YAML_MAPPING_START_EVENT:
         return refuse_extras(builder, event->data.mapping_start.anchor, event->data.mapping_start.tag, error) &&
                open_node(builder, YAML_MAPPING, error);
@@ -194,54 +159,52 @@ static bool take_event(Builder *builder, const yaml_event_t *event, Error *error
         return refuse_extras(builder, event->data.sequence_start.anchor, event->data.sequence_start.tag, error) &&
                open_node(builder, YAML_SEQUENCE, error);
     case YAML_MAPPING_END_EVENT:
-    case YAML_SEQUENCE_END_EVENT: close_node(builder); return true;
+    case YAML_SEQUENCE_END_EVENT:
+        closed = &builder->tree->nodes[builder->open[--builder->depth]];
+        closed->end = builder->tree->node_count;
+        if (closed->kind == YAML_MAPPING) closed->count /= 2;
+        return true;
     case YAML_SCALAR_EVENT:
         return refuse_extras(builder, event->data.scalar.anchor, event->data.scalar.tag, error) &&
                add_scalar(builder, event->data.scalar.value, event->data.scalar.length, error);
-    case YAML_ALIAS_EVENT: return yaml_read_fail(builder, error, "aliases (*) are not allowed");
+    case YAML_ALIAS_EVENT: return fail(builder, error, "aliases (*) are not allowed");
     default: return true;
     }
 }
 
-/* A text without end, or a key without colon, is shown where it begins. check_text() has refused what libyaml's reader
-   would. */
-static bool syntax_error(const Builder *builder, const yaml_parser_t *parser, Error *error) {
-    const Source *source = &builder->tree->source;
-    if (parser->error == YAML_MEMORY_ERROR) return error_memory(error, source->path);
-    const bool begun = parser->error == YAML_SCANNER_ERROR && parser->context != NULL;
-    const yaml_mark_t mark = begun ? parser->context_mark : parser->problem_mark;
-    const size_t at = source_offset(source, place_of(mark));
-    return source_error(source, place_of(mark), error, "%s", syntax_words(parser->problem, source->text[at]));
-}
-
-static bool take_events(Builder *builder, yaml_parser_t *parser, Error *error) {
-    for (bool more = true; more;) {
-        yaml_event_t event;
-        if (!yaml_parser_parse(parser, &event)) return syntax_error(builder, parser, error);
-        more = event.type != YAML_STREAM_END_EVENT;
-        const bool taken = take_event(builder, &event, error);
-        yaml_event_delete(&event);
-        if (!taken) return false;
-    }
-    return builder->tree->node_count > 0 ||
-           source_error(&builder->tree->source, (Place){0, 0}, error, "the file is empty");
-}
-
-static bool build(YamlTree *tree, Error *error) {
-    yaml_parser_t parser;
-    if (!yaml_parser_initialize(&parser)) return error_memory(error, tree->source.path);
-    Builder builder = {.tree = tree};
-    yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(&parser, (const unsigned char *)tree->source.text, tree->source.size);
-    const bool done = take_events(&builder, &parser, error);
-    yaml_parser_delete(&parser);
-    return done;
-}
-
 bool yaml_read(YamlTree *tree, const char *path, Error *error) {
+    yaml_parser_t parser;
     *tree = (YamlTree){.node_count = 0};
     if (!source_read(&tree->source, path, error)) return false;
-    if (build(tree, error)) return true;
+    const Source *source = &tree->source;
+    if (!yaml_parser_initialize(&parser)) {
+        yaml_tree_free(tree);
+        return error_memory(error, path);
+    }
+    Builder builder = {.tree = tree};
+    bool ok = true;
+    yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
+    yaml_parser_set_input_string(&parser, (const unsigned char *)source->text, source->size);
+    for (bool more = true; ok && more;) {
+        yaml_event_t event;
+        if (yaml_parser_parse(&parser, &event)) {
+            more = event.type != YAML_STREAM_END_EVENT;
+            ok = take_event(&builder, &event, error);
+            yaml_event_delete(&event);
+        } else if (parser.error == YAML_MEMORY_ERROR) {
+            ok = error_memory(error, path);
+        } else {
+            /* A text without end, or a key without colon, is shown where it begins. check_text() has refused what
+               libyaml's reader would. */
+            const bool begun = parser.error == YAML_SCANNER_ERROR && parser.context != NULL;
+            const Place place = place_of(begun ? parser.context_mark : parser.problem_mark);
+            ok = source_error(source, place, error, "%s",
+                              syntax_words(parser.problem, source->text[source_offset(source, place)]));
+        }
+    }
+    yaml_parser_delete(&parser);
+    if (ok && tree->node_count > 0) return true;
+    if (ok) source_error(source, (Place){0, 0}, error, "the file is empty");
     yaml_tree_free(tree);
     return false;
 }

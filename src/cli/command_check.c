@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/json_output.h"
-#include "cli/larger_commands.h"
+#include "cli/judge.h"
 #include "cli/notes.h"
 #include "cli/options.h"
 #include "cli/panels.h"
@@ -12,7 +12,7 @@
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pixels/png.h"
-#include "runs/runs.h"
+#include "runs/launch_check.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
@@ -25,9 +25,10 @@ enum { WIDTH = 1280, HEIGHT = 720 };
 static const double way = 3;
 
 typedef struct Options {
-    const char *scene, *output; /* output: NULL for NAME-first-frame.png */
-    unsigned verdict;           /* of `verdicts` */
-    CheckRunOptions run;
+    const char *scene, *output;              /* output: NULL for NAME-first-frame.png */
+    unsigned verdict;                        /* of `verdicts` */
+    double max_overlap, max_drift, max_gain; /* m, m, J; NaN: any */
+    JudgeOptions judge;
     bool json;
 } Options;
 
@@ -40,17 +41,17 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, output)},
     {OPTION_JSON(Options, json)},
     {.help = "Runs (.npz):"},
-    OPTIONS_JUDGE(Options, run.judge),
+    OPTIONS_JUDGE(Options, judge),
     {"--verdict", 0, "WORD",
      "Fail with exit status 1 unless the verdict is this: sound (nothing sinks, tunnels or explodes; it may fall), "
      "holds (settles, stands, moves or creeps), settles, stands, moves, creeps, falls, collapses, sinks, tunnels, "
      "explodes, non-finite (default: any)",
      OPTION_ENUM(Options, verdict, verdicts)},
-    {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, run.max_overlap, 0, 1e6)},
+    {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, max_overlap, 0, 1e6)},
     {"--max-drift", 0, "M", "Fail if a body moves further after the time that the verdict names, m",
-     OPTION_DOUBLE(Options, run.max_drift, 0, 1e6)},
+     OPTION_DOUBLE(Options, max_drift, 0, 1e6)},
     {"--max-gain", 0, "J", "Fail if the energy exceeds that of the start and the bomb by more, J",
-     OPTION_DOUBLE(Options, run.max_gain, 0, 1e12)},
+     OPTION_DOUBLE(Options, max_gain, 0, 1e12)},
     {0}};
 
 static const CommandSpec spec = {
@@ -119,21 +120,16 @@ static void print_fit(FILE *out, const Scene *scene) {
 }
 
 /* "launches from x = -4.9 to -1.25 and from 1.25 to 4.9 m": where they miss, if they differ in x. */
-static void describe_misses(const Scene *scene, const LaunchMisses *misses, char *text, size_t size) {
-    snprintf(text, size, "launches");
+static void print_misses(FILE *out, const Scene *scene, const LaunchMisses *misses) {
+    char which[400] = "launches";
     for (int i = 0; scene_span_varies(&scene->bomb.x) && i < misses->span_count; i++) {
         const OverlapSpan *span = &misses->spans[i];
         const bool alone = span->from == span->to;
-        text_add(text, size, "%s %s %s%.3g", i == 0 ? "" : " and", alone ? "at" : "from", i == 0 ? "x = " : "",
+        text_add(which, sizeof which, "%s %s %s%.3g", i == 0 ? "" : " and", alone ? "at" : "from", i == 0 ? "x = " : "",
                  span->from);
-        if (!alone) text_add(text, size, " to %.3g", span->to);
-        if (i + 1 == misses->span_count) text_add(text, size, " m");
+        if (!alone) text_add(which, sizeof which, " to %.3g", span->to);
+        if (i + 1 == misses->span_count) text_add(which, sizeof which, " m");
     }
-}
-
-static void print_misses(FILE *out, const Scene *scene, const LaunchMisses *misses) {
-    char which[400];
-    describe_misses(scene, misses, which, sizeof which);
     if (misses->tried == 0)
         fprintf(out, "    misses: not looked for, as the scene is large\n");
     else if (misses->missed > 0 && misses->tried == 1)
@@ -168,63 +164,28 @@ static void print_bomb(FILE *out, const Scene *scene) {
     fprintf(out, "    launches: %s\n", family[0] != '\0' ? family : "one");
 }
 
-static void print_lists(FILE *out, const Scene *scene) {
-    for (int i = 0; i < scene->parameter_count; i++) {
-        const SceneParameter *parameter = &scene->parameters[i];
-        fprintf(out, "    parameter %s: %.9g, from %.9g to %.9g%s%s\n", parameter->name, parameter->value,
-                parameter->from, parameter->to, parameter->unit[0] != '\0' ? " " : "", parameter->unit);
-    }
-    for (int i = 0; i < scene->network_count; i++)
-        fprintf(out, "    network of %s: %s\n", scene->networks[i].method, scene->networks[i].path);
-}
-
-static bool check_draw(const Trajectory *run, const char *path, Error *error) {
+/* Runs the engine until the bomb has struck, as far as the scene goes; only one step if that would take long. */
+static bool draw_first_frame(const Scene *scene, const char *path, Error *error) {
+    const double most_states = 1e7, bodies = scene->body_count + 1;
+    const double frames = scene->bomb.present ? scene->bomb.frame + ceil(way / (double)scene->dt) : 1;
+    Scene shown = *scene;
+    Panels panels = {0};
+    Image *image = NULL;
+    Renderer *renderer = NULL;
     RenderOptions render = render_defaults(NULL);
     render.look.approach = true;
     render.width = WIDTH;
     render.height = HEIGHT;
-    Renderer *renderer = renderer_create(&run, 1, &render, error);
-    Image *image = renderer != NULL ? image_create(WIDTH, HEIGHT, error) : NULL;
-    const bool ok =
-        image != NULL && renderer_draw(renderer, 0, image, error) && image_write_png(image, path, NULL, 0, error);
-    image_destroy(image);
-    renderer_destroy(renderer);
-    return ok;
-}
-
-/* Runs the engine until the bomb has struck, as far as the scene goes; only one step if that would take long. */
-static bool draw_first_frame(const Scene *scene, const char *path, Error *error) {
-    const double most_states = 1e7, bodies = scene->body_count + 1;
-    Scene shown = *scene;
-    Panels panels = {0};
-    const double frames = scene->bomb.present ? scene->bomb.frame + ceil(way / (double)scene->dt) : 1;
     if (frames < shown.frames) shown.frames = (int)frames;
     if (shown.frames * bodies > most_states) shown.frames = 1;
-    const bool ok = panels_add_run(&panels, &shown, "engine", path, error) && check_draw(panels.runs[0], path, error);
+    const bool ok = panels_add_run(&panels, &shown, "engine", path, error) &&
+                    (renderer = renderer_create((const Trajectory *const *)panels.runs, 1, &render, error)) != NULL &&
+                    (image = image_create(WIDTH, HEIGHT, error)) != NULL && renderer_draw(renderer, 0, image, error) &&
+                    image_write_png(image, path, NULL, 0, error);
+    image_destroy(image);
+    renderer_destroy(renderer);
     panels_free(&panels);
     return ok;
-}
-
-/* null if all fits, as there is no remark then. */
-static void put_fit(JsonWriter *json, const Scene *scene) {
-    const Fit fit = find_fit(scene);
-    if (json_put_absent(json, "size", check_fits(&fit))) return;
-    json_begin_object(json, "size", JSON_ONE_LINE);
-    json_put_number(json, "smallest_side", fit.side);
-    json_put_number(json, "slop", fit.slop);
-    json_put_number(json, "step", fit.step);
-    json_end(json);
-}
-
-static void put_misses(JsonWriter *json, const LaunchMisses *misses) {
-    json_begin_object(json, "misses", JSON_ONE_LINE);
-    json_put_int(json, "tried", misses->tried);
-    json_put_int(json, "missed", misses->missed);
-    json_begin_array(json, "x", JSON_ONE_LINE);
-    for (int i = 0; i < misses->span_count; i++)
-        json_output_pair(json, NULL, misses->spans[i].from, misses->spans[i].to);
-    json_end(json);
-    json_end(json);
 }
 
 static void put_bomb(JsonWriter *json, const Scene *scene, const LaunchMisses *misses) {
@@ -244,7 +205,14 @@ static void put_bomb(JsonWriter *json, const Scene *scene, const LaunchMisses *m
         if (scene_span_varies(family[i].span))
             json_output_pair(json, family[i].name, (double)family[i].span->from, (double)family[i].span->to);
     json_end(json);
-    put_misses(json, misses);
+    json_begin_object(json, "misses", JSON_ONE_LINE);
+    json_put_int(json, "tried", misses->tried);
+    json_put_int(json, "missed", misses->missed);
+    json_begin_array(json, "x", JSON_ONE_LINE);
+    for (int i = 0; i < misses->span_count; i++)
+        json_output_pair(json, NULL, misses->spans[i].from, misses->spans[i].to);
+    json_end(json);
+    json_end(json);
     json_end(json);
 }
 
@@ -266,7 +234,14 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_number(json, "dt", (double)scene->dt);
     json_put_int(json, "iterations", scene->iterations);
     json_put_bool(json, "overlaps_allowed", scene->overlaps_allowed);
-    put_fit(json, scene);
+    const Fit fit = find_fit(scene);
+    if (!json_put_absent(json, "size", check_fits(&fit))) { /* as there is no remark if all fits */
+        json_begin_object(json, "size", JSON_ONE_LINE);
+        json_put_number(json, "smallest_side", fit.side);
+        json_put_number(json, "slop", fit.slop);
+        json_put_number(json, "step", fit.step);
+        json_end(json);
+    }
     if (!json_put_absent(json, "bomb", !scene->bomb.present)) put_bomb(json, scene, checked->misses);
     json_begin_array(json, "parameters", JSON_LINES);
     for (int i = 0; i < scene->parameter_count; i++) {
@@ -287,17 +262,7 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_text(json, "picture", checked->picture);
 }
 
-static void print_summary(FILE *out, const char *path, const Scene *scene, const LaunchMisses *misses) {
-    fprintf(out, "%s is valid\n", path);
-    print_bodies(out, scene);
-    print_bomb(out, scene);
-    if (scene->bomb.present) print_misses(out, scene, misses);
-    print_lists(out, scene);
-    print_fit(out, scene);
-    fflush(out);
-}
-
-static bool check_and_report(const Scene *scene, const Options *options, Error *error) {
+static bool check_scene(const Scene *scene, const Options *options, Error *error) {
     const bool to_output = options->output != NULL && strcmp(options->output, "-") == 0;
     FILE *out = to_output && note_level() > NOTES_QUIET ? stderr : stdout;
     char standard[SCENE_NAME_SIZE + 32];
@@ -308,7 +273,21 @@ static bool check_and_report(const Scene *scene, const Options *options, Error *
         !scene_check_ends(options->scene, scene, error) ||
         (scene->bomb.present && !launches_find_misses(scene, &misses, error)))
         return false;
-    if (!options->json) print_summary(out, options->scene, scene, &misses);
+    if (!options->json) {
+        fprintf(out, "%s is valid\n", options->scene);
+        print_bodies(out, scene);
+        print_bomb(out, scene);
+        if (scene->bomb.present) print_misses(out, scene, &misses);
+        for (int i = 0; i < scene->parameter_count; i++) {
+            const SceneParameter *parameter = &scene->parameters[i];
+            fprintf(out, "    parameter %s: %.9g, from %.9g to %.9g%s%s\n", parameter->name, parameter->value,
+                    parameter->from, parameter->to, parameter->unit[0] != '\0' ? " " : "", parameter->unit);
+        }
+        for (int i = 0; i < scene->network_count; i++)
+            fprintf(out, "    network of %s: %s\n", scene->networks[i].method, scene->networks[i].path);
+        print_fit(out, scene);
+        fflush(out);
+    }
     const char *picture = to_output ? "/dev/stdout" : options->output != NULL ? options->output : standard;
     if (!draw_first_frame(scene, picture, error)) return false;
     if (options->json)
@@ -319,43 +298,101 @@ static bool check_and_report(const Scene *scene, const Options *options, Error *
     return true;
 }
 
-static bool names_picture(const char *path) {
-    const char *ending = strrchr(path, '.');
-    return strcmp(path, "-") == 0 || (ending != NULL && strcmp(ending, ".png") == 0);
+/* twinbox check RUN.npz */
+
+enum { LIMITS = 3, FAILURE_SIZE = 160 };
+
+typedef struct CheckedRun {
+    const Options *options;
+    const Trajectory *run;
+    JudgedRun judged;
+    int failed;
+    char failures[LIMITS + 1][FAILURE_SIZE];
+} CheckedRun;
+
+PRINTF_LIKE(2, 3) static void fail(CheckedRun *checked, const char *format, ...) {
+    PRINT_ARGUMENTS(checked->failures[checked->failed++], FAILURE_SIZE, format);
 }
 
-static bool check_stored(Options *options, Error *error) {
+/* NaN is no limit. */
+static void check_limit(CheckedRun *checked, const char *what, double value, const char *unit, double most) {
+    if (value > most) fail(checked, "%s %.4g %s, more than %.4g %s", what, value, unit, most, unit);
+}
+
+static bool check_limits(CheckedRun *checked, Error *error) {
+    const Options *options = checked->options;
+    const VerdictReading *reading = &checked->judged.verdict.reading;
+    const Verdict verdict = reading->verdict;
+    const char *word = verdict_name(verdict), *wanted = verdicts[options->verdict];
+    if (!isnan(options->max_drift) && isnan(reading->drift))
+        return error_input(error, options->scene, "lasts %.3g s: --max-drift needs a run of more than %.3g s",
+                           (checked->run->frames - 1) * (double)checked->run->dt,
+                           simulate_verdict_falls(&checked->judged.verdict, VERDICT_CREEP_FROM));
+    if (!isnan(options->max_gain) && isnan(reading->excess))
+        return error_input(error, options->scene,
+                           "has a bomb, or bodies that start with a speed: --max-gain needs --scene");
+    const bool right = options->verdict == 0          ? true
+                       : strcmp(wanted, "sound") == 0 ? verdict_sound(verdict)
+                       : strcmp(wanted, "holds") == 0 ? verdict_holds(verdict)
+                                                      : strcmp(wanted, word) == 0;
+    if (!right) fail(checked, "verdict %s, not %s", word, wanted);
+    check_limit(checked, "overlap", reading->deepest, "m", options->max_overlap);
+    check_limit(checked, "drift", reading->drift, "m", options->max_drift);
+    check_limit(checked, "energy gained", reading->excess, "J", options->max_gain);
+    return true;
+}
+
+static void write_checked(JsonWriter *json, const void *context) {
+    const CheckedRun *checked = context;
+    json_put_text(json, "run", checked->options->scene);
+    json_put_bool(json, "passed", checked->failed == 0);
+    json_begin_array(json, "failures", JSON_LINES);
+    for (int i = 0; i < checked->failed; i++) json_put_text(json, NULL, checked->failures[i]);
+    json_end(json);
+    simulate_verdict_put(&checked->judged.verdict, json, "verdict");
+}
+
+/* Prints the verdict and figures. False also, without an error, if the run is beyond a limit. */
+static bool check_run(const Options *options, Error *error) {
     if (options->output != NULL) return error_input(error, "--output", "applies to scenes only");
-    options->run.path = options->scene;
-    options->run.json = options->json;
-    options->run.verdict = options->verdict > 0 ? verdicts[options->verdict] : NULL;
-    return check_run(&options->run, error);
-}
-
-/* Without a run, nothing is judged. */
-static bool gives_limits(const Options *options) {
-    const CheckRunOptions *run = &options->run;
-    return options->verdict > 0 || !isnan(run->max_overlap) || !isnan(run->max_drift) || !isnan(run->max_gain) ||
-           run->judge.scene != NULL || run->judge.set.count > 0 || run->judge.skin > 0;
+    Trajectory *run = trajectory_read(options->scene, error);
+    if (run == NULL) return false;
+    CheckedRun checked = {.options = options, .run = run};
+    bool ok = judged_run_find(&checked.judged, run, &options->judge, error) && check_limits(&checked, error);
+    if (ok && options->json) {
+        ok = json_output("twinbox check run 1", write_checked, &checked, error);
+    } else if (ok) {
+        printf("%s by %s: %d steps of %g s, %d bodies (%s)\n", run->scene, run->method, run->frames - 1,
+               (double)run->dt, run->bodies, options->scene);
+        judged_run_print(&checked.judged, &options->judge);
+        for (int i = 0; i < checked.failed; i++) printf("failed: %s\n", checked.failures[i]);
+    }
+    judged_run_free(&checked.judged);
+    trajectory_destroy(run);
+    return ok && checked.failed == 0;
 }
 
 bool command_check(int argc, char **argv, Error *error) {
-    Options options = {.run = {.max_overlap = NAN, .max_drift = NAN, .max_gain = NAN}};
+    Options options = {.max_overlap = NAN, .max_drift = NAN, .max_gain = NAN};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (file_name_ends_with(options.scene, ".npz")) return check_stored(&options, error);
+    const char *output = options.output;
+    const bool to_output = output != NULL && path_is_standard(output);
+    if (file_name_ends_with(options.scene, ".npz")) return check_run(&options, error);
     if (file_name_ends_with(options.scene, ".npy"))
         return error_input(error, options.scene,
                            "is one array of NumPy; a run is a .npz, of at least position, angle, size and dt");
-    if (gives_limits(&options))
+    if (options.verdict > 0 || !isnan(options.max_overlap) || !isnan(options.max_drift) || !isnan(options.max_gain) ||
+        options.judge.scene != NULL || options.judge.set.count > 0 || options.judge.skin > 0)
         return error_input(error, options.scene,
                            "is a scene; --scene, --set, --skin, --verdict and limits apply to runs");
-    if (options.output != NULL && !names_picture(options.output))
-        return error_input(error, options.output, "the name of the picture must end in .png");
-    if (options.json && options.output != NULL && strcmp(options.output, "-") == 0)
+    const char *ending = output != NULL ? strrchr(output, '.') : NULL;
+    if (output != NULL && !to_output && (ending == NULL || strcmp(ending, ".png") != 0))
+        return error_input(error, output, "the name of the picture must end in .png");
+    if (options.json && to_output)
         return error_input(error, "--json", "cannot be combined with a picture on standard output");
     if (note_level() == NOTES_QUIET && !options.json) results_keep();
     Scene *scene = scene_read(options.scene, error);
-    const bool ok = scene != NULL && check_and_report(scene, &options, error);
+    const bool ok = scene != NULL && check_scene(scene, &options, error);
     scene_destroy(scene);
     return ok;
 }

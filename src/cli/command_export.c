@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "runs/run_files.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
@@ -36,20 +37,6 @@ static const CommandSpec spec = {
         "         twinbox export engine.npz -o engine.csv\n"
         "         twinbox export stack --flat -o stack.json"};
 
-static const struct {
-    const char *ending;
-    bool (*write)(const Trajectory *run, const char *path, Error *error);
-} formats[] = {{".csv", csv_run_write}, {".json", json_run_write}};
-enum { FORMATS = sizeof formats / sizeof *formats };
-
-/* -1: none has this ending. */
-static int find_format(const char *path) {
-    if (path_is_standard(path)) return 0;
-    for (int i = 0; i < FORMATS; i++)
-        if (file_name_ends_with(path, formats[i].ending)) return i;
-    return -1;
-}
-
 static bool export_scene(const Options *options, Error *error) {
     if (!path_is_standard(options->output) && !file_name_ends_with(options->output, ".json"))
         return error_input(error, options->output, "the name of a flat scene must end in .json");
@@ -67,10 +54,11 @@ bool command_export(int argc, char **argv, Error *error) {
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (options.flat) return export_scene(&options, error);
     if (options.set.count > 0) return error_input(error, "--set", "is for a scene: --flat is needed");
-    const int format = find_format(options.output);
-    if (format < 0) return error_input(error, options.output, "the name must end in .csv or .json");
+    const bool json = file_name_ends_with(options.output, ".json");
+    if (!json && !path_is_standard(options.output) && !file_name_ends_with(options.output, ".csv"))
+        return error_input(error, options.output, "the name must end in .csv or .json");
     Trajectory *run = trajectory_read(options.input, error);
-    bool ok = run != NULL && formats[format].write(run, options.output, error);
+    const bool ok = run != NULL && (json ? json_run_write : csv_run_write)(run, options.output, error);
     if (ok)
         printf("%s by %s: %d frames of %d bodies -> %s\n", run->scene, run->method, run->frames, run->bodies,
                options.output);

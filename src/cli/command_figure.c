@@ -13,6 +13,7 @@
 #include "figures/sketch.h"
 #include "pictures/picture.h"
 #include "pixels/type.h"
+#include "runs/runs.h"
 #include "runs/trajectory.h"
 
 #include <string.h>

@@ -3,9 +3,10 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
-#include "cli/larger_commands.h"
+#include "cli/judge.h"
 #include "cli/notes.h"
 #include "cli/options.h"
+#include "runs/run_files.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
@@ -49,19 +50,6 @@ static const CommandSpec spec = {
         "         twinbox import engine.csv --dt 1/60 -o again.npz\n"
         "         ./box2d scenes/stack.yaml | twinbox import - -o box2d.npz"};
 
-/* A run of bodies that come and go as twinbox's do not is imported without a verdict. */
-static bool import_judge(JudgedRun *judged, Trajectory *run, const Options *options, Error *unjudged, Error *error) {
-    if (judged_run_find(judged, run, &options->judge, unjudged)) {
-        const VerdictReading *reading = &judged->verdict.reading;
-        const int last = run->frames - 1;
-        trajectory_judge(run, judged->words, reading->frame < last ? reading->frame : last, reading->body);
-        return true;
-    }
-    if (options->judge.scene == NULL && unjudged->kind == ERROR_INPUT) return true;
-    *error = *unjudged;
-    return false;
-}
-
 static bool import_run(const Options *options, Error *error) {
     char name[TRAJECTORY_NAME_SIZE];
     CsvRunNotes notes;
@@ -70,8 +58,17 @@ static bool import_run(const Options *options, Error *error) {
     Trajectory *run = csv_run_read(options->input, &how, &notes, error);
     JudgedRun judged = {0};
     Error unjudged = {0};
-    bool ok = run != NULL && import_judge(&judged, run, options, &unjudged, error) &&
-              trajectory_write(run, options->output, error);
+    bool ok = run != NULL;
+    if (ok && judged_run_find(&judged, run, &options->judge, &unjudged)) {
+        const VerdictReading *reading = &judged.verdict.reading;
+        const int last = run->frames - 1;
+        trajectory_judge(run, judged.words, reading->frame < last ? reading->frame : last, reading->body);
+    } else if (ok && (options->judge.scene != NULL || unjudged.kind != ERROR_INPUT)) {
+        /* But a run of bodies that come and go as twinbox's do not is imported without a verdict. */
+        *error = unjudged;
+        ok = false;
+    }
+    ok = ok && trajectory_write(run, options->output, error);
     if (ok) {
         printf("%s by %s: %d frames of %d bodies, dt %g s -> %s\n", run->scene, run->method, run->frames, run->bodies,
                (double)run->dt, options->output);

@@ -12,6 +12,7 @@
 #include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pictures/player.h"
+#include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 

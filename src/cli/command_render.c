@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "base/numbers.h"
+#include "base/settings.h"
 #include "cli/cli.h"
 #include "cli/common_options.h"
 #include "cli/notes.h"
@@ -88,8 +89,7 @@ static const Option option_table[] = {
      "split: a panel for each run (default); overlay: one panel, all runs but the first as outlines; difference: boxes "
      "coloured by their distance from the first run's",
      OPTION_ENUM(Options, render.look.compare, look_compare_names)},
-    {"--show", 0, "LIST",
-     "Any of" SHOW_MARKS(SHOW_HELP) " separated by commas",
+    {"--show", 0, "LIST", "Any of" SHOW_MARKS(SHOW_HELP) " separated by commas",
      OPTION_FLAGS(Options, render.look.show, look_show_names)},
     {"--labels", 0, "KIND",
      "In boxes that are large enough: mass (kg), number (of the body), name (the scene's key), or none (default)",

@@ -14,6 +14,7 @@
 #include "methods/methods.h"
 #include "methods/reference.h"
 #include "methods/sweeps.h"
+#include "runs/problem_file.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
@@ -102,18 +103,6 @@ static bool score_solution(const Result *result, const ContactSolution *solution
     return ok;
 }
 
-static bool solve_score(const Result *result, const Method *method, ContactSolution *solution, Score *score,
-                        Error *error) {
-    const Scene scene = {.iterations = 10, .accumulate_impulses = true};
-    const ContactProblem *problem = &result->stored->problem;
-    ContactSolver solver;
-    if (!method_create_solver(method, &scene, &solver, error)) return false;
-    const bool ok =
-        solver.kind->solve(solver.state, problem, solution, error) && score_solution(result, solution, score, error);
-    solver.kind->destroy(solver.state);
-    return ok;
-}
-
 typedef struct ImpulseRow {
     int contact;
     double normal, tangent; /* N s */
@@ -143,15 +132,6 @@ static bool apply_table(const CsvTable *table, const ContactProblem *problem, Co
     return true;
 }
 
-static bool score_impulses(const Result *result, ContactSolution *solution, Score *score, Error *error) {
-    CsvTable table;
-    if (!csv_table_read(&table, result->impulses, &impulse_layout, error)) return false;
-    const bool ok = apply_table(&table, &result->stored->problem, solution, error) &&
-                    score_solution(result, solution, score, error);
-    csv_table_free(&table);
-    return ok;
-}
-
 static bool score_all(Result *result, Error *error) {
     const ContactProblem *problem = &result->stored->problem;
     ContactSolution solution = {calloc((size_t)problem->body_count, sizeof *solution.velocities),
@@ -161,10 +141,20 @@ static bool score_all(Result *result, Error *error) {
     bool ok = solution.velocities != NULL && solution.impulses != NULL;
     if (!ok) error_memory(error, "solve");
     ok = ok && reference_solve(&result->truth, problem, NULL, error);
-    for (int i = 0; ok && i < result->method_count; i++)
-        ok = solve_score(result, &result->methods[i], &solution, &result->scores[i], error);
-    if (ok && result->impulses != NULL)
-        ok = score_impulses(result, &solution, &result->scores[result->method_count], error);
+    for (int i = 0; ok && i < result->method_count; i++) {
+        const Scene scene = {.iterations = 10, .accumulate_impulses = true};
+        ContactSolver solver;
+        if (!(ok = method_create_solver(&result->methods[i], &scene, &solver, error))) break;
+        ok = solver.kind->solve(solver.state, problem, &solution, error) &&
+             score_solution(result, &solution, &result->scores[i], error);
+        solver.kind->destroy(solver.state);
+    }
+    CsvTable table;
+    if (ok && result->impulses != NULL && (ok = csv_table_read(&table, result->impulses, &impulse_layout, error))) {
+        ok = apply_table(&table, problem, &solution, error) &&
+             score_solution(result, &solution, &result->scores[result->method_count], error);
+        csv_table_free(&table);
+    }
     free(solution.velocities);
     free(solution.impulses);
     return ok;
@@ -176,7 +166,7 @@ static const char *row_name(const Result *result, int i) {
     return i < result->method_count ? result->methods[i].text : result->impulses;
 }
 
-static void solve_print(const Result *result) {
+static void print_result(const Result *result) {
     const StoredProblem *stored = result->stored;
     printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations\n", stored->scene,
            stored->frame, stored->problem.body_count, stored->problem.contact_count, result->truth.residual,
@@ -240,7 +230,7 @@ static bool solve_and_print(const StoredProblem *stored, const Options *options,
     if (ok && options->json)
         ok = json_output("twinbox solve 1", write_result, &result, error);
     else if (ok)
-        solve_print(&result);
+        print_result(&result);
     reference_free(&result.truth);
     return ok;
 }
@@ -252,15 +242,6 @@ typedef struct Recording {
     const Options *options;
 } Recording;
 
-static bool write(const StoredProblem *stored, const Options *options, Error *error) {
-    const ContactProblem *problem = &stored->problem;
-    if (!problem_write(problem, stored->scene, stored->frame, options->output, error)) return false;
-    if (!options->json)
-        printf("%s, step %d: %d bodies, %d contacts -> %s\n", stored->scene, stored->frame, problem->body_count,
-               problem->contact_count, options->output);
-    return true;
-}
-
 /* Uses the problem of the last step, which lasts as long as the world stands still. */
 static bool use_last(void *context, int frame, const World *world, Error *error) {
     const Recording *recording = context;
@@ -268,31 +249,27 @@ static bool use_last(void *context, int frame, const World *world, Error *error)
     if (frame < options->frame) return true;
     StoredProblem stored = {.frame = frame, .problem = *world_problem(world)};
     snprintf(stored.scene, sizeof stored.scene, "%s", recording->scene->name);
-    return (options->output == NULL || write(&stored, options, error)) &&
-           (!is_scored(options) || solve_and_print(&stored, options, error));
-}
-
-static bool run_scene(Scene *scene, const Options *options, Error *error) {
-    Method method;
-    if (!isnan(options->bomb_x) && !scene->bomb.present)
-        return error_input(error, options->input, "the scene has no bomb to launch");
-    if (!isnan(options->bomb_x)) scene->bomb.x.value = options->bomb_x;
-    scene->frames = options->frame;
-    if (!method_parse(&method, options->run_by != NULL ? options->run_by : "engine", error)) return false;
-    return simulate_observed(scene, &method, &(StepObserver){use_last, &(Recording){scene, options}}, error);
+    if (options->output != NULL) {
+        if (!problem_write(&stored.problem, stored.scene, frame, options->output, error)) return false;
+        if (!options->json)
+            printf("%s, step %d: %d bodies, %d contacts -> %s\n", stored.scene, frame, stored.problem.body_count,
+                   stored.problem.contact_count, options->output);
+    }
+    return !is_scored(options) || solve_and_print(&stored, options, error);
 }
 
 static bool solve_step(const Options *options, Error *error) {
+    Method method;
     Scene *scene = scene_read_with(options->input, options->set.items, options->set.count, error);
-    const bool ok = scene != NULL && run_scene(scene, options, error);
+    bool ok = scene != NULL;
+    if (ok && !isnan(options->bomb_x)) {
+        ok = scene->bomb.present || error_input(error, options->input, "the scene has no bomb to launch");
+        scene->bomb.x.value = options->bomb_x;
+    }
+    if (ok) scene->frames = options->frame;
+    ok = ok && method_parse(&method, options->run_by != NULL ? options->run_by : "engine", error) &&
+         simulate_observed(scene, &method, &(StepObserver){use_last, &(Recording){scene, options}}, error);
     scene_destroy(scene);
-    return ok;
-}
-
-static bool solve_file(const Options *options, Error *error) {
-    StoredProblem *stored = problem_read(options->input, error);
-    const bool ok = stored != NULL && solve_and_print(stored, options, error);
-    problem_destroy(stored);
     return ok;
 }
 
@@ -319,6 +296,10 @@ static bool check_options(const Options *options, Error *error) {
 
 bool command_solve(int argc, char **argv, Error *error) {
     Options options = {.bomb_x = NAN};
-    return options_parse(&spec, argc, argv, &options, error) && check_options(&options, error) &&
-           (options.frame > 0 ? solve_step(&options, error) : solve_file(&options, error));
+    if (!options_parse(&spec, argc, argv, &options, error) || !check_options(&options, error)) return false;
+    if (options.frame > 0) return solve_step(&options, error);
+    StoredProblem *stored = problem_read(options.input, error);
+    const bool ok = stored != NULL && solve_and_print(stored, &options, error);
+    problem_destroy(stored);
+    return ok;
 }

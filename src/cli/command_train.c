@@ -12,6 +12,7 @@
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "nets/nets.h"
+#include "runs/launch_check.h"
 #include "scenes/scenes.h"
 
 #include <assert.h>

@@ -7,7 +7,8 @@
 #include "cli/larger_commands.h"
 #include "pictures/page.h"
 #include "regression/report.h"
-#include "runs/runs.h"
+#include "runs/compare_runs.h"
+#include "runs/divergence.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

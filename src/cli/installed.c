@@ -34,22 +34,21 @@ static bool installed_find(char found[PATH_SIZE], const char *path) {
 static const char *const scene_folders[] = {"scenes", "scenes/families", "scenes/stability"};
 enum { SCENE_FOLDERS = sizeof scene_folders / sizeof *scene_folders };
 
-static bool find_scene(char found[PATH_SIZE], const char *name) {
-    if (strpbrk(name, "./") != NULL) return false;
-    for (int i = 0; i < SCENE_FOLDERS; i++) {
-        char path[PATH_SIZE];
-        Error ignored = {0};
-        if (!file_path(path, sizeof path, &ignored, "%s/%s.yaml", scene_folders[i], name)) return false;
-        if (access(path, R_OK) == 0) return memcpy(found, path, sizeof path), true;
-        if (installed_find(found, path)) return true;
-    }
-    return false;
-}
-
 const char *installed_path(const char *path) {
     if (path[0] == '/' || access(path, F_OK) == 0) return path;
     Found *found = malloc(sizeof *found);
-    if (found == NULL || !(installed_find(found->path, path) || find_scene(found->path, path))) {
+    bool there = found != NULL && installed_find(found->path, path);
+    /* A name without "/" and "." is a scene's. */
+    for (int i = 0; found != NULL && !there && strpbrk(path, "./") == NULL && i < SCENE_FOLDERS; i++) {
+        char scene[PATH_SIZE];
+        if (!file_path(scene, sizeof scene, &(Error){0}, "%s/%s.yaml", scene_folders[i], path)) break;
+        there = access(scene, R_OK) == 0;
+        if (there)
+            memcpy(found->path, scene, sizeof scene);
+        else
+            there = installed_find(found->path, scene);
+    }
+    if (!there) {
         free(found);
         return path;
     }

@@ -2,6 +2,7 @@
 /* Signals. */
 #include "base/base.h"
 #include "base/machine.h"
+#include "base/process.h"
 #include "cli/interrupt.h"
 
 #include <signal.h>

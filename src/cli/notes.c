@@ -31,20 +31,18 @@ static VisibleLines lines_of(const char *format) {
 }
 
 /* What is done again and again, such as reading one network for each of many runs, is printed once. */
-static bool is_new(const char *line) {
+static void print_trace(const char *line) {
     enum { REMEMBERED = 4096 };
     static uint64_t hashes[REMEMBERED];
     static int count;
     const uint64_t hash = hash_xxh3(line, strlen(line));
-    for (int i = 0; i < count; i++)
-        if (hashes[i] == hash) return false;
-    if (count < REMEMBERED) hashes[count++] = hash;
-    return true;
-}
-
-static void print_trace(const char *line) {
 #pragma omp critical(print_trace)
-    if (is_new(line)) print_line("", line, VISIBLE_ONE_LINE);
+    {
+        bool known = false;
+        for (int i = 0; !known && i < count; i++) known = hashes[i] == hash;
+        if (!known && count < REMEMBERED) hashes[count++] = hash;
+        if (!known) print_line("", line, VISIBLE_ONE_LINE);
+    }
 }
 
 void note_set_level(NoteLevel level) {
@@ -68,22 +66,17 @@ void note_verbose(const char *format, ...) {
     print_line("", text, lines_of(format));
 }
 
-static void print_word(const char *word) {
-    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:=,+-@%";
-    putchar(' ');
-    if (word[strspn(word, plain)] == '\0') {
-        fputs(word, stdout);
-        return;
-    }
-    putchar('\'');
-    for (; *word != '\0'; word++) fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, stdout);
-    putchar('\'');
-}
-
 void next_print(const char *const words[]) {
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:=,+-@%";
     if (chosen == NOTES_QUIET) return;
     fputs("next: twinbox", stdout);
-    for (; *words != NULL; words++) print_word(*words);
+    for (; *words != NULL; words++) {
+        const char *word = *words;
+        const bool quoted = word[strspn(word, plain)] != '\0';
+        fputs(quoted ? " '" : " ", stdout);
+        for (; *word != '\0'; word++) fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, stdout);
+        if (quoted) putchar('\'');
+    }
     putchar('\n');
 }
 

@@ -195,45 +195,34 @@ static void read_value(const Parsing *parsing, const Option *row, const char *te
         row->read(row, text, parsing->options + row->at, parsing->error);
 }
 
-static void take_input(Parsing *parsing, const char *text, struct argp_state *state) {
-    const CommandSpec *spec = parsing->spec;
-    char shown[SHOWN_SIZE];
-    visible_text(shown, sizeof shown, text, VISIBLE_ONE_LINE);
-    if (spec->inputs.most == 0) argp_error(state, "'%s' is not expected", shown);
-    if (parsing->input_count == spec->inputs.most)
-        argp_error(state, "only %d %s%s can be given ('%s' is one more)", spec->inputs.most, spec->inputs.noun,
-                   spec->inputs.most > 1 ? "s" : "", shown);
-    parsing->input_count++;
-    read_value(parsing, &spec->input, text);
-}
-
-static void check_needed(const Parsing *parsing, struct argp_state *state) {
-    const CommandSpec *spec = parsing->spec;
-    if (parsing->input_count < spec->inputs.least) argp_error(state, "%s", spec->input.needed);
-    for (int i = 0; spec->options[i].help != NULL; i++)
-        if (spec->options[i].needed != NULL && !parsing->given[i]) argp_error(state, "%s", spec->options[i].needed);
-}
-
-static void set_level(Parsing *parsing, NoteLevel level, struct argp_state *state) {
-    if (parsing->level != NOTES_NORMAL && parsing->level != level)
-        argp_error(state, "--quiet cannot be combined with --verbose");
-    parsing->level = level;
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
     Parsing *parsing = state->input;
-    const int i = find_row(parsing->spec->options, key);
+    const CommandSpec *spec = parsing->spec;
+    const int i = find_row(spec->options, key);
+    char shown[SHOWN_SIZE];
     if (i >= 0) {
         parsing->given[i] = true;
-        read_value(parsing, &parsing->spec->options[i], text);
-    } else if (key == 'q' || key == 'v')
-        set_level(parsing, key == 'q' ? NOTES_QUIET : NOTES_VERBOSE, state);
-    else if (key == ARGP_KEY_ARG)
-        take_input(parsing, text, state);
-    else if (key == ARGP_KEY_END)
-        check_needed(parsing, state);
-    else
+        read_value(parsing, &spec->options[i], text);
+    } else if (key == 'q' || key == 'v') {
+        const NoteLevel level = key == 'q' ? NOTES_QUIET : NOTES_VERBOSE;
+        if (parsing->level != NOTES_NORMAL && parsing->level != level)
+            argp_error(state, "--quiet cannot be combined with --verbose");
+        parsing->level = level;
+    } else if (key == ARGP_KEY_ARG) {
+        visible_text(shown, sizeof shown, text, VISIBLE_ONE_LINE);
+        if (spec->inputs.most == 0) argp_error(state, "'%s' is not expected", shown);
+        if (parsing->input_count == spec->inputs.most)
+            argp_error(state, "only %d %s%s can be given ('%s' is one more)", spec->inputs.most, spec->inputs.noun,
+                       spec->inputs.most > 1 ? "s" : "", shown);
+        parsing->input_count++;
+        read_value(parsing, &spec->input, text);
+    } else if (key == ARGP_KEY_END) {
+        if (parsing->input_count < spec->inputs.least) argp_error(state, "%s", spec->input.needed);
+        for (int k = 0; spec->options[k].help != NULL; k++)
+            if (spec->options[k].needed != NULL && !parsing->given[k]) argp_error(state, "%s", spec->options[k].needed);
+    } else {
         return ARGP_ERR_UNKNOWN;
+    }
     return 0;
 }
 
@@ -266,36 +255,30 @@ static void make_rows(const CommandSpec *spec, struct argp_option rows[OPTIONS_M
     }
 }
 
-/* The row that argp takes for a long option, which may be abbreviated; NULL if it is unknown or ambiguous. */
-static const struct argp_option *find_long(const struct argp_option *rows, const char *name, size_t length) {
+/* The row of the word's last option, which may be abbreviated if it is long; NULL if the word has an unknown or ambiguous
+   one. *value: behind it, if there is a value. */
+static const struct argp_option *find_option(const struct argp_option *rows, const char *word, const char **value) {
     const struct argp_option *found = NULL;
-    for (; rows->name != NULL || rows->doc != NULL; rows++) {
-        if (rows->name == NULL || strncmp(rows->name, name, length) != 0) continue;
-        if (rows->name[length] == '\0') return rows;
-        if (found != NULL) return NULL;
-        found = rows;
+    size_t length = strcspn(word, "=");
+    *value = word[1] == '-' && word[length] == '=' ? word + length + 1 : NULL;
+    if (word[1] == '-') {
+        word += 2, length -= 2;
+        for (; rows->name != NULL || rows->doc != NULL; rows++) {
+            if (rows->name == NULL || strncmp(rows->name, word, length) != 0) continue;
+            if (rows->name[length] == '\0') return rows;
+            if (found != NULL) return NULL;
+            found = rows;
+        }
+        return found;
+    }
+    while (*++word != '\0' && *value == NULL) { /* "-qo" */
+        found = NULL;
+        for (const struct argp_option *row = rows; found == NULL && (row->name != NULL || row->doc != NULL); row++)
+            if (row->name != NULL && row->key == (unsigned char)*word) found = row;
+        if (found == NULL) return NULL;
+        if (found->arg != NULL && word[1] != '\0') *value = word + 1;
     }
     return found;
-}
-
-static const struct argp_option *find_letter(const struct argp_option *rows, char letter) {
-    for (; rows->name != NULL || rows->doc != NULL; rows++)
-        if (rows->name != NULL && rows->key == (unsigned char)letter) return rows;
-    return NULL;
-}
-
-/* The row of the word's last option; NULL if the word has an unknown one. *value: behind it, if there is a value. */
-static const struct argp_option *find_option(const struct argp_option *rows, const char *word, const char **value) {
-    const struct argp_option *row = NULL;
-    const size_t length = strcspn(word, "=");
-    *value = word[length] == '=' ? word + length + 1 : NULL;
-    if (word[1] == '-') return find_long(rows, word + 2, length - 2);
-    *value = NULL;
-    while (*++word != '\0' && *value == NULL) {
-        if ((row = find_letter(rows, *word)) == NULL) return NULL;
-        if (row->arg != NULL && word[1] != '\0') *value = word + 1;
-    }
-    return row;
 }
 
 /* False with error set if a long option that argp does not know is near one that there is. */
@@ -330,18 +313,6 @@ static bool check_words(const struct argp_option *rows, char **argv, Error *erro
     return true;
 }
 
-/* Whether the results are files that the command line names: then -q prints nothing beside them, unless it is asked
-   to. */
-static bool writes_files(const Parsing *parsing) {
-    const Option *rows = parsing->spec->options;
-    bool writes = false;
-    for (int i = 0; rows[i].help != NULL; i++) {
-        if (parsing->given[i] && rows[i].name != NULL && strcmp(rows[i].name, "--json") == 0) return false;
-        writes = writes || (parsing->given[i] && rows[i].letter == 'o');
-    }
-    return writes;
-}
-
 bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options, Error *error) {
     struct argp_option rows[OPTIONS_MAX + OPTIONS_OF_ALL + 1] = {{0}};
     make_rows(spec, rows);
@@ -357,7 +328,14 @@ bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options
     if (status != 0 && error->kind == ERROR_NONE) error_memory(error, argv[0]);
     if (parsing.level != NOTES_NORMAL)
         note_set_level(parsing.level); /* that of a merge stays in the command that it runs */
-    if (note_level() == NOTES_QUIET && writes_files(&parsing)) results_keep();
+    /* Where the results are files that the command line names, -q prints nothing beside them, unless it is asked to. */
+    bool writes = false, asked = false;
+    for (int i = 0; spec->options[i].help != NULL; i++) {
+        const Option *row = &spec->options[i];
+        writes = writes || (parsing.given[i] && row->letter == 'o');
+        asked = asked || (parsing.given[i] && row->name != NULL && strcmp(row->name, "--json") == 0);
+    }
+    if (note_level() == NOTES_QUIET && writes && !asked) results_keep();
     note_begin(argv[0]);
     return error->kind == ERROR_NONE;
 }

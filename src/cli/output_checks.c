@@ -38,19 +38,6 @@ bool output_check_file(const char *path, const char *ending, Error *error) {
            try_folder(folder, path, error);
 }
 
-/* What an existing file holds: "unknown" if it is not an .npz file. */
-static bool find_kind(const char *path, char kind[KIND_SIZE], Error *error) {
-    Error failure = {0};
-    NpzFile *file = npz_open(path, &failure);
-    snprintf(kind, KIND_SIZE, "unknown");
-    if (file != NULL && !npz_has(file, "kind") && npz_has(file, "position")) snprintf(kind, KIND_SIZE, "run");
-    if (file != NULL && npz_has(file, "kind") && !npz_read_name(file, "kind", kind, KIND_SIZE, &failure))
-        snprintf(kind, KIND_SIZE, "unknown");
-    npz_close(file);
-    if (failure.kind == ERROR_SYSTEM) *error = failure;
-    return failure.kind != ERROR_SYSTEM;
-}
-
 bool output_check_npz(const char *path, const char *kind, Error *error) {
     struct stat status;
     char found[KIND_SIZE];
@@ -58,7 +45,18 @@ bool output_check_npz(const char *path, const char *kind, Error *error) {
     if (path_is_standard(path) || stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0 ||
         standard_output_is(&status))
         return true;
-    if (!find_kind(path, found, error)) return false;
+    /* What the file holds: "unknown" if it is not an .npz file. */
+    Error failure = {0};
+    NpzFile *file = npz_open(path, &failure);
+    snprintf(found, KIND_SIZE, "unknown");
+    if (file != NULL && !npz_has(file, "kind") && npz_has(file, "position")) snprintf(found, KIND_SIZE, "run");
+    if (file != NULL && npz_has(file, "kind") && !npz_read_name(file, "kind", found, KIND_SIZE, &failure))
+        snprintf(found, KIND_SIZE, "unknown");
+    npz_close(file);
+    if (failure.kind == ERROR_SYSTEM) {
+        *error = failure;
+        return false;
+    }
     if (strcmp(found, kind != NULL ? kind : "run") == 0) return true;
     return error_input(error, path,
                        "holds a file of kind '%s', which a file of kind '%s' does not replace; choose another "

@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
-#include "cli/larger_commands.h"
+#include "cli/judge.h"
 #include "cli/notes.h"
 #include "cli/panels.h"
 #include "cli/progress_bar.h"

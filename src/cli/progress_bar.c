@@ -16,15 +16,13 @@ void time_left_begin(TimeLeft *left) {
     *left = (TimeLeft){.count = 1, .spacing = first_spacing}; /* the first sample: nothing done at 0 s */
 }
 
-static void progress_bar_thin(TimeLeft *left) {
-    for (int i = 1; 2 * i < left->count; i++) left->samples[i] = left->samples[2 * i];
-    left->count = (left->count + 1) / 2;
-    left->spacing *= 2;
-}
-
 void time_left_add(TimeLeft *left, double time, double part) {
     if (time < left->samples[left->count - 1].time + left->spacing) return;
-    if (left->count == TIME_LEFT_SAMPLES) progress_bar_thin(left);
+    if (left->count == TIME_LEFT_SAMPLES) { /* every second one stays */
+        for (int i = 1; 2 * i < left->count; i++) left->samples[i] = left->samples[2 * i];
+        left->count = (left->count + 1) / 2;
+        left->spacing *= 2;
+    }
     left->samples[left->count++] = (struct TimeLeftSample){time, part};
 }
 

@@ -18,6 +18,7 @@
 #include "nets/kernels.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"
+#include "runs/launch_check.h"
 #include "scenes/scenes.h"
 
 #include <string.h>

@@ -11,7 +11,8 @@
 #include "pictures/picture.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
-#include "runs/runs.h"
+#include "runs/compare_runs.h"
+#include "runs/divergence.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

@@ -13,6 +13,7 @@
 #include "pictures/render.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <assert.h>

@@ -9,6 +9,7 @@
 #include "methods/pair.h"
 #include "methods/reference.h"
 #include "methods/sweeps.h"
+#include "runs/launch_check.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 

@@ -4,6 +4,7 @@
 
 #include "base/base.h"
 #include "base/machine.h"
+#include "base/random.h"
 #include "engine/engine.h"
 #include "learning/gns_backward.h"
 #include "learning/learning.h"

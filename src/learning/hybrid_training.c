@@ -11,6 +11,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
+#include "base/random.h"
 #include "engine/engine.h"
 #include "learning/launches.h"
 #include "learning/principal.h"
@@ -18,7 +19,7 @@
 #include "methods/hybrid_memory.h"
 #include "methods/pair.h"
 #include "methods/sweeps.h"
-#include "runs/runs.h"
+#include "runs/launch_check.h"
 #include "scenes/scenes.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of pair networks: laws of physics and their terms, the loss, and checks of the options. */
 #include "base/base.h"
+#include "base/settings.h"
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "learning/pair_training_internal.h"

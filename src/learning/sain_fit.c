@@ -3,6 +3,7 @@
 #include "learning/sain_fit.h"
 
 #include "base/base.h"
+#include "base/random.h"
 #include "learning/learning.h"
 #include "methods/sain.h"
 #include "methods/sain_view.h"

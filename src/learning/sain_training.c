@@ -12,7 +12,7 @@
 #include "methods/reference.h"
 #include "methods/sain.h"
 #include "methods/sain_view.h"
-#include "runs/runs.h"
+#include "runs/launch_check.h"
 #include "scenes/scenes.h"
 
 #include <stdlib.h>

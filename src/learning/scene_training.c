@@ -14,7 +14,7 @@
 #include "methods/scene_net.h"
 #include "methods/sweeps.h"
 #include "nets/kinds.h"
-#include "runs/runs.h"
+#include "runs/launch_check.h"
 #include "scenes/scenes.h"
 
 #include <gsl/gsl_errno.h>

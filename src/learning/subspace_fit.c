@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits a predictor of subspace: its linear term, its scales, and slopes through windows of predictions. */
 #include "base/base.h"
+#include "base/random.h"
 #include "learning/subspace_fit.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"

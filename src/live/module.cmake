@@ -48,7 +48,7 @@ file(GLOB module_methods RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS 
 list(FILTER module_methods EXCLUDE REGEX "/(adapter|exec|playback|registry)|_avx2")
 list(TRANSFORM module_methods REPLACE "\\.c$" "")
 set(module_sources ${module_methods}
-    base/base base/hash base/json_write base/npy base/npz base/parse base/path base/stream base/yaml
+    base/base base/hash base/json_write base/npy base/npz base/parse base/path base/settings base/stream base/yaml
     engine/box engine/broad_phase engine/contact_problem engine/world
     live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
     nets/gns_net nets/kernels nets/kernels_scalar nets/net_file nets/network nets/scene_net_layers nets/subspace_net

@@ -8,7 +8,7 @@
        adapter_give(adapter); */
 #pragma once
 #include "base/base.h"
-#include "base/machine.h"
+#include "base/process.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 

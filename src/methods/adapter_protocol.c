@@ -4,7 +4,6 @@
 #include "methods/adapter.h"
 
 #include "base/base.h"
-#include "base/machine.h"
 
 #include <ctype.h>
 #include <locale.h>

@@ -8,6 +8,7 @@
 */
 #pragma once
 #include "base/base.h"
+#include "base/settings.h"
 #include "engine/engine.h"
 #include "scenes/scenes.h"
 

@@ -3,6 +3,7 @@
    mean. Then what pair-net and contact-net have in common. */
 #pragma once
 #include "base/base.h"
+#include "base/settings.h"
 #include "engine/engine.h"
 #include "methods/pair.h"
 #include "methods/sweeps.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stopping rule of the iterative methods. */
 #include "base/base.h"
+#include "base/settings.h"
 #include "engine/engine.h"
 #include "methods/residual.h"
 #include "methods/stopping.h"

@@ -5,6 +5,7 @@
    whole stack leaves each contact close to its target. */
 #pragma once
 #include "base/base.h"
+#include "base/settings.h"
 #include "engine/engine.h"
 #include "methods/sweeps.h"
 

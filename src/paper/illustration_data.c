@@ -9,7 +9,6 @@
 #include "paper/report_internal.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"
-#include "runs/runs.h"
 #include "scenes/scenes.h"
 
 #include <math.h>

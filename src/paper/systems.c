@@ -5,7 +5,6 @@
 #include "base/machine.h"
 #include "methods/methods.h"
 #include "paper/paper_internal.h"
-#include "runs/runs.h"
 #include "scenes/scenes.h"
 #include "studies/closed_loop.h"
 #include "studies/contenders.h"

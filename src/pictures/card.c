@@ -4,6 +4,7 @@
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 

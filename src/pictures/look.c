@@ -2,6 +2,7 @@
 /* The look: its names, its check, its colours. */
 #include "base/base.h"
 #include "pictures/picture.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

@@ -8,6 +8,7 @@
 #include "methods/methods.h"
 #include "pictures/pictures_internal.h"
 #include "pixels/gl.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

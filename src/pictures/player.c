@@ -15,6 +15,7 @@
 #include "pictures/picture.h"
 #include "pictures/player_internal.h"
 #include "pixels/gl.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

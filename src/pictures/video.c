@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
+#include "base/process.h"
 #include "base/numbers.h"
 #include "pictures/render.h"
 #include "pictures/render_internal.h"

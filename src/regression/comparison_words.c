@@ -4,7 +4,7 @@
 #include "pixels/png.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
-#include "runs/trajectory.h"
+#include "runs/compare_runs.h"
 
 #include <inttypes.h>
 #include <math.h>

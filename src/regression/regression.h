@@ -22,6 +22,7 @@
 #include "regression/png_display.h"
 #include "regression/sequence.h"
 #include "regression/view.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 typedef struct RegressionOptions {

@@ -11,6 +11,7 @@
 #include "pixels/png.h"
 #include "regression/regression.h"
 #include "regression/regression_internal.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <limits.h>

@@ -5,7 +5,7 @@
 #include "regression/approve.h"
 #include "regression/regression.h"
 #include "regression/regression_internal.h"
-#include "runs/trajectory.h"
+#include "runs/compare_runs.h"
 
 #include <ctype.h>
 

@@ -1,23 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where two trajectories differ, and why they part. */
 #include "base/base.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void describe_first(const Trajectory *a, const Trajectory *b, int frame, int body, TrajectoryDifference *d) {
-    d->frame = frame;
-    d->body = body;
-    StateDifference state = trajectory_state_difference(a, b, frame, body);
-    if (!state.in_a || !state.in_b)
-        snprintf(d->what, sizeof d->what, "body %d exists in frame %d of the %s only", body, frame,
-                 state.in_a ? "first" : "second");
-    d->distance = state.distance;
-    d->angle = state.angle;
-    d->speed = state.speed;
-}
 
 void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDifference *d) {
     *d = (TrajectoryDifference){.frame = -1, .body = -1, .max_frame = -1, .max_body = -1, .rollout_mse = NAN};
@@ -30,11 +19,20 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
         for (int body = 0; body < a->bodies; body++) {
             count += !a->fixed[body] && trajectory_has(a, frame, body) && trajectory_has(b, frame, body);
             if (trajectory_same_state(a, b, frame, body)) continue;
-            if (d->frame < 0) describe_first(a, b, frame, body, d);
-            double apart = trajectory_state_difference(a, b, frame, body).distance;
-            if (!a->fixed[body]) squares += apart * apart;
-            if (!(apart > d->max_distance)) continue;
-            d->max_distance = apart;
+            const StateDifference state = trajectory_state_difference(a, b, frame, body);
+            if (d->frame < 0) { /* the first */
+                d->frame = frame;
+                d->body = body;
+                d->distance = state.distance;
+                d->angle = state.angle;
+                d->speed = state.speed;
+                if (!state.in_a || !state.in_b)
+                    snprintf(d->what, sizeof d->what, "body %d exists in frame %d of the %s only", body, frame,
+                             state.in_a ? "first" : "second");
+            }
+            if (!a->fixed[body]) squares += state.distance * state.distance;
+            if (!(state.distance > d->max_distance)) continue;
+            d->max_distance = state.distance;
             d->max_frame = frame;
             d->max_body = body;
         }
@@ -94,17 +92,6 @@ static double impulse_distance(const TrajectoryContact *a, const TrajectoryConta
     return normal * normal + tangent * tangent;
 }
 
-static void add_both(ContactDifference *d, const TrajectoryContact *a, const TrajectoryContact *b) {
-    d->moved +=
-        memcmp(&a->point, &b->point, sizeof a->point) != 0 || memcmp(&a->normal, &b->normal, sizeof a->normal) != 0;
-    if (memcmp(&a->normal_impulse, &b->normal_impulse, sizeof(float)) == 0 &&
-        memcmp(&a->tangent_impulse, &b->tangent_impulse, sizeof(float)) == 0)
-        return;
-    if (d->changed++ > 0 && !(impulse_distance(a, b) > impulse_distance(&d->largest_a, &d->largest_b))) return;
-    d->largest_a = *a;
-    d->largest_b = *b;
-}
-
 static void add_only(ContactDifference *d, const TrajectoryContact *only, int *count) {
     if (d->only_a + d->only_b == 0) {
         d->only = *only;
@@ -113,45 +100,44 @@ static void add_only(ContactDifference *d, const TrajectoryContact *only, int *c
     (*count)++;
 }
 
-static void compare_runs_merge(const ContactList *a, const ContactList *b, ContactDifference *d) {
-    for (int i = 0, k = 0; i < a->count || k < b->count;) {
-        int order = i == a->count ? 1 : k == b->count ? -1 : order_keys(a->items[i], b->items[k]);
-        if (order == 0) add_both(d, a->items[i], b->items[k]);
-        if (order < 0) add_only(d, a->items[i], &d->only_a);
-        if (order > 0) add_only(d, b->items[k], &d->only_b);
-        i += order <= 0;
-        k += order >= 0;
-    }
-}
-
-/* Most steps, without sorting. */
-static bool same_bytes(const Trajectory *a, const Trajectory *b, int step) {
-    int64_t count = a->contact_start[step + 1] - a->contact_start[step];
-    return count == b->contact_start[step + 1] - b->contact_start[step] &&
-           (count == 0 || memcmp(a->contacts + a->contact_start[step], b->contacts + b->contact_start[step],
-                                 (size_t)count * sizeof *a->contacts) == 0);
-}
-
-bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int body, ContactDifference *difference,
-                        Error *error) {
-    *difference = (ContactDifference){0};
-    if (body < 0 && same_bytes(a, b, step)) {
-        difference->count_a = (int)(a->contact_start[step + 1] - a->contact_start[step]);
+/* Compares the contacts of a body (-1: all), in the order of bodies a, b and feature. */
+static bool contact_difference(const Trajectory *a, const Trajectory *b, int step, int body, ContactDifference *d,
+                               Error *error) {
+    *d = (ContactDifference){0};
+    const int64_t count = a->contact_start[step + 1] - a->contact_start[step];
+    if (body < 0 && count == b->contact_start[step + 1] - b->contact_start[step] &&
+        (count == 0 || memcmp(a->contacts + a->contact_start[step], b->contacts + b->contact_start[step],
+                              (size_t)count * sizeof *a->contacts) == 0)) { /* most steps, without sorting */
+        d->count_a = (int)count;
         return true;
     }
     ContactList of_a, of_b = {0, NULL};
-    bool ok = list_contacts(a, step, body, &of_a, error) && list_contacts(b, step, body, &of_b, error);
-    if (ok) {
-        difference->count_a = of_a.count;
-        compare_runs_merge(&of_a, &of_b, difference);
+    const bool ok = list_contacts(a, step, body, &of_a, error) && list_contacts(b, step, body, &of_b, error);
+    if (ok) d->count_a = of_a.count;
+    for (int i = 0, k = 0; ok && (i < of_a.count || k < of_b.count);) {
+        const TrajectoryContact *x = i < of_a.count ? of_a.items[i] : NULL, *y = k < of_b.count ? of_b.items[k] : NULL;
+        const int order = x == NULL ? 1 : y == NULL ? -1 : order_keys(x, y);
+        i += order <= 0;
+        k += order >= 0;
+        if (order != 0) {
+            add_only(d, order < 0 ? x : y, order < 0 ? &d->only_a : &d->only_b);
+            continue;
+        }
+        d->moved +=
+            memcmp(&x->point, &y->point, sizeof x->point) != 0 || memcmp(&x->normal, &y->normal, sizeof x->normal) != 0;
+        if (memcmp(&x->normal_impulse, &y->normal_impulse, sizeof(float)) == 0 &&
+            memcmp(&x->tangent_impulse, &y->tangent_impulse, sizeof(float)) == 0)
+            continue;
+        if (d->changed++ > 0 && !(impulse_distance(x, y) > impulse_distance(&d->largest_a, &d->largest_b))) continue;
+        d->largest_a = *x;
+        d->largest_b = *y;
     }
     free(of_a.items);
     free(of_b.items);
     return ok;
 }
 
-static bool contacts_differ(const ContactDifference *d) { return d->only_a + d->only_b + d->moved + d->changed > 0; }
-
+/* Whether a body is farther apart in two runs than the tolerance allows. */
 static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, const PoseTolerance *tolerance) {
     const double turn = 2 * acos(-1);
     if (trajectory_same_state(a, b, frame, body)) return false;
@@ -189,29 +175,16 @@ static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int fram
     return parted;
 }
 
-/* The first step up to `last` with a contact that differs. */
-static bool find_step(const Trajectory *a, const Trajectory *b, int last, TrajectoryParting *parting, Error *error) {
-    parting->step = -1;
-    for (int step = 1; parting->step < 0 && step <= last; step++) {
-        if (!contact_difference(a, b, step, -1, &parting->contacts, error)) return false;
-        if (contacts_differ(&parting->contacts)) parting->step = step;
-    }
-    return true;
-}
-
-/* True if every body that differs has just been added. The previous frames are equal, so one run suffices. */
-static bool only_launched(const Trajectory *a, const Trajectory *b, int frame) {
-    for (int body = 0; body < a->bodies; body++)
-        if (trajectory_has(a, frame - 1, body) && !trajectory_same_state(a, b, frame, body)) return false;
-    return true;
-}
-
 static PartCause find_cause(const Trajectory *a, const Trajectory *b, const TrajectoryParting *parting) {
-    int frame = parting->first.frame;
+    const int frame = parting->first.frame;
     const ContactDifference *contacts = &parting->contacts;
     if (frame < 0) return PART_NONE;
     if (frame == 0) return PART_START;
-    if (only_launched(a, b, frame)) return PART_LAUNCH;
+    /* Every body that differs has just been added. The previous frames are equal, so one run suffices. */
+    bool launched = true;
+    for (int body = 0; launched && body < a->bodies; body++)
+        launched = !trajectory_has(a, frame - 1, body) || trajectory_same_state(a, b, frame, body);
+    if (launched) return PART_LAUNCH;
     if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
     if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
     if (parting->step < 0) return parting->no_impulses && parting->contacts.count_a > 0 ? PART_UNKNOWN : PART_ELSEWHERE;
@@ -231,7 +204,11 @@ bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseToleran
     int last = parting->first.frame >= 0 ? parting->first.frame : frames - 1;
     bool contacts = !a->no_contacts && !b->no_contacts;
     parting->step = -1;
-    if (contacts && !find_step(a, b, last, parting, error)) return false;
+    for (int step = 1; contacts && parting->step < 0 && step <= last; step++) {
+        const ContactDifference *found = &parting->contacts;
+        if (!contact_difference(a, b, step, -1, &parting->contacts, error)) return false;
+        if (found->only_a + found->only_b + found->moved + found->changed > 0) parting->step = step;
+    }
     /* Contacts of the body, which the cause depends on. */
     if (contacts && parting->no_impulses && parting->step < 0 && parting->first.frame > 0 &&
         !contact_difference(a, b, parting->first.frame, parting->first.body, &parting->contacts, error))

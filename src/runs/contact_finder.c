@@ -3,7 +3,8 @@
    step. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "runs/runs.h"
+#include "runs/contact_finder.h"
+#include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 
 #include <stdlib.h>
@@ -18,14 +19,12 @@ void contact_finder_free(ContactFinder *finder) {
     *finder = (ContactFinder){0};
 }
 
-static bool contact_finder_reserve(ContactFinder *finder, size_t count) {
-    return array_reserve((void **)&finder->boxes, &finder->box_capacity, count, sizeof *finder->boxes) &&
-           array_reserve((void **)&finder->bounds, &finder->bound_capacity, count, sizeof *finder->bounds) &&
-           array_reserve((void **)&finder->fixed, &finder->fixed_capacity, count, sizeof *finder->fixed);
-}
-
 bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error) {
-    if (!contact_finder_reserve(finder, (size_t)count + 1)) return error_memory(error, "contacts");
+    const size_t room = (size_t)count + 1;
+    if (!array_reserve((void **)&finder->boxes, &finder->box_capacity, room, sizeof *finder->boxes) ||
+        !array_reserve((void **)&finder->bounds, &finder->bound_capacity, room, sizeof *finder->bounds) ||
+        !array_reserve((void **)&finder->fixed, &finder->fixed_capacity, room, sizeof *finder->fixed))
+        return error_memory(error, "contacts");
     for (int i = 0; i < count; i++) {
         const Vec2 size = vec2_add(bodies[i].size, vec2(2 * skin, 2 * skin));
         finder->boxes[i] = box_make(bodies[i].position, size, bodies[i].angle);

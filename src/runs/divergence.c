@@ -5,6 +5,8 @@
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "runs/compare_runs.h"
+#include "runs/divergence.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
@@ -20,24 +22,13 @@ void chaos_free(Chaos *chaos) {
     *chaos = (Chaos){.frames = 0};
 }
 
-static double shift_x(float *x) {
-    float before = *x;
-    *x = before + CHAOS_SHIFT;
-    if (*x == before) *x = nextafterf(before, INFINITY);
-    return (double)*x - before;
-}
-
-/* Whether the body has a contact in any step up to the frame. */
-static bool touches(const Trajectory *run, int body, int frame) {
-    for (int64_t i = 0; i < run->contact_start[frame + 1]; i++)
-        if (run->contacts[i].a == body || run->contacts[i].b == body) return true;
-    return false;
-}
-
 int chaos_body(const Trajectory *run, int diverged, int frame) {
-    bool dynamic = diverged >= 0 && !run->fixed[diverged];
-    if (run->bomb >= 0 && (!dynamic || touches(run, run->bomb, frame))) return run->bomb;
-    if (run->bomb >= 0) return diverged;
+    if (run->bomb >= 0) {
+        bool strikes = diverged < 0 || run->fixed[diverged]; /* or has a contact in a step up to the frame */
+        for (int64_t i = 0; !strikes && i < run->contact_start[frame + 1]; i++)
+            strikes = run->contacts[i].a == run->bomb || run->contacts[i].b == run->bomb;
+        return strikes ? run->bomb : diverged;
+    }
     int body = run->bodies - 1;
     while (body >= 0 && run->fixed[body]) body--;
     return body;
@@ -52,8 +43,12 @@ static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *c
     if (size > 0) memcpy(shifted->bodies, scene->bodies, size);
     shifted->bomb.velocity = scene_bomb_body(scene).velocity;
     shifted->bomb.velocity_from_position = false;
+    float *x = body == scene->body_count ? &shifted->bomb.x.value : &shifted->bodies[body].position.x;
+    const float before = *x;
+    *x = before + CHAOS_SHIFT;
+    if (*x == before) *x = nextafterf(before, INFINITY);
     chaos->body = body;
-    chaos->shift = shift_x(body == scene->body_count ? &shifted->bomb.x.value : &shifted->bodies[body].position.x);
+    chaos->shift = (double)*x - before;
     return true;
 }
 
@@ -63,7 +58,7 @@ typedef struct Watch {
     ProgressStage stage;
 } Watch;
 
-static bool divergence_measure(void *context, int frame, const World *world, Error *error) {
+static bool measure(void *context, int frame, const World *world, Error *error) {
     Watch *watch = context;
     const Trajectory *unshifted = watch->unshifted;
     const Body *bodies = world_bodies(world);
@@ -76,47 +71,41 @@ static bool divergence_measure(void *context, int frame, const World *world, Err
            error_interrupted(error, unshifted->scene, "stopped after step %d of %d", frame, unshifted->frames - 1);
 }
 
-static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, Error *error) {
-    const StepObserver observer = {divergence_measure, watch};
-    Chaos *chaos = watch->chaos;
-    for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
-    chaos->distance[0] = trajectory_has(watch->unshifted, 0, chaos->body) ? chaos->shift : 0;
-    Error failure = {0};
-    /* A run that ends in a NaN or infinite state is a valid result. */
-    if (simulate_observed(scene, method, &observer, &failure) || failure.failure != FAILURE_NONE) return true;
-    *error = failure;
-    return false;
-}
-
-static bool run_and_measure(Chaos *chaos, const Scene *scene, const Method *method, const Trajectory *unshifted,
-                            const Trajectory *run, int body, const Progress *progress, Error *error) {
-    TrajectoryDifference difference;
-    trajectory_compare(unshifted, run, &difference);
-    if (difference.frame < 0 && unshifted->bodies != run->bodies)
-        return error_input(error, scene->name, "is not the scene of the run: %s", difference.what);
-    chaos->rerun_differs = difference.frame;
-    Scene shifted;
-    if (!shifted_scene(scene, body, &shifted, chaos, error)) return false;
-    Watch watch = {chaos, unshifted, {progress, 0.5, 0.5, false}};
-    bool ok = run_shifted(&shifted, method, &watch, error);
-    free(shifted.bodies);
-    return ok;
-}
-
+/* Runs the scene as it is, then shifted; measures how far the two are apart. */
 static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, int body, const Progress *progress,
                      Error *error) {
     Method method;
+    Scene shifted = {.bodies = NULL};
+    TrajectoryDifference difference;
+    Error failure = {0};
     if (!method_parse(&method, run->method, error)) return false;
     ProgressStage first = {progress, 0, 0.5, false};
     Trajectory *unshifted = simulate(scene, &method, &(Progress){progress_stage, &first}, error);
-    bool ok = unshifted != NULL && run_and_measure(chaos, scene, &method, unshifted, run, body, progress, error);
+    bool ok = unshifted != NULL;
+    if (ok) {
+        trajectory_compare(unshifted, run, &difference);
+        chaos->rerun_differs = difference.frame;
+        if (difference.frame < 0 && unshifted->bodies != run->bodies)
+            ok = error_input(error, scene->name, "is not the scene of the run: %s", difference.what);
+    }
+    ok = ok && shifted_scene(scene, body, &shifted, chaos, error);
+    if (ok) {
+        Watch watch = {chaos, unshifted, {progress, 0.5, 0.5, false}};
+        for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
+        chaos->distance[0] = trajectory_has(unshifted, 0, body) ? chaos->shift : 0;
+        /* A run that ends in a NaN or infinite state is a valid result. */
+        ok = simulate_observed(&shifted, &method, &(StepObserver){measure, &watch}, &failure) ||
+             failure.failure != FAILURE_NONE;
+        if (!ok) *error = failure;
+    }
+    free(shifted.bodies);
     trajectory_destroy(unshifted);
     return ok;
 }
 
 static bool run_scene(Chaos *chaos, Scene *scene, const char *path, const Trajectory *run, int body, int frames,
                       const Progress *progress, Error *error) {
-    uint64_t hash = scene_hash(scene);
+    const uint64_t hash = scene_hash(scene);
     if (run->scene_hash == 0)
         return error_input(error, path, "cannot be run again for the run by %s: that run does not state its scene_hash",
                            run->method);

@@ -39,23 +39,21 @@ static void clip_to_slab(double at, double direction, double half, double *first
     *last = fmin(*last, fmax(a, b));
 }
 
-/* The distance straight down from a point to a body; infinite if it is not below. */
-static double distance_down(const Trajectory *run, int frame, int body, double x, double y) {
-    size_t i = trajectory_at(run, frame, body);
-    double dx = x - (double)run->position[i].x, dy = y - (double)run->position[i].y, angle = (double)run->angle[i];
-    double c = cos(angle), s = sin(angle), first = 0, last = HUGE_VAL;
-    clip_to_slab(c * dx + s * dy, -s, run->size[body].x / 2.0, &first, &last);
-    clip_to_slab(c * dy - s * dx, -c, run->size[body].y / 2.0, &first, &last);
-    return first <= last ? first : HUGE_VAL;
-}
-
 /* Widens it down to the first static body straight below the body's centre, if there is one from number `first` on
    before `end`. */
-static void extent_include_ground(Extent *extent, const Trajectory *run, int frame, int body, int first, int end) {
+static void include_ground(Extent *extent, const Trajectory *run, int frame, int body, int first, int end) {
     const Vec2 at = run->position[trajectory_at(run, frame, body)];
     double down = HUGE_VAL;
-    for (int other = first; other < end; other++)
-        if (run->fixed[other]) down = fmin(down, distance_down(run, frame, other, (double)at.x, (double)at.y));
+    for (int other = first; other < end; other++) {
+        if (!run->fixed[other]) continue;
+        const size_t i = trajectory_at(run, frame, other);
+        const double dx = (double)at.x - (double)run->position[i].x, dy = (double)at.y - (double)run->position[i].y;
+        const double c = cos((double)run->angle[i]), s = sin((double)run->angle[i]);
+        double near = 0, far = HUGE_VAL;
+        clip_to_slab(c * dx + s * dy, -s, run->size[other].x / 2.0, &near, &far);
+        clip_to_slab(c * dy - s * dx, -c, run->size[other].y / 2.0, &near, &far);
+        if (near <= far) down = fmin(down, near);
+    }
     if (fabs((double)at.y - down) < EXTENT_FARTHEST) extent->bottom = fmin(extent->bottom, (double)at.y - down);
 }
 
@@ -97,19 +95,11 @@ static Extent standing_extent(const Trajectory *run, int frame, const Extent *re
     while (first < end && !run->fixed[first]) first++;
     while (first < end && !run->fixed[end - 1]) end--;
     for (int body = 0; body < run->bodies; body++) {
-        if (stands(run, frame, body, region)) extent_include_ground(&all, run, frame, body, first, end);
+        if (stands(run, frame, body, region)) include_ground(&all, run, frame, body, first, end);
         if (run->fixed[body] && extent_holds(&near, run, frame, body) &&
             (double)fmaxf(run->size[body].x, run->size[body].y) <= largest)
             extent_include(&all, run, frame, body);
     }
-    return all;
-}
-
-static Extent moving_extent(const Trajectory *run) {
-    Extent all = extent_empty;
-    for (int frame = 0; frame < run->frames; frame++)
-        for (int body = 0; body < run->bodies; body++)
-            if (!run->fixed[body]) extent_include(&all, run, frame, body);
     return all;
 }
 
@@ -120,41 +110,10 @@ static Extent fixed_extent(const Trajectory *run) {
     return all;
 }
 
-/* Whether more than half of the poses until the last frame are farther away. */
-static bool most_leave(const Extent *region, const Trajectory *run, int last) {
-    int64_t inside = 0, all = 0;
-    for (int frame = 0; frame <= last; frame++)
-        for (int body = 0; body < run->bodies; body++) {
-            if (run->fixed[body] || !trajectory_has(run, frame, body)) continue;
-            inside += extent_holds(region, run, frame, body);
-            all++;
-        }
-    return 2 * inside < all;
-}
-
 int bomb_first_frame(const Trajectory *run) {
     int first = 0;
     while (first + 1 < run->frames && !trajectory_has(run, first, run->bomb)) first++;
     return first;
-}
-
-/* What falls together before the bomb strikes, as high as it is then. In steps, and not for a sag, so that runs that
-   differ little have the same view. */
-static Extent settled_extent(const Extent *standing, const Trajectory *run, int impact) {
-    const Extent then = standing_extent(run, impact - 1, standing);
-    const double height = standing->top - standing->bottom;
-    const double share = ceil(SETTLED_STEPS * (then.top - standing->bottom) / height) / SETTLED_STEPS;
-    Extent settled = *standing;
-    if (share < SAG) settled.top = standing->bottom + share * height;
-    return settled;
-}
-
-/* Three quarters of what stands, at the start. */
-static bool most_are_in(const Extent *extent, const Trajectory *run) {
-    int inside = 0, all = 0;
-    for (int body = 0; body < run->bodies; body++)
-        all += stands(run, 0, body, NULL), inside += stands(run, 0, body, extent);
-    return 4 * inside >= 3 * all;
 }
 
 /* Where what stands falls if it is struck: to the far side if the bomb comes from the side, else to both; about as far
@@ -173,34 +132,10 @@ static Extent room_to_fall(const Trajectory *run, const Extent *standing, int im
     return room;
 }
 
-/* All that the moving bodies reach; without them, the static ones. */
-static Extent whole_run(const Trajectory *run) {
-    const Extent moving = moving_extent(run), fixed = fixed_extent(run);
-    return !extent_is_empty(&moving) ? moving : !extent_is_empty(&fixed) ? fixed : (Extent){-1, 1, -1, 1};
-}
-
 static Extent bomb_extent(const Trajectory *run, int frame) {
     Extent bomb = extent_empty;
     extent_include(&bomb, run, frame, run->bomb);
     return bomb;
-}
-
-/* When the bomb gets where something stood: until then it flies, so that the frame does not depend on how what stands
-   sags. */
-static int strike_frame(const Trajectory *run, const Extent *standing, int impact) {
-    for (int frame = bomb_first_frame(run); frame < impact; frame++) {
-        const Extent bomb = bomb_extent(run, frame);
-        if (bomb.left < standing->right && bomb.right > standing->left && bomb.bottom < standing->top) return frame;
-    }
-    return impact;
-}
-
-/* With a margin; below, there is the ground. */
-static void include_bomb(Extent *extent, const Trajectory *run, int frame) {
-    Extent bomb = bomb_extent(run, frame);
-    bomb = extent_widened(&bomb, BOMB_MARGIN * extent_side(&bomb));
-    extent->left = fmin(extent->left, bomb.left), extent->right = fmax(extent->right, bomb.right);
-    extent->top = fmax(extent->top, bomb.top);
 }
 
 static Extent joined(Extent a, const Extent *b) {
@@ -218,24 +153,13 @@ static void include_frames(Extent *all, const Trajectory *run, const int *frames
         }
 }
 
-static bool framing_stays(const Trajectory *run, const int *frames, int count, int body, const Extent *region) {
+static bool stays(const Trajectory *run, const int *frames, int count, int body, const Extent *region) {
     bool inside = !run->fixed[body];
     for (int i = 0; i < count && inside; i++) {
         const int frame = shown_frame(run, frames[i]);
         inside = extent_holds(region, run, frame, body) || !trajectory_has(run, frame, body);
     }
     return inside;
-}
-
-/* What flies off or sinks into the ground counts in no frame, or it would make all small; nor does the rest of a run
-   most of whose bodies do that. */
-static void include_staying(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *region) {
-    int moving = 0, staying = 0;
-    for (int body = 0; body < run->bodies; body++)
-        moving += !run->fixed[body], staying += framing_stays(run, frames, count, body, region);
-    for (int body = 0; 2 * staying > moving && body < run->bodies; body++)
-        for (int i = 0; i < count && framing_stays(run, frames, count, body, region); i++)
-            extent_include(all, run, shown_frame(run, frames[i]), body);
 }
 
 Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count) {
@@ -245,21 +169,20 @@ Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int
     Extent all = extent_empty;
     if (!extent_is_empty(&standing)) {
         include_frames(&all, runs[0], frames, count, &near);
-        for (int i = 1; i < run_count; i++) include_staying(&all, runs[i], frames, count, &above);
+        /* What flies off or sinks into the ground counts in no frame, or it would make all small; nor does the rest of
+           a run most of whose bodies do that. */
+        for (int r = 1; r < run_count; r++) {
+            const Trajectory *run = runs[r];
+            int moving = 0, staying = 0;
+            for (int body = 0; body < run->bodies; body++)
+                moving += !run->fixed[body], staying += stays(run, frames, count, body, &above);
+            for (int body = 0; 2 * staying > moving && body < run->bodies; body++)
+                for (int i = 0; i < count && stays(run, frames, count, body, &above); i++)
+                    extent_include(&all, run, shown_frame(run, frames[i]), body);
+        }
     }
     if (extent_is_empty(&all)) include_frames(&all, runs[0], frames, count, NULL);
     return extent_is_empty(&all) ? fixed_extent(runs[0]) : all;
-}
-
-/* Widens the extent by where a body is from a frame on, if it stays in a region. */
-static void include_stay(Extent *all, const Trajectory *run, int first, int body, const Extent *region) {
-    Extent own = *all;
-    for (int frame = first; frame < run->frames; frame++) {
-        if (!trajectory_has(run, frame, body)) continue;
-        if (!extent_holds(region, run, frame, body)) return;
-        extent_include(&own, run, frame, body);
-    }
-    *all = own;
 }
 
 /* How far beyond what stands its bodies, and the bomb, get in a run after the impact, to either side. What flies off
@@ -268,8 +191,16 @@ static double reach_of(const Trajectory *run, const Extent *standing, int impact
     const Extent near = surroundings(standing, NEAR);
     const Extent above = {near.left, near.right, standing->bottom, near.top};
     Extent all = *standing;
-    for (int body = 0; body < run->bodies; body++)
-        if (!run->fixed[body]) include_stay(&all, run, impact, body, &above);
+    for (int body = 0; body < run->bodies; body++) {
+        Extent own = all;
+        bool leaves = run->fixed[body];
+        for (int frame = impact; !leaves && frame < run->frames; frame++) {
+            if (!trajectory_has(run, frame, body)) continue;
+            leaves = !extent_holds(&above, run, frame, body);
+            if (!leaves) extent_include(&own, run, frame, body);
+        }
+        if (!leaves) all = own;
+    }
     return fmax(standing->left - all.left, all.right - standing->right);
 }
 
@@ -317,28 +248,74 @@ CameraFrame camera_frame_of(const CameraView *view) {
     return (CameraFrame){true, held, held, held, view->x};
 }
 
+/* What stands in the runs at the start; *leaves: whether the first run shows all that it reaches instead, as more than
+   half of its poses until the frame `last` are far away. */
+static Extent find_standing(const Trajectory *const *runs, int count, int last, bool *leaves) {
+    const Trajectory *run = runs[0];
+    Extent all = standing_extent(run, 0, NULL);
+    const Extent near = surroundings(&all, NEAR);
+    int64_t inside = 0, poses = 0;
+    for (int frame = 0; frame <= last; frame++)
+        for (int body = 0; body < run->bodies; body++) {
+            if (run->fixed[body] || !trajectory_has(run, frame, body)) continue;
+            inside += extent_holds(&near, run, frame, body);
+            poses++;
+        }
+    *leaves = extent_is_empty(&all) || 2 * inside < poses;
+    if (*leaves) {
+        all = extent_empty;
+        for (int frame = 0; frame < run->frames; frame++)
+            for (int body = 0; body < run->bodies; body++)
+                if (!run->fixed[body]) extent_include(&all, run, frame, body);
+        if (extent_is_empty(&all)) all = fixed_extent(run);
+        if (extent_is_empty(&all)) all = (Extent){-1, 1, -1, 1};
+    }
+    for (int i = 1; i < count; i++) {
+        const Extent other = standing_extent(runs[i], 0, *leaves ? &all : &near);
+        all = joined(all, &other);
+    }
+    return all;
+}
+
 CameraFrame camera_frame(const Trajectory *const *runs, int count) {
     const Trajectory *run = runs[0];
     CameraView set;
+    bool leaves;
     if (camera_view_of(run, &set)) return camera_frame_of(&set);
     const int impact = trajectory_impact(run);
-    Extent all = standing_extent(run, 0, NULL);
-    const Extent near = surroundings(&all, NEAR);
-    const bool leaves = extent_is_empty(&all) || most_leave(&near, run, impact >= 0 ? impact : run->frames - 1);
-    if (leaves) all = whole_run(run);
-    for (int i = 1; i < count; i++) {
-        const Extent other = standing_extent(runs[i], 0, leaves ? &all : &near);
-        all = joined(all, &other);
-    }
+    const Extent start = standing_extent(run, 0, NULL), near = surroundings(&start, NEAR);
+    Extent all = find_standing(runs, count, impact >= 0 ? impact : run->frames - 1, &leaves), settled = all;
     const bool struck = !leaves && impact >= 1;
-    const Extent settled = struck ? settled_extent(&all, run, impact) : all;
-    if (struck && most_are_in(&settled, run)) all = settled;
+    if (struck) {
+        /* What falls together before the bomb strikes, as high as it is then. In steps, and not for a sag, so that runs
+           that differ little have the same view; if three quarters of what stands at the start are in it. */
+        const Extent then = standing_extent(run, impact - 1, &all);
+        const double share = ceil(SETTLED_STEPS * (then.top - all.bottom) / (all.top - all.bottom)) / SETTLED_STEPS;
+        int inside = 0, standing = 0;
+        if (share < SAG) settled.top = all.bottom + share * (all.top - all.bottom);
+        for (int body = 0; body < run->bodies; body++)
+            standing += stands(run, 0, body, NULL), inside += stands(run, 0, body, &settled);
+        if (4 * inside >= 3 * standing) all = settled;
+    }
     const Extent framed = add_margins(&all);
     CameraFrame frame = {false, framed, framed, framed, (all.left + all.right) / 2};
     if (!struck) return frame;
+
+    /* The frame in which the bomb gets where something stood: until then it flies, so that the view does not depend on
+       how what stands sags. */
+    int strikes = bomb_first_frame(run);
+    for (; strikes < impact; strikes++) {
+        const Extent bomb = bomb_extent(run, strikes);
+        if (bomb.left < settled.right && bomb.right > settled.left && bomb.bottom < settled.top) break;
+    }
+    if (strikes > impact) strikes = impact;
+    if (extent_holds(&near, run, strikes, run->bomb)) { /* with a margin; below, there is the ground */
+        Extent bomb = bomb_extent(run, strikes);
+        bomb = extent_widened(&bomb, BOMB_MARGIN * extent_side(&bomb));
+        frame.held.left = fmin(frame.held.left, bomb.left), frame.held.right = fmax(frame.held.right, bomb.right);
+        frame.held.top = fmax(frame.held.top, bomb.top);
+    }
     const Extent fallen = room_to_fall(run, &all, impact), action = action_extent(&all, runs, count, impact);
-    const int strikes = strike_frame(run, &settled, impact);
-    if (extent_holds(&near, run, strikes, run->bomb)) include_bomb(&frame.held, run, strikes);
     frame.action = add_margins(&action);
     frame.action = joined(frame.action, &frame.held);
     frame.room = add_margins(&fallen);

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "runs/launch_check.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
@@ -40,55 +41,10 @@ static int by_start(const void *a, const void *b) {
     return left->from < right->from ? -1 : left->from > right->from;
 }
 
-/* The spans of x that no launch of the check covers, as text: "-7 to -5.1, 5.1 to 7". */
-static void describe_free(const OverlapSpan *blocked, int count, double low, double high, char *text, size_t size) {
-    double free_from = low;
-    text[0] = '\0';
-    for (int i = 0; i <= count; i++) {
-        const double until = i < count ? fmin(blocked[i].from, high) : high;
-        /* Rounded inwards, to a hundredth of a metre. */
-        const double from = ceil(100 * free_from - 1e-6) / 100, to = floor(100 * until + 1e-6) / 100;
-        if (to > from) text_join(text, size, ", ", "%g to %g", from, to);
-        if (i < count) free_from = fmax(free_from, blocked[i].to);
-    }
-}
-
-/* The ends of the launches' x, or of the scene's family where there is one launch. */
-static OverlapSpan reach_of(const Check *check, bool *turned) {
-    const SceneBomb *bomb = &check->scene->bomb;
-    OverlapSpan reach = {(double)bomb->x.from, (double)bomb->x.to};
-    *turned = false;
-    for (int i = 0; i < check->count; i++) {
-        reach.from = fmin(reach.from, (double)check->launches[i].x);
-        reach.to = fmax(reach.to, (double)check->launches[i].x);
-        *turned |= check->launches[i].rotation != check->launches[0].rotation;
-    }
-    return reach;
-}
-
-/* Adds where the bomb is free to the message. */
-static void name_free(const Check *check, const Box *bomb, int bodies, Error *error) {
-    enum { ROOM = 400 };
-    char text[ROOM];
-    bool turned;
-    const OverlapSpan reach = reach_of(check, &turned);
-    OverlapSpan *blocked = malloc((size_t)bodies * sizeof *blocked);
-    int count = 0;
-    for (int i = 0; blocked != NULL && i < bodies; i++) {
-        blocked[count] = overlap_span(&check->boxes[i], bomb, SCENE_OVERLAP, turned);
-        count += blocked[count].from < blocked[count].to;
-    }
-    if (blocked != NULL) {
-        qsort(blocked, (size_t)count, sizeof *blocked, by_start);
-        describe_free(blocked, count, reach.from, reach.to, text, sizeof text);
-        error_add(error, "; free x%s: %s", turned ? ", at any rotation" : "", text[0] != '\0' ? text : "none");
-    }
-    free(blocked);
-}
-
-static bool launch_check_refuse(const Check *check, int launch, int body, const Box *bomb, int bodies, Error *error) {
+/* Refuses a launch, and names the x that are free. */
+static bool refuse(const Check *check, int launch, int body, const Box *bomb, int bodies, Error *error) {
     const Launch *at = &check->launches[launch];
-    char which[32] = "the launch";
+    char which[32] = "the launch", text[400] = "";
     if (check->count > 1) snprintf(which, sizeof which, "launch %d", launch + 1);
     error_input(
         error, check->scene->name,
@@ -96,7 +52,33 @@ static bool launch_check_refuse(const Check *check, int launch, int body, const 
         "slop of %g m; launch it elsewhere, or write 'overlaps: allowed' in the scene",
         which, (double)at->x, (double)at->rotation, overlap_depth(&check->boxes[body], bomb), body, at->frame,
         (double)CONTACT_SLOP);
-    name_free(check, bomb, bodies, error);
+
+    /* From the ends of the launches' x, or of the scene's family where there is one launch, */
+    double low = (double)check->scene->bomb.x.from, high = (double)check->scene->bomb.x.to;
+    bool turned = false;
+    for (int i = 0; i < check->count; i++) {
+        low = fmin(low, (double)check->launches[i].x);
+        high = fmax(high, (double)check->launches[i].x);
+        turned |= check->launches[i].rotation != check->launches[0].rotation;
+    }
+    /* without the spans that bodies block: "-7 to -5.1, 5.1 to 7". */
+    OverlapSpan *blocked = malloc((size_t)bodies * sizeof *blocked);
+    int count = 0;
+    if (blocked == NULL) return false;
+    for (int i = 0; i < bodies; i++) {
+        blocked[count] = overlap_span(&check->boxes[i], bomb, SCENE_OVERLAP, turned);
+        count += blocked[count].from < blocked[count].to;
+    }
+    qsort(blocked, (size_t)count, sizeof *blocked, by_start);
+    for (int i = 0; i <= count; i++) {
+        const double until = i < count ? fmin(blocked[i].from, high) : high;
+        /* Rounded inwards, to a hundredth of a metre. */
+        const double from = ceil(100 * low - 1e-6) / 100, to = floor(100 * until + 1e-6) / 100;
+        if (to > from) text_join(text, sizeof text, ", ", "%g to %g", from, to);
+        if (i < count) low = fmax(low, blocked[i].to);
+    }
+    free(blocked);
+    error_add(error, "; free x%s: %s", turned ? ", at any rotation" : "", text[0] != '\0' ? text : "none");
     return false;
 }
 
@@ -104,34 +86,30 @@ static bool launch_check_refuse(const Check *check, int launch, int body, const 
 static bool check_frame(Check *check, int frame, const World *world, Error *error) {
     const Body *bodies = world_bodies(world);
     const int count = world_body_count(world);
+    if (check->done == check->count || check->due[check->done].frame != frame) return true; /* none */
     for (int i = 0; i < count; i++) check->boxes[i] = box_of(&bodies[i]);
     for (; check->done < check->count && check->due[check->done].frame == frame; check->done++) {
         const int launch = check->due[check->done].launch;
         const Box bomb = bomb_box(check->scene, &check->launches[launch]);
         for (int i = 0; i < count; i++)
             if (overlap_exceeds(&check->boxes[i], &bomb, SCENE_OVERLAP))
-                return launch_check_refuse(check, launch, i, &bomb, count, error);
+                return refuse(check, launch, i, &bomb, count, error);
     }
     return true;
 }
 
-static bool is_due(const Check *check, int frame) {
-    return check->done < check->count && check->due[check->done].frame == frame;
-}
-
 /* The engine's run without the bomb, up to the frame of the last launch. */
-static bool launch_check_run(Check *check, Error *error) {
+static bool run_quietly(Check *check, Error *error) {
     Scene quiet = *check->scene;
     quiet.bomb.present = false;
     quiet.frames = check->due[check->count - 1].frame;
     Method engine;
-    Simulation quiet_run;
-    if (!method_parse(&engine, "engine", error) || !simulation_begin(&quiet_run, &quiet, &engine, error)) return false;
+    Simulation run;
+    if (!method_parse(&engine, "engine", error) || !simulation_begin(&run, &quiet, &engine, error)) return false;
     bool ok = true;
     for (int frame = 0; ok && frame <= quiet.frames; frame++)
-        ok = (frame == 0 || simulation_step(&quiet_run, frame, error)) &&
-             (!is_due(check, frame) || check_frame(check, frame, quiet_run.world, error));
-    simulation_end(&quiet_run);
+        ok = (frame == 0 || simulation_step(&run, frame, error)) && check_frame(check, frame, run.world, error);
+    simulation_end(&run);
     return ok;
 }
 
@@ -145,7 +123,7 @@ bool launches_check(const Scene *scene, const Launch *launches, int count, Error
     bool ok = check.due != NULL && check.boxes != NULL;
     for (int i = 0; ok && i < count; i++) check.due[i] = (Due){launches[i].frame, i};
     if (ok) qsort(check.due, (size_t)count, sizeof *check.due, by_frame);
-    ok = ok ? launch_check_run(&check, error) : error_memory(error, scene->name);
+    ok = ok ? run_quietly(&check, error) : error_memory(error, scene->name);
     free(check.due);
     free(check.boxes);
     return ok;
@@ -230,24 +208,12 @@ bool scene_check_strike(const Scene *scene, Error *error) {
     return launches_refuse_misses(scene, launches, count, error);
 }
 
-/* Bodies times steps that all tries together may take: some seconds. */
-static const double most_states = 1e6;
-
-static int affordable_tries(const Scene *scene, int wanted) {
-    return (int)fmin(wanted, most_states / ((scene->body_count + 1.0) * fmax(scene->frames, 1)));
-}
-
-/* Launches of one side that miss, each next to the one before, are a span. */
-static void add_miss(LaunchMisses *misses, float x, bool next) {
-    misses->missed++;
-    if (!next) misses->spans[misses->span_count++].from = (double)x;
-    misses->spans[misses->span_count - 1].to = (double)x;
-}
-
 bool launches_find_misses(const Scene *scene, LaunchMisses *misses, Error *error) {
     Launch launches[LAUNCH_TRIES];
     const bool family = launch_has_family(scene);
-    *misses = (LaunchMisses){.tried = affordable_tries(scene, family ? LAUNCH_TRIES : 1)};
+    /* Bodies times steps that all tries together may take: some seconds. */
+    const double most_states = 1e6, steps = (scene->body_count + 1.0) * fmax(scene->frames, 1);
+    *misses = (LaunchMisses){.tried = (int)fmin(family ? LAUNCH_TRIES : 1, most_states / steps)};
     launches[0] = launch_of(scene);
     if (family && !launches_for_training(scene, misses->tried, launches, error)) return false;
     bool missed = false;
@@ -255,14 +221,13 @@ bool launches_find_misses(const Scene *scene, LaunchMisses *misses, Error *error
         const Scene launched = launch_scene(scene, &launches[i]);
         int touch;
         if (!launch_find_touch(&launched, "engine", &touch, error)) return false;
-        if (touch == 0) add_miss(misses, launches[i].x, missed);
+        if (touch == 0) { /* launches of one side that miss, each next to the one before, are a span */
+            misses->missed++;
+            if (!missed) misses->spans[misses->span_count++].from = (double)launches[i].x;
+            misses->spans[misses->span_count - 1].to = (double)launches[i].x;
+        }
         missed = touch == 0;
     }
-    return true;
-}
-
-static bool launch_check_ignore(void *context, int frame, const World *world, Error *error) {
-    (void)context, (void)frame, (void)world, (void)error;
     return true;
 }
 
@@ -272,7 +237,7 @@ static bool run_one_step(const Scene *scene, const Method *method, bool with_bom
     short_run.bomb.frame = 0;
     short_run.bomb.present = scene->bomb.present && with_bomb;
     short_run.overlaps_allowed = true; /* it may not be the bomb's frame */
-    return simulate_observed(&short_run, method, &(StepObserver){launch_check_ignore, NULL}, error);
+    return simulate_watched(&short_run, method, &(RunWatch){.recorder = NULL}, error);
 }
 
 bool scene_check_networks(const Scene *scene, Error *error) {

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/npz.h"
 #include "engine/engine.h"
-#include "runs/runs.h"
+#include "runs/problem_file.h"
 
 #include <assert.h>
 #include <math.h>
@@ -78,13 +78,6 @@ static bool expect_fields(const NpzFile *file, const ProblemField *fields, int f
     return true;
 }
 
-static bool check_shapes(const NpzFile *file, int64_t bodies, int64_t contacts, Error *error) {
-    const NpzArray heads[] = {{"contact_bodies", NPZ_INT32, 2, {contacts, 2}, NULL},
-                              {"contact_feature", NPZ_UINT32, 1, {contacts}, NULL}};
-    return expect_fields(file, body_fields, BODY_FIELDS, bodies, error) &&
-           expect_fields(file, contact_fields, CONTACT_FIELDS, contacts, error) && npz_expect(file, heads, 2, error);
-}
-
 static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
     int64_t bodies, contacts[2];
     if (!npz_shape(file, "angle", NPZ_FLOAT32, 1, &bodies, error) ||
@@ -100,7 +93,11 @@ static bool read_counts(StoredProblem *stored, NpzFile *file, const char *path, 
     problem->contact_count = (int)contacts[0];
     if (problem->bomb < -1 || problem->bomb >= problem->body_count)
         return error_input(error, path, "the bomb is body %d of %d", problem->bomb, problem->body_count);
-    if (!check_shapes(file, bodies, contacts[0], error)) return false;
+    const NpzArray heads[] = {{"contact_bodies", NPZ_INT32, 2, {contacts[0], 2}, NULL},
+                              {"contact_feature", NPZ_UINT32, 1, {contacts[0]}, NULL}};
+    if (!expect_fields(file, body_fields, BODY_FIELDS, bodies, error) ||
+        !expect_fields(file, contact_fields, CONTACT_FIELDS, contacts[0], error) || !npz_expect(file, heads, 2, error))
+        return false;
     problem->bodies = stored->bodies = calloc((size_t)bodies, sizeof *stored->bodies);
     problem->contacts = stored->contacts = calloc((size_t)contacts[0] + 1, sizeof *stored->contacts);
     return (stored->bodies != NULL && stored->contacts != NULL) || error_memory(error, path);
@@ -123,7 +120,7 @@ static bool read_field(NpzFile *file, const char *path, const ProblemField *fiel
     return bad < 0 || error_input(error, path, "%s[%d] is not finite", field->name, bad);
 }
 
-static bool read_fields(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
+static bool read_arrays(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
     for (int f = 0; f < BODY_FIELDS; f++)
         if (!read_field(file, path, &body_fields[f], stored->bodies, sizeof *stored->bodies, stored->problem.body_count,
                         error))
@@ -132,10 +129,6 @@ static bool read_fields(StoredProblem *stored, NpzFile *file, const char *path, 
         if (!read_field(file, path, &contact_fields[f], stored->contacts, sizeof *stored->contacts,
                         stored->problem.contact_count, error))
             return false;
-    return true;
-}
-
-static bool read_contact_heads(StoredProblem *stored, NpzFile *file, Error *error) {
     const int64_t shape[] = {stored->problem.contact_count, 2};
     int32_t(*pairs)[2] = npz_read(file, "contact_bodies", NPZ_INT32, 2, shape, error);
     uint32_t *features = pairs != NULL ? npz_read(file, "contact_feature", NPZ_UINT32, 1, shape, error) : NULL;
@@ -150,45 +143,32 @@ static bool read_contact_heads(StoredProblem *stored, NpzFile *file, Error *erro
     return done;
 }
 
-static bool check_body(const StoredProblem *stored, int i, const char *path, Error *error) {
-    const ProblemBody *body = &stored->bodies[i];
-    if (!(body->size.x > 0) || !(body->size.y > 0))
-        return error_input(error, path, "body %d: its size must be greater than 0 (got %g x %g)", i,
-                           (double)body->size.x, (double)body->size.y);
-    if (body->inv_mass < 0 || body->inv_inertia < 0 || (body->inv_mass > 0) != (body->inv_inertia > 0))
-        return error_input(error, path, "body %d: inverse mass and inertia must both be greater than 0, or both 0", i);
-    return true;
-}
-
-static bool check_pair(const StoredProblem *stored, int i, const char *path, Error *error) {
-    const ContactPoint *contact = &stored->contacts[i];
-    if (contact->a < 0 || contact->a >= contact->b || contact->b >= stored->problem.body_count)
-        return error_input(error, path, "contact %d: bodies %d and %d are not a valid pair", i, contact->a, contact->b);
-    if (stored->bodies[contact->a].inv_mass + stored->bodies[contact->b].inv_mass == 0.0f)
-        return error_input(error, path, "contact %d: bodies %d and %d are both static", i, contact->a, contact->b);
-    const ContactPoint *last = contact - 1;
-    if (i > 0 && (contact->a < last->a || (contact->a == last->a && contact->b < last->b)))
-        return error_input(error, path, "contact %d: pairs are not sorted", i);
-    return true;
-}
-
-static bool check_contact(const StoredProblem *stored, int i, const char *path, Error *error) {
-    const ContactPoint *contact = &stored->contacts[i];
+static bool check(const StoredProblem *stored, const char *path, Error *error) {
     const float unit_tolerance = 1e-3f; /* far above the rounding error of a rotation's column */
-    if (!check_pair(stored, i, path, error)) return false;
-    if (!(fabsf(vec2_dot(contact->normal, contact->normal) - 1.0f) <= unit_tolerance))
-        return error_input(error, path, "contact %d: its normal is not of unit length", i);
-    if (!(contact->mass_normal > 0) || !(contact->mass_tangent > 0))
-        return error_input(error, path, "contact %d: its effective masses must be greater than 0", i);
-    if (contact->friction < 0) return error_input(error, path, "contact %d: friction must not be negative", i);
-    return true;
-}
-
-static bool problem_file_check(const StoredProblem *stored, const char *path, Error *error) {
-    for (int i = 0; i < stored->problem.body_count; i++)
-        if (!check_body(stored, i, path, error)) return false;
-    for (int i = 0; i < stored->problem.contact_count; i++)
-        if (!check_contact(stored, i, path, error)) return false;
+    for (int i = 0; i < stored->problem.body_count; i++) {
+        const ProblemBody *body = &stored->bodies[i];
+        if (!(body->size.x > 0) || !(body->size.y > 0))
+            return error_input(error, path, "body %d: its size must be greater than 0 (got %g x %g)", i,
+                               (double)body->size.x, (double)body->size.y);
+        if (body->inv_mass < 0 || body->inv_inertia < 0 || (body->inv_mass > 0) != (body->inv_inertia > 0))
+            return error_input(error, path, "body %d: inverse mass and inertia must both be greater than 0, or both 0",
+                               i);
+    }
+    for (int i = 0; i < stored->problem.contact_count; i++) {
+        const ContactPoint *contact = &stored->contacts[i], *last = contact - 1;
+        if (contact->a < 0 || contact->a >= contact->b || contact->b >= stored->problem.body_count)
+            return error_input(error, path, "contact %d: bodies %d and %d are not a valid pair", i, contact->a,
+                               contact->b);
+        if (stored->bodies[contact->a].inv_mass + stored->bodies[contact->b].inv_mass == 0.0f)
+            return error_input(error, path, "contact %d: bodies %d and %d are both static", i, contact->a, contact->b);
+        if (i > 0 && (contact->a < last->a || (contact->a == last->a && contact->b < last->b)))
+            return error_input(error, path, "contact %d: pairs are not sorted", i);
+        if (!(fabsf(vec2_dot(contact->normal, contact->normal) - 1.0f) <= unit_tolerance))
+            return error_input(error, path, "contact %d: its normal is not of unit length", i);
+        if (!(contact->mass_normal > 0) || !(contact->mass_tangent > 0))
+            return error_input(error, path, "contact %d: its effective masses must be greater than 0", i);
+        if (contact->friction < 0) return error_input(error, path, "contact %d: friction must not be negative", i);
+    }
     return true;
 }
 
@@ -205,8 +185,7 @@ StoredProblem *problem_read(const char *path, Error *error) {
     StoredProblem *stored = calloc(1, sizeof *stored);
     bool done = stored != NULL || error_memory(error, path);
     done = done && read_file_head(stored, file, path, error) && read_counts(stored, file, path, error) &&
-           read_fields(stored, file, path, error) && read_contact_heads(stored, file, error) &&
-           problem_file_check(stored, path, error);
+           read_arrays(stored, file, path, error) && check(stored, path, error);
     npz_close(file);
     if (done) return stored;
     problem_destroy(stored);
@@ -230,14 +209,6 @@ static float *split_records(NpzArray *arrays, const ProblemField *fields, int fi
     return numbers;
 }
 
-static void split_contact_heads(const ContactProblem *problem, int32_t (*pairs)[2], uint32_t *features) {
-    for (int i = 0; i < problem->contact_count; i++) {
-        pairs[i][0] = problem->contacts[i].a;
-        pairs[i][1] = problem->contacts[i].b;
-        features[i] = problem->contacts[i].feature;
-    }
-}
-
 bool problem_write(const ContactProblem *problem, const char *scene, int frame, const char *path, Error *error) {
     int32_t version = PROBLEM_VERSION, frame_number = frame, bomb = problem->bomb;
     size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
@@ -258,7 +229,11 @@ bool problem_write(const ContactProblem *problem, const char *scene, int frame, 
             {"contact_bodies", NPZ_INT32, 2, {problem->contact_count, 2}, pairs},
             {"contact_feature", NPZ_UINT32, 1, {problem->contact_count}, features},
         };
-        split_contact_heads(problem, pairs, features);
+        for (int i = 0; i < problem->contact_count; i++) {
+            pairs[i][0] = problem->contacts[i].a;
+            pairs[i][1] = problem->contacts[i].b;
+            features[i] = problem->contacts[i].feature;
+        }
         float *rest = split_records(arrays + HEAD_ARRAYS, body_fields, BODY_FIELDS, problem->bodies,
                                     sizeof *problem->bodies, problem->body_count, numbers);
         split_records(arrays + HEAD_ARRAYS + BODY_FIELDS, contact_fields, CONTACT_FIELDS, problem->contacts,

@@ -4,6 +4,7 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "runs/runs.h"
+#include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 

@@ -6,6 +6,7 @@
 #include "methods/methods.h"
 #include "methods/programs.h"
 #include "runs/runs.h"
+#include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
@@ -27,15 +28,13 @@ struct Recorder {
     Background *background; /* NULL: nothing is written */
 };
 
-static bool check_length(const Scene *scene, Error *error) {
-    const int bodies = scene->body_count + scene_has_launch(scene);
-    if (((int64_t)scene->frames + 1) * bodies <= SIMULATE_MAX_STATES) return true;
-    return error_input(error, scene->name, "%d frames of %d bodies are too many to record; at most %d states of a body",
-                       scene->frames, bodies, SIMULATE_MAX_STATES);
-}
-
 static Recorder *create_parts(const Scene *scene, const Method *method, int parts, int frames, Error *error) {
-    if (!check_length(scene, error)) return NULL;
+    const int bodies = scene->body_count + scene_has_launch(scene);
+    if (((int64_t)scene->frames + 1) * bodies > SIMULATE_MAX_STATES) {
+        error_input(error, scene->name, "%d frames of %d bodies are too many to record; at most %d states of a body",
+                    scene->frames, bodies, SIMULATE_MAX_STATES);
+        return NULL;
+    }
     Recorder *recorder = calloc(1, sizeof *recorder);
     if (recorder == NULL) return error_memory(error, scene->name), NULL;
     recorder->capacity = frames;
@@ -56,33 +55,26 @@ static bool write_part(void *context, void *item, Error *error) {
     return true;
 }
 
-static bool open_outputs(Recorder *recorder, const RecorderOutput *outputs, int count, int frames, Error *error) {
-    assert(count <= RECORDER_OUTPUTS_MAX);
-    for (; recorder->stream_count < count; recorder->stream_count++) {
-        const RecorderOutput *output = &outputs[recorder->stream_count];
-        TrajectoryStream *stream =
-            trajectory_stream_create(recorder->parts[0], frames, output->format, output->path, error);
-        if (stream == NULL) return false;
-        recorder->streams[recorder->stream_count] = stream;
-    }
-    return count == 0 || (recorder->background = background_start(write_part, recorder, error)) != NULL;
-}
-
-static int part_frames(const Scene *scene) {
-    const int bodies = scene->body_count + scene_has_launch(scene);
-    const int frames = PART_BYTES / (int)(6 * sizeof(float)) / (bodies > 0 ? bodies : 1);
-    return frames < 1 ? 1 : frames > scene->frames + 1 ? scene->frames + 1 : frames;
-}
-
 Recorder *recorder_create_to(const Scene *scene, const Method *method, const RecorderOutput *outputs, int count,
                              bool no_contacts, Error *error) {
-    Recorder *recorder = create_parts(scene, method, 2, part_frames(scene), error);
+    assert(count <= RECORDER_OUTPUTS_MAX);
+    const int bodies = scene->body_count + scene_has_launch(scene), all = scene->frames + 1;
+    const int fit = PART_BYTES / (int)(6 * sizeof(float)) / (bodies > 0 ? bodies : 1);
+    Recorder *recorder = create_parts(scene, method, 2, fit < 1 ? 1 : fit > all ? all : fit, error);
     if (recorder == NULL) return NULL;
     for (int i = 0; i < 2; i++) {
         recorder->parts[i]->no_contacts |= no_contacts;
         trajectory_restart_contacts(recorder->parts[i]);
     }
-    if (open_outputs(recorder, outputs, count, scene->frames + 1, error)) return recorder;
+    bool ok = true;
+    for (int i = 0; ok && i < count; i++) {
+        TrajectoryStream *stream =
+            trajectory_stream_create(recorder->parts[0], all, outputs[i].format, outputs[i].path, error);
+        ok = stream != NULL;
+        if (ok) recorder->streams[recorder->stream_count++] = stream;
+    }
+    if (ok && (count == 0 || (recorder->background = background_start(write_part, recorder, error)) != NULL))
+        return recorder;
     recorder_destroy(recorder);
     return NULL;
 }
@@ -95,29 +87,22 @@ void recorder_destroy(Recorder *recorder) {
     free(recorder);
 }
 
-/* Gives the part to the second thread, which has then ended the part before: that one is recorded next. */
-static bool recorder_flush(Recorder *recorder, Error *error) {
-    Trajectory *part = recorder->parts[recorder->current];
-    part->frames = recorder->used;
-    trajectory_end_contacts(part);
-    if (recorder->background != NULL && !background_give(recorder->background, part, error)) return false;
-    recorder->current = !recorder->current;
-    recorder->used = 0;
-    recorder->parts[recorder->current]->frames = recorder->capacity;
-    trajectory_restart_contacts(recorder->parts[recorder->current]);
-    return true;
-}
-
-static bool is_full(const Recorder *recorder) {
-    const Trajectory *part = recorder->parts[recorder->current];
-    return recorder->used == recorder->capacity ||
-           part->contact_start[part->last_step + 1] >= PART_BYTES / (int)sizeof *part->contacts;
-}
-
 bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error) {
-    const bool whole = recorder->parts[1] == NULL;
-    if (!whole && is_full(recorder) && !recorder_flush(recorder, error)) return false;
     Trajectory *part = recorder->parts[recorder->current];
+    const bool whole = recorder->parts[1] == NULL;
+    const bool full = recorder->used == recorder->capacity ||
+                      part->contact_start[part->last_step + 1] >= PART_BYTES / (int)sizeof *part->contacts;
+    if (!whole && full) {
+        /* Gives the part to the second thread, which has then ended the part before: that one is recorded next. */
+        part->frames = recorder->used;
+        trajectory_end_contacts(part);
+        if (recorder->background != NULL && !background_give(recorder->background, part, error)) return false;
+        recorder->current = !recorder->current;
+        recorder->used = 0;
+        part = recorder->parts[recorder->current];
+        part->frames = recorder->capacity;
+        trajectory_restart_contacts(part);
+    }
     const int row = recorder->used++;
     trajectory_set_bodies(part, row, world);
     return frame == 0 || part->no_contacts || trajectory_set_contacts(part, row, world, error);

@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "engine/engine.h"
+#include "runs/run_files.h"
 #include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 
@@ -73,21 +74,17 @@ static int take_numbers(char *text, int least, int most, float numbers[NUMBERS_M
     return 0;
 }
 
-/* Cuts the last field off if it is "static" or "dynamic". */
-static void take_kind(CsvHead *head, char *text, CsvBody *body) {
-    char *last = strrchr(text, ',');
-    const char *word = last != NULL ? last + 1 + strspn(last + 1, " ") : "";
-    body->fixed = strcmp(word, "static") == 0;
-    if (!body->fixed && strcmp(word, "dynamic") != 0) return;
-    head->states_static = true;
-    *last = '\0';
-}
-
-/* "0,100,20" or "0,100,20,static" */
+/* "0,100,20", "0,100,20,static" or "0,100,20,dynamic" */
 static bool take_size(CsvHead *head, const char *path, char *text, Error *error, bool *right) {
     CsvBody body = {0};
     float size[NUMBERS_MAX] = {0};
-    take_kind(head, text, &body);
+    char *last = strrchr(text, ',');
+    const char *word = last != NULL ? last + 1 + strspn(last + 1, " ") : "";
+    body.fixed = strcmp(word, "static") == 0;
+    if (body.fixed || strcmp(word, "dynamic") == 0) {
+        head->states_static = true;
+        *last = '\0';
+    }
     char *comma = strchr(text, ',');
     *right = comma != NULL;
     if (comma == NULL) return true;
@@ -102,20 +99,6 @@ static bool take_name(char name[TRAJECTORY_NAME_SIZE], const char *text) {
     for (const char *c = text; *c != '\0'; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f) return false;
     return snprintf(name, TRAJECTORY_NAME_SIZE, "%s", text) < TRAJECTORY_NAME_SIZE;
-}
-
-static bool take_hash(const char *text, uint64_t *hash) {
-    char *end;
-    *hash = strtoull(text, &end, 16);
-    return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && *end == '\0';
-}
-
-static bool take_camera(CsvHead *head, char *text) {
-    float numbers[NUMBERS_MAX];
-    if (take_numbers(text, 4, 4, numbers) != 4) return false;
-    head->camera[0] = vec2(numbers[0], numbers[1]);
-    head->camera[1] = vec2(numbers[2], numbers[3]);
-    return true;
 }
 
 /* What a key states; in the order of the keys. */
@@ -134,14 +117,24 @@ static const struct {
 };
 
 static bool take_value(CsvHead *head, const char *path, int key, char *text, Error *error, bool *right) {
+    float camera[NUMBERS_MAX];
+    char *end;
     switch (key) {
     case KEY_SCENE: *right = take_name(head->scene, text); break;
     case KEY_METHOD: *right = take_name(head->method, text); break;
-    case KEY_SCENE_HASH: *right = take_hash(text, &head->scene_hash); break;
+    case KEY_SCENE_HASH:
+        head->scene_hash = strtoull(text, &end, 16);
+        *right = strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && *end == '\0';
+        break;
     case KEY_ITERATIONS: *right = parse_int(text, 1, INT32_MAX, &head->iterations); break;
     case KEY_DT: *right = parse_float(text, &head->dt) && head->dt > 0; break;
     case KEY_BOMB: *right = parse_int(text, 0, INT32_MAX - 1, &head->bomb); break;
-    case KEY_CAMERA: *right = take_camera(head, text); break;
+    case KEY_CAMERA:
+        *right = take_numbers(text, 4, 4, camera) == 4;
+        if (!*right) break;
+        head->camera[0] = vec2(camera[0], camera[1]);
+        head->camera[1] = vec2(camera[2], camera[3]);
+        break;
     default: return take_size(head, path, text, error, right);
     }
     return true;
@@ -170,17 +163,6 @@ static int compare_bodies(const void *left, const void *right) {
     return (a->number > b->number) - (a->number < b->number);
 }
 
-static bool sort_bodies(CsvHead *head, const char *path, Error *error) {
-    if (head->count > 0) qsort(head->bodies, head->count, sizeof *head->bodies, compare_bodies);
-    for (size_t i = 1; i < head->count; i++)
-        if (head->bodies[i].number == head->bodies[i - 1].number)
-            return error_input(error, path, "body %" PRId64 " has two sizes", head->bodies[i].number);
-    return head->count > 0 ||
-           error_input(error, path,
-                       "the sizes of the bodies are missing: give --sizes FILE.csv with body,width,height, or "
-                       "lines '# size: BODY,WIDTH,HEIGHT' above the header");
-}
-
 bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error) {
     *head = (CsvHead){.bomb = -1};
     if (strncmp(*text, "\xef\xbb\xbf", 3) == 0) *text += 3;
@@ -201,7 +183,15 @@ bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line
     }
     if (sizes != NULL && head->count > 0)
         return error_input(error, sizes, "the comments of %s also have sizes; give one of the two", path);
-    return (sizes == NULL || read_sizes(head, sizes, error)) && sort_bodies(head, path, error);
+    if (sizes != NULL && !read_sizes(head, sizes, error)) return false;
+    if (head->count > 0) qsort(head->bodies, head->count, sizeof *head->bodies, compare_bodies);
+    for (size_t i = 1; i < head->count; i++)
+        if (head->bodies[i].number == head->bodies[i - 1].number)
+            return error_input(error, path, "body %" PRId64 " has two sizes", head->bodies[i].number);
+    return head->count > 0 ||
+           error_input(error, path,
+                       "the sizes of the bodies are missing: give --sizes FILE.csv with body,width,height, or "
+                       "lines '# size: BODY,WIDTH,HEIGHT' above the header");
 }
 
 int csv_head_body(const CsvHead *head, int64_t number) {
@@ -222,15 +212,8 @@ typedef struct Fields {
     char line[CSV_ROWS_LINE_SIZE];
 } Fields;
 
-static char *trim(char *text) {
-    text += strspn(text, " \t");
-    size_t length = strlen(text);
-    while (length > 0 && strchr(" \t", text[length - 1]) != NULL) text[--length] = '\0';
-    return text;
-}
-
 /* Takes the next line. */
-static bool run_csv_split(CsvRows *rows, Fields *fields, Error *error) {
+static bool split(CsvRows *rows, Fields *fields, Error *error) {
     size_t length = strcspn(rows->at, "\n"), used = length;
     fields->count = 0;
     if (used > 0 && rows->at[used - 1] == '\r') used--;
@@ -247,23 +230,20 @@ static bool run_csv_split(CsvRows *rows, Fields *fields, Error *error) {
         next = comma != NULL ? comma + 1 : NULL;
         if (comma != NULL) *comma = '\0';
         fields->column[fields->count] = (int)(field - fields->line) + 1;
-        fields->text[fields->count++] = trim(field);
+        field += strspn(field, " \t");
+        size_t size = strlen(field);
+        while (size > 0 && strchr(" \t", field[size - 1]) != NULL) field[--size] = '\0';
+        fields->text[fields->count++] = field;
     }
     return true;
 }
 
 static bool is_absent(const CsvRows *rows, int column) { return rows->field[column] < 0; }
 
-/* The column that an unknown name probably means, among those that the file lacks; NULL: none. */
-static const char *run_csv_meant(const CsvRows *rows, const char *name) {
+/* Finds the columns. Names that mean nothing are kept for a note, unless one looks like a name that is missing. */
+static bool find_columns(CsvRows *rows, const Fields *fields, Error *error) {
     const char *missing[COL_COUNT];
-    int count = 0;
-    for (int i = 0; i < COL_COUNT; i++)
-        if (is_absent(rows, i)) missing[count++] = names[i];
-    return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;
-}
-
-static bool run_csv_place(CsvRows *rows, const Fields *fields, Error *error) {
+    int lacks = 0;
     for (int i = 0; i < COL_COUNT; i++) rows->field[i] = -1;
     for (int i = 0; i < fields->count; i++) {
         int column = 0;
@@ -274,17 +254,15 @@ static bool run_csv_place(CsvRows *rows, const Fields *fields, Error *error) {
                             names[column]);
         rows->field[column] = i;
     }
-    return true;
-}
-
-/* Names that mean nothing are kept for a note, unless one looks like a name that is missing. */
-static bool check_others(CsvRows *rows, const Fields *fields, Error *error) {
+    for (int i = 0; i < COL_COUNT; i++)
+        if (is_absent(rows, i)) missing[lacks++] = names[i];
     for (int i = 0; i < fields->count; i++) {
+        const char *name = fields->text[i];
         bool known = false;
         for (int column = 0; column < COL_COUNT; column++) known = known || rows->field[column] == i;
         if (known) continue;
-        const char *right = run_csv_meant(rows, fields->text[i]);
-        const CsvShown shown = csv_show(fields->text[i]);
+        const char *right = strlen(name) > 3 ? nearest_word(name, missing, lacks) : NULL;
+        const CsvShown shown = csv_show(name);
         if (right != NULL)
             return csv_fail(rows->path, rows->line, fields->column[i], error,
                             "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text, right);
@@ -297,9 +275,7 @@ bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line,
     Fields fields;
     *rows = (CsvRows){.path = path, .at = text, .line = line};
     if (*text == '\0') return csv_fail(rows->path, line, 0, error, "there is no header 'frame,body,x,y,angle'");
-    if (!run_csv_split(rows, &fields, error) || !run_csv_place(rows, &fields, error) ||
-        !check_others(rows, &fields, error))
-        return false;
+    if (!split(rows, &fields, error) || !find_columns(rows, &fields, error)) return false;
     for (int i = COL_FRAME; i <= COL_ANGLE; i++)
         if (is_absent(rows, i))
             return csv_fail(rows->path, line, 0, error, "the column '%s' is missing; expected frame,body,x,y,angle",
@@ -329,34 +305,28 @@ static bool take_index(const CsvRows *rows, const Fields *fields, int column, in
            fail_field(rows, fields, column, error, "is not a whole number from 0 to 2147483646");
 }
 
-/* "nan", "-inf", or more than a float32 holds. */
-static bool is_beyond(const char *text) {
-    char *end;
-    const double value = strtod(text, &end);
-    return end != text && *end == '\0' && (isnan(value) || fabs(value) > (double)FLT_MAX);
-}
-
-static bool take_state(const CsvRows *rows, const Fields *fields, CsvRow *row, Error *error) {
-    for (int column = COL_X; column <= COL_OMEGA; column++) {
-        const char *text = is_absent(rows, column) ? "0" : fields->text[rows->field[column]];
-        if (parse_float(text, &row->state[column - COL_X])) continue;
-        if (!is_beyond(text)) return fail_field(rows, fields, column, error, "is not a finite number");
-        row->not_finite = true;
-    }
-    return is_absent(rows, COL_TIME) || parse_double(fields->text[rows->field[COL_TIME]], &row->time) ||
-           fail_field(rows, fields, COL_TIME, error, "is not a finite number");
-}
-
 bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
     Fields fields;
     *row = (CsvRow){.line = rows->line};
-    if (*rows->at == '\0' || !run_csv_split(rows, &fields, error)) return false;
+    if (*rows->at == '\0' || !split(rows, &fields, error)) return false;
     if (fields.count != rows->width)
         return csv_fail(rows->path, rows->line, 0, error, "%d fields, but the header has %d", fields.count,
                         rows->width);
     if (!take_index(rows, &fields, COL_FRAME, &row->frame, error) ||
-        !take_index(rows, &fields, COL_BODY, &row->body, error) || !take_state(rows, &fields, row, error))
+        !take_index(rows, &fields, COL_BODY, &row->body, error))
         return false;
+    for (int column = COL_X; column <= COL_OMEGA; column++) {
+        const char *text = is_absent(rows, column) ? "0" : fields.text[rows->field[column]];
+        if (parse_float(text, &row->state[column - COL_X])) continue;
+        /* "nan", "-inf", or more than a float32 holds. */
+        char *end;
+        const double value = strtod(text, &end);
+        if (end == text || *end != '\0' || (!isnan(value) && fabs(value) <= (double)FLT_MAX))
+            return fail_field(rows, &fields, column, error, "is not a finite number");
+        row->not_finite = true;
+    }
+    if (!is_absent(rows, COL_TIME) && !parse_double(fields.text[rows->field[COL_TIME]], &row->time))
+        return fail_field(rows, &fields, COL_TIME, error, "is not a finite number");
     rows->line++;
     return true;
 }
@@ -385,31 +355,12 @@ static void print_head(FILE *out, const Trajectory *run) {
                 run->fixed[body] ? "static" : "dynamic");
 }
 
-/* Whether a body that is not static is there. */
-static bool has_dynamic(const Trajectory *run, int frame) {
-    for (int body = 0; body < run->bodies; body++)
-        if (!run->fixed[body] && trajectory_has(run, frame, body)) return true;
-    return false;
-}
-
-/* A static body is written once, as readers keep it where it is, and where it is alone: each frame has a row. */
-static bool is_shown(const Trajectory *run, int frame, int body, bool alone) {
-    const size_t i = trajectory_at(run, frame, body), before = i - (size_t)run->bodies;
-    if (!trajectory_has(run, frame, body)) return false;
-    return !run->fixed[body] || alone || frame == 0 || !trajectory_has(run, frame - 1, body) ||
-           memcmp(&run->position[i], &run->position[before], sizeof(Vec2)) != 0 ||
-           memcmp(&run->angle[i], &run->angle[before], sizeof(float)) != 0 ||
-           memcmp(&run->velocity[i], &run->velocity[before], sizeof(Vec2)) != 0 ||
-           memcmp(&run->angular_velocity[i], &run->angular_velocity[before], sizeof(float)) != 0;
-}
-
-static void print_row(FILE *out, const Trajectory *run, int frame, int body) {
-    const size_t i = trajectory_at(run, frame, body);
-    const Vec2 position = run->position[i], velocity = run->velocity[i];
-    fprintf(out, "%d,%d,%.9g,%.9g,%.9g", frame, body, (double)position.x, (double)position.y, (double)run->angle[i]);
-    if (!run->no_velocities)
-        fprintf(out, ",%.9g,%.9g,%.9g", (double)velocity.x, (double)velocity.y, (double)run->angular_velocity[i]);
-    fputc('\n', out);
+/* Whether two frames have the same bits of a body's state. */
+static bool same(const Trajectory *run, size_t i, size_t k) {
+    return memcmp(&run->position[i], &run->position[k], sizeof(Vec2)) == 0 &&
+           memcmp(&run->angle[i], &run->angle[k], sizeof(float)) == 0 &&
+           memcmp(&run->velocity[i], &run->velocity[k], sizeof(Vec2)) == 0 &&
+           memcmp(&run->angular_velocity[i], &run->angular_velocity[k], sizeof(float)) == 0;
 }
 
 static void print_run(FILE *out, const void *context) {
@@ -417,9 +368,24 @@ static void print_run(FILE *out, const void *context) {
     print_head(out, run);
     fprintf(out, "frame,body,x,y,angle%s\n", run->no_velocities ? "" : ",vx,vy,omega");
     for (int frame = 0; frame < run->frames; frame++) {
-        const bool alone = !has_dynamic(run, frame);
-        for (int body = 0; body < run->bodies; body++)
-            if (is_shown(run, frame, body, alone)) print_row(out, run, frame, body);
+        bool alone = true; /* no body that is not static is there */
+        for (int body = 0; alone && body < run->bodies; body++)
+            alone = run->fixed[body] || !trajectory_has(run, frame, body);
+        for (int body = 0; body < run->bodies; body++) {
+            const size_t i = trajectory_at(run, frame, body);
+            if (!trajectory_has(run, frame, body)) continue;
+            /* A static body is written once, as readers keep it where it is, and where it is alone: each frame has a
+               row. */
+            if (run->fixed[body] && !alone && frame > 0 && trajectory_has(run, frame - 1, body) &&
+                same(run, i, i - (size_t)run->bodies))
+                continue;
+            fprintf(out, "%d,%d,%.9g,%.9g,%.9g", frame, body, (double)run->position[i].x, (double)run->position[i].y,
+                    (double)run->angle[i]);
+            if (!run->no_velocities)
+                fprintf(out, ",%.9g,%.9g,%.9g", (double)run->velocity[i].x, (double)run->velocity[i].y,
+                        (double)run->angular_velocity[i]);
+            fputc('\n', out);
+        }
     }
 }
 

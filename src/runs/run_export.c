@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "engine/engine.h"
-#include "runs/runs.h"
+#include "runs/run_files.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
@@ -37,17 +37,6 @@ static void put_head(JsonWriter *json, const Trajectory *run) {
         put_vector(json, "camera_centre", run->camera_center);
         put_vector(json, "camera_size", run->camera_size);
     }
-}
-
-static void put_bodies(JsonWriter *json, const Trajectory *run) {
-    json_begin_array(json, "bodies", JSON_LINES);
-    for (int body = 0; body < run->bodies; body++) {
-        json_begin_object(json, NULL, JSON_ONE_LINE);
-        put_vector(json, "size", run->size[body]);
-        json_put_bool(json, "static", run->fixed[body]);
-        json_end(json);
-    }
-    json_end(json);
 }
 
 /* [x, y, angle, vx, vy, omega] */
@@ -86,7 +75,14 @@ static void json_run_print(FILE *out, const void *context) {
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_LINES);
     put_head(&json, run);
-    put_bodies(&json, run);
+    json_begin_array(&json, "bodies", JSON_LINES);
+    for (int body = 0; body < run->bodies; body++) {
+        json_begin_object(&json, NULL, JSON_ONE_LINE);
+        put_vector(&json, "size", run->size[body]);
+        json_put_bool(&json, "static", run->fixed[body]);
+        json_end(&json);
+    }
+    json_end(&json);
     json_begin_array(&json, "frames", JSON_LINES);
     for (int frame = 0; frame < run->frames; frame++) {
         json_begin_object(&json, NULL, JSON_ONE_LINE);

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/npz.h"
 #include "engine/engine.h"
+#include "runs/run_files.h"
 #include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
@@ -14,24 +15,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A body that is declared static, or has one row at the start of a run that declares none, stays where it is. */
-static bool run_import_stays(const CsvImport *import, int body) {
-    const Trajectory *run = import->run;
-    if (import->head.states_static) return import->head.bodies[body].fixed;
-    return run->frames > 1 && import->row_counts[body] == 1 && trajectory_has(run, 0, body);
-}
-
-static void carry_on(Trajectory *run, int body) {
-    for (int frame = 1; frame < run->frames; frame++) {
-        const size_t i = trajectory_at(run, frame, body), before = trajectory_at(run, frame - 1, body);
-        if (trajectory_has(run, frame, body)) continue;
-        run->position[i] = run->position[before];
-        run->angle[i] = run->angle[before];
-        run->velocity[i] = run->velocity[before];
-        run->angular_velocity[i] = run->angular_velocity[before];
-    }
-}
 
 /* A body may come and go once. */
 static bool check_body(CsvImport *import, int body, Error *error) {
@@ -56,36 +39,41 @@ PRINTF_LIKE(2, 3) static void add_note(CsvRunNotes *notes, const char *format, .
     PRINT_ARGUMENTS(notes->lines[notes->count++], CSV_RUN_NOTE_SIZE, format);
 }
 
-static void note_static(const CsvImport *import) {
-    const Trajectory *run = import->run;
+/* Completes the bodies once all rows are read: sizes, which are static, poses of static bodies in frames without their
+   row. False with error set if a body is missing between two of its frames. */
+static bool finish_bodies(CsvImport *import, Error *error) {
+    Trajectory *run = import->run;
+    const bool stated = import->head.states_static;
+    for (int body = 0; body < run->bodies; body++) {
+        run->size[body] = import->head.bodies[body].size;
+        run->fixed[body] = import->head.bodies[body].fixed;
+        /* A body that is declared static, or has one row at the start of a run that declares none, stays. */
+        if (stated ? !run->fixed[body]
+                   : run->frames == 1 || import->row_counts[body] != 1 || !trajectory_has(run, 0, body)) {
+            if (!check_body(import, body, error)) return false;
+            continue;
+        }
+        for (int frame = 1; frame < run->frames; frame++) {
+            const size_t i = trajectory_at(run, frame, body), before = trajectory_at(run, frame - 1, body);
+            if (trajectory_has(run, frame, body)) continue;
+            run->position[i] = run->position[before];
+            run->angle[i] = run->angle[before];
+            run->velocity[i] = run->velocity[before];
+            run->angular_velocity[i] = run->angular_velocity[before];
+        }
+    }
+    if (stated) return true;
+    trajectory_guess_fixed(run);
     char list[96] = "";
     int count = 0;
-    for (int body = 0; body < run->bodies; body++) {
-        if (!run->fixed[body]) continue;
-        if (count++ < 8) text_join(list, sizeof list, ", ", "%" PRId64, import->head.bodies[body].number);
-    }
-    if (import->head.states_static) return;
+    for (int body = 0; body < run->bodies; body++)
+        if (run->fixed[body] && count++ < 8)
+            text_join(list, sizeof list, ", ", "%" PRId64, import->head.bodies[body].number);
     if (count == 0)
         add_note(import->notes, "no body is static: each of them moves");
     else
         add_note(import->notes, "%d static: %s%s never move%s", count, list, count > 8 ? ", ..." : "",
                  count == 1 ? "s" : "");
-}
-
-/* Completes the bodies once all rows are read: sizes, which are static, poses of static bodies in frames without their
-   row. False with error set if a body is missing between two of its frames. */
-static bool finish_bodies(CsvImport *import, Error *error) {
-    Trajectory *run = import->run;
-    for (int body = 0; body < run->bodies; body++) {
-        run->size[body] = import->head.bodies[body].size;
-        run->fixed[body] = import->head.bodies[body].fixed;
-        if (run_import_stays(import, body))
-            carry_on(run, body);
-        else if (!check_body(import, body, error))
-            return false;
-    }
-    if (!import->head.states_static) trajectory_guess_fixed(run);
-    note_static(import);
     return true;
 }
 
@@ -94,17 +82,6 @@ static bool finish_bodies(CsvImport *import, Error *error) {
 static const size_t MAX_SIZE = (size_t)1 << 30;
 static const double TIME_TOLERANCE = 0.01;  /* of a step */
 static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole number is that number */
-
-/* A run may end in NaN, from which no body comes back: it is read up to there. */
-static bool find_end(CsvImport *import, const CsvRow *row, int body, Error *error) {
-    int64_t *end = &import->ends[body];
-    if (row->not_finite && row->frame < *end) *end = row->frame;
-    if (*end < import->end) import->end = *end, import->ended = body;
-    return row->not_finite || row->frame <= *end ||
-           csv_fail(import->path, row->line, 0, error,
-                    "body %" PRId64 " is finite in frame %" PRId64 ", but not in frame %" PRId64, row->body, row->frame,
-                    *end);
-}
 
 static bool count_rows(CsvImport *import, Error *error) {
     const CsvHead *head = &import->head;
@@ -117,7 +94,14 @@ static bool count_rows(CsvImport *import, Error *error) {
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = csv_head_body(head, row.body);
         if (body < 0) return csv_fail(import->path, row.line, 0, error, "body %" PRId64 " has no size", row.body);
-        if (!find_end(import, &row, body, error)) return false;
+        /* A run may end in NaN, from which no body comes back: it is read up to there. */
+        int64_t *end = &import->ends[body];
+        if (row.not_finite && row.frame < *end) *end = row.frame;
+        if (*end < import->end) import->end = *end, import->ended = body;
+        if (!row.not_finite && row.frame > *end)
+            return csv_fail(import->path, row.line, 0, error,
+                            "body %" PRId64 " is finite in frame %" PRId64 ", but not in frame %" PRId64, row.body,
+                            row.frame, *end);
         if (row.frame >= import->end) continue;
         import->row_counts[body]++;
         import->count++;
@@ -141,23 +125,20 @@ static bool survey(CsvImport *import, Error *error) {
     return true;
 }
 
-/* A frame number far away would make a huge run of few rows. */
-static bool check_last(CsvImport *import, Error *error) {
-    CsvRow row;
-    if (import->last - import->first < import->count) return true;
-    csv_rows_rewind(&import->rows);
-    while (csv_rows_next(&import->rows, &row, error) && row.frame != import->last) continue;
-    return csv_fail(import->path, row.line, 0, error,
-                    "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
-                    " rows are too few for the frames between",
-                    import->last, import->first, import->count);
-}
-
-/* Frames that have one body each, of many: what such a run takes must be in proportion to its text, as in .npz
-   files. */
-static bool check_size(const CsvImport *import, Error *error) {
+/* What a run takes must be in proportion to its text, as in .npz files. */
+static bool check_frames_and_size(CsvImport *import, Error *error) {
     const uint64_t frames = (uint64_t)(import->last - import->first) + 1, bodies = import->head.count;
     const uint64_t pose = 2 * sizeof(Vec2) + 2 * sizeof(float), budget = npz_budget(import->size);
+    CsvRow row;
+    if (import->last - import->first >= import->count) { /* a frame number far away: a huge run of few rows */
+        csv_rows_rewind(&import->rows);
+        while (csv_rows_next(&import->rows, &row, error) && row.frame != import->last) continue;
+        return csv_fail(import->path, row.line, 0, error,
+                        "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
+                        " rows are too few for the frames between",
+                        import->last, import->first, import->count);
+    }
+    /* Frames that have one body each, of many. */
     return frames * bodies <= budget / pose ||
            error_input(error, import->path,
                        "%" PRIu64 " frames of %" PRIu64 " bodies take %" PRIu64 " bytes; expected at most %" PRIu64
@@ -193,16 +174,6 @@ static bool choose_step(CsvImport *import, float *dt, Error *error) {
     return true;
 }
 
-/* Times are checked only where they set the step. */
-static bool check_time(const CsvImport *import, const CsvRow *row, Error *error) {
-    if (!has_times(import) || import->options->dt > 0 || import->head.dt > 0) return true;
-    const double dt = (double)import->run->dt, due = import->first_time + dt * (double)(row->frame - import->first);
-    return fabs(row->time - due) <= TIME_TOLERANCE * dt ||
-           csv_fail(import->path, row->line, 0, error,
-                    "time %g s does not fit to equal steps: frame %" PRId64 " is due at %g s", row->time, row->frame,
-                    due);
-}
-
 static void set_state(CsvImport *import, const CsvRow *row, int body) {
     Trajectory *run = import->run;
     const size_t i = trajectory_at(run, row->frame - import->first, body);
@@ -217,20 +188,27 @@ static void set_state(CsvImport *import, const CsvRow *row, int body) {
 }
 
 /* The second pass. */
-static bool run_import_fill(CsvImport *import, Error *error) {
+static bool fill(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     CsvRow row;
+    /* Times are checked only where they set the step. */
+    const bool checks_times = has_times(import) && !(import->options->dt > 0 || import->head.dt > 0);
+    const double dt = (double)run->dt;
     csv_rows_rewind(&import->rows);
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = csv_head_body(&import->head, row.body);
         if (row.frame >= import->end) continue;
+        const double due = import->first_time + dt * (double)(row.frame - import->first);
         if (trajectory_has(run, (int)(row.frame - import->first), body)) {
             const int line = row.line, before = csv_rows_find(&import->rows, row.frame, row.body);
             return csv_fail(import->path, line, 0, error,
                             "body %" PRId64 " is twice in frame %" PRId64 ": also in line %d", row.body, row.frame,
                             before);
         }
-        if (!check_time(import, &row, error)) return false;
+        if (checks_times && !(fabs(row.time - due) <= TIME_TOLERANCE * dt))
+            return csv_fail(import->path, row.line, 0, error,
+                            "time %g s does not fit to equal steps: frame %" PRId64 " is due at %g s", row.time,
+                            row.frame, due);
         set_state(import, &row, body);
     }
     return error->kind == ERROR_NONE;
@@ -288,42 +266,34 @@ static void note_numbers(const CsvImport *import) {
     add_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
 }
 
-static void note_end(const CsvImport *import) {
-    const int64_t number = import->head.bodies[import->ended].number;
-    if (import->end == INT64_MAX) return;
-    add_note(import->notes, "the run ends before frame %" PRId64 ", in which body %" PRId64 " is NaN or infinite",
-             import->end, number);
-    trajectory_judge(import->run, verdict_name(VERDICT_NON_FINITE), import->run->frames - 1, import->ended);
-}
-
-static bool make_run(CsvImport *import, Error *error) {
+static bool make_run(CsvImport *import, const char *text, Error *error) {
+    CsvHead *head = &import->head;
     float dt = 0;
-    if (!survey(import, error) || !check_last(import, error) || !check_size(import, error) ||
-        !choose_step(import, &dt, error))
+    int line;
+    if (!csv_head_read(head, import->path, &text, &line, import->options->sizes, error) ||
+        !csv_rows_begin(&import->rows, import->path, text, line, error))
         return false;
-    import->run = trajectory_create((int)(import->last - import->first + 1), (int)import->head.count, error);
-    if (import->run == NULL) return false;
-    import->run->dt = dt;
-    import->run->no_contacts = true;
-    import->run->no_velocities = import->rows.field[COL_VX] < 0;
-    if (!run_import_fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
+    import->row_counts = calloc(head->count, sizeof *import->row_counts);
+    import->ends = malloc(head->count * sizeof *import->ends);
+    if (import->row_counts == NULL || import->ends == NULL) return error_memory(error, import->path);
+    for (size_t i = 0; i < head->count; i++) import->ends[i] = INT64_MAX;
+    if (!survey(import, error) || !check_frames_and_size(import, error) || !choose_step(import, &dt, error))
+        return false;
+    Trajectory *run = import->run = trajectory_create((int)(import->last - import->first + 1), (int)head->count, error);
+    if (run == NULL) return false;
+    run->dt = dt;
+    run->no_contacts = true;
+    run->no_velocities = import->rows.field[COL_VX] < 0;
+    if (!fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
         !finish_head(import, error))
         return false;
     note_numbers(import);
-    note_end(import);
-    return trajectory_check(import->run, import->path, error);
-}
-
-static bool read_text(CsvImport *import, const char *text, Error *error) {
-    int line;
-    if (!csv_head_read(&import->head, import->path, &text, &line, import->options->sizes, error) ||
-        !csv_rows_begin(&import->rows, import->path, text, line, error))
-        return false;
-    import->row_counts = calloc(import->head.count, sizeof *import->row_counts);
-    import->ends = malloc(import->head.count * sizeof *import->ends);
-    if (import->row_counts == NULL || import->ends == NULL) return error_memory(error, import->path);
-    for (size_t i = 0; i < import->head.count; i++) import->ends[i] = INT64_MAX;
-    return make_run(import, error);
+    if (import->end < INT64_MAX) {
+        add_note(import->notes, "the run ends before frame %" PRId64 ", in which body %" PRId64 " is NaN or infinite",
+                 import->end, head->bodies[import->ended].number);
+        trajectory_judge(run, verdict_name(VERDICT_NON_FINITE), run->frames - 1, import->ended);
+    }
+    return trajectory_check(run, import->path, error);
 }
 
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error) {
@@ -335,7 +305,7 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
         input ? file_read_input(MAX_SIZE, &import.size, error) : file_read(path, MAX_SIZE, &import.size, error);
     bool done = text != NULL && (import.size > 0 || error_input(error, path, "the file is empty")) &&
                 (strlen(text) == import.size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
-                read_text(&import, text, error);
+                make_run(&import, text, error);
     free(text);
     free(import.row_counts);
     free(import.ends);

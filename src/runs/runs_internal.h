@@ -1,14 +1,56 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of this room: arrays and rows of runs, checks of verdicts. */
+/* The parts of this room: trajectories that grow, arrays and rows of runs, checks of verdicts. */
 #pragma once
 #include "base/base.h"
 #include "base/npz.h"
 #include "engine/engine.h"
+#include "runs/run_files.h"
+#include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
+
+/* Trajectories that grow. */
+
+/* Makes room for names, all empty. False with error set. */
+bool trajectory_make_names(Trajectory *trajectory, Error *error);
+
+/* Bytes of all arrays in a file. */
+double trajectory_bytes(const Trajectory *trajectory);
+
+/* Appends `count` contacts and returns the first, to be filled. NULL with error set. */
+TrajectoryContact *trajectory_add_contacts(Trajectory *trajectory, int frame, int count, Error *error);
+
+/* Removes all contacts. Contacts of frame 0 can be added then: the trajectory is a part of a longer run. */
+void trajectory_restart_contacts(Trajectory *trajectory);
+
+/* False with error set, naming `path`, if a trajectory from outside is inconsistent (trajectory_read). */
+bool trajectory_check(const Trajectory *trajectory, const char *path, Error *error);
+
+/* Sets `fixed` of a run that does not state it: bodies that are there from frame 0 to the end in one pose are static;
+   in a run of one frame, none. */
+void trajectory_guess_fixed(Trajectory *trajectory);
+
+/* Writes a run while it is made, in bounded memory. A part of a run is a Trajectory whose frame 0 is the frame after
+   the last one of the part before, with the contacts of the steps that end in its frames. The parts do not show in the
+   file. */
+
+typedef struct TrajectoryStream TrajectoryStream;
+
+/* A stream for a run of `frames` frames; names, sizes and all else that does not change are those of `head`, which may
+   be its first part and must outlive the stream. Program and verdict are read when it is finished. NULL with error set
+   if no file can be written at `path`. */
+TrajectoryStream *trajectory_stream_create(const Trajectory *head, int frames, TrajectoryFormat format,
+                                           const char *path, Error *error);
+bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Error *error);
+
+/* Writes the file, atomically, when all frames have been added. */
+bool trajectory_stream_finish(TrajectoryStream *stream, Error *error);
+
+/* Discards what trajectory_stream_finish() has not written. */
+void trajectory_stream_destroy(TrajectoryStream *stream);
 
 /* What a run's CSV states above its header, and the file of sizes. Part of csv_run. */
 

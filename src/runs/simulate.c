@@ -10,21 +10,20 @@
 
 #include <string.h>
 
-static bool simulate_observe(const Simulation *run, int frame, const RunWatch *watch, Error *error) {
-    if (watch->recorder != NULL && !recorder_record(watch->recorder, frame, run->world, error)) return false;
-    for (int i = 0; i < watch->observer_count; i++)
-        if (!watch->observers[i].observe(watch->observers[i].context, frame, run->world, error)) return false;
-    if (watch->fallbacks != NULL) fallbacks_add(watch->fallbacks, &world_solution(run->world)->fallbacks);
-    if (progress_report(watch->progress, frame, run->scene->frames)) return true;
-    return error_interrupted(error, run->scene->name, "stopped after step %d of %d", frame, run->scene->frames);
-}
-
 bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *watch, Error *error) {
     Simulation run;
     if (!simulation_begin(&run, scene, method, error)) return false;
     bool ok = watch->recorder == NULL || recorder_record(watch->recorder, 0, run.world, error);
-    for (int frame = 1; ok && frame <= scene->frames; frame++)
-        ok = simulation_step(&run, frame, error) && simulate_observe(&run, frame, watch, error);
+    for (int frame = 1; ok && frame <= scene->frames; frame++) {
+        ok = simulation_step(&run, frame, error) &&
+             (watch->recorder == NULL || recorder_record(watch->recorder, frame, run.world, error));
+        for (int i = 0; ok && i < watch->observer_count; i++)
+            ok = watch->observers[i].observe(watch->observers[i].context, frame, run.world, error);
+        if (!ok) break;
+        if (watch->fallbacks != NULL) fallbacks_add(watch->fallbacks, &world_solution(run.world)->fallbacks);
+        ok = progress_report(watch->progress, frame, scene->frames) ||
+             error_interrupted(error, scene->name, "stopped after step %d of %d", frame, scene->frames);
+    }
     simulation_end(&run);
     if (ok && watch->recorder != NULL) recorder_name_program(watch->recorder, method);
     return ok;

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "runs/launch_check.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
@@ -21,24 +22,20 @@ bool simulation_begin(Simulation *run, const Scene *scene, const Method *method,
     return false;
 }
 
-/* A method may have scattered the bodies: the scene is refused only if the bomb would start inside one in the engine's
-   run, too. */
-static bool add_bomb(const Scene *scene, World *world, Error *error) {
+bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
+    const Scene *scene = step->scene;
+    if (!stepper_step(stepper, world, step, error)) {
+        error_add(error, ", in step %d of scene %s", step->frame, scene->name);
+        return false;
+    }
+    /* The bomb appears, and the last body disappears, after the steps that the scene sets. */
+    if (step->frame == scene->last_body_until) world_remove_last_body(world);
+    if (!scene->bomb.present || scene->bomb.frame != step->frame) return true;
+    /* A method may have scattered the bodies: the scene is refused only if the bomb would start inside one in the
+       engine's run, too. */
     const Launch own = launch_of(scene);
     return (launch_is_free(scene, world) || launches_check(scene, &own, 1, error)) &&
            scene_add_bomb(scene, world, error);
-}
-
-/* The bomb appears, and the last body disappears, after the steps that the scene sets. */
-static bool update_bodies(const Scene *scene, World *world, int frame, Error *error) {
-    if (frame == scene->last_body_until) world_remove_last_body(world);
-    return !scene->bomb.present || scene->bomb.frame != frame || add_bomb(scene, world, error);
-}
-
-bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error) {
-    if (stepper_step(stepper, world, step, error)) return update_bodies(step->scene, world, step->frame, error);
-    error_add(error, ", in step %d of scene %s", step->frame, step->scene->name);
-    return false;
 }
 
 bool simulation_step(Simulation *run, int frame, Error *error) {

@@ -8,13 +8,16 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/names.h"
+#include "runs/compare_runs.h"
+#include "runs/runs_internal.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static double trajectory_measure(double frames, double bodies, double contacts) {
+/* Bytes of all arrays in a file. */
+static double measure(double frames, double bodies, double contacts) {
     double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + sizeof(float) + 1, small = 4096;
     return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
 }
@@ -22,34 +25,29 @@ static double trajectory_measure(double frames, double bodies, double contacts) 
 /* calloc, but not NULL for 0 items. */
 static void *zeros(size_t count, size_t size) { return calloc(count > 0 ? count : 1, size); }
 
-static bool trajectory_allocate(Trajectory *t) {
-    size_t bodies = (size_t)t->bodies, poses = (size_t)t->frames * bodies;
-    t->size = zeros(bodies, sizeof *t->size);
-    t->mass = zeros(bodies, sizeof *t->mass);
-    t->fixed = zeros(bodies, sizeof *t->fixed);
+Trajectory *trajectory_create(int frames, int bodies, Error *error) {
+    assert(frames >= 1 && bodies >= 0);
+    if (measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES)
+        return error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies), NULL;
+    Trajectory *t = calloc(1, sizeof *t);
+    if (t == NULL) return error_memory(error, "trajectory"), NULL;
+    *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1, .verdict_frame = -1, .verdict_body = -1};
+    const size_t count = (size_t)bodies, poses = (size_t)frames * count;
+    t->size = zeros(count, sizeof *t->size);
+    t->mass = zeros(count, sizeof *t->mass);
+    t->fixed = zeros(count, sizeof *t->fixed);
     t->position = zeros(poses, sizeof *t->position);
     t->angle = zeros(poses, sizeof *t->angle);
     t->velocity = zeros(poses, sizeof *t->velocity);
     t->angular_velocity = zeros(poses, sizeof *t->angular_velocity);
-    t->contact_start = zeros((size_t)t->frames + 1, sizeof *t->contact_start);
-    return t->size != NULL && t->mass != NULL && t->fixed != NULL && t->position != NULL && t->angle != NULL &&
-           t->velocity != NULL && t->angular_velocity != NULL && t->contact_start != NULL;
-}
-
-Trajectory *trajectory_create(int frames, int bodies, Error *error) {
-    assert(frames >= 1 && bodies >= 0);
-    if (trajectory_measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES)
-        return error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies), NULL;
-    Trajectory *t = calloc(1, sizeof *t);
-    if (t != NULL)
-        *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1, .verdict_frame = -1, .verdict_body = -1};
-    if (t == NULL || !trajectory_allocate(t)) {
+    t->contact_start = zeros((size_t)frames + 1, sizeof *t->contact_start);
+    if (t->size == NULL || t->mass == NULL || t->fixed == NULL || t->position == NULL || t->angle == NULL ||
+        t->velocity == NULL || t->angular_velocity == NULL || t->contact_start == NULL) {
         trajectory_destroy(t);
-        error_memory(error, "trajectory");
-        return NULL;
+        return error_memory(error, "trajectory"), NULL;
     }
     for (int i = 0; i < bodies; i++) t->mass[i] = NAN;
-    for (size_t i = 0; i < (size_t)frames * (size_t)bodies; i++) {
+    for (size_t i = 0; i < poses; i++) {
         t->position[i] = t->velocity[i] = vec2(NAN, NAN);
         t->angle[i] = t->angular_velocity[i] = NAN;
     }
@@ -94,13 +92,13 @@ static void end_steps(Trajectory *t, int step, int64_t count) {
 }
 
 double trajectory_bytes(const Trajectory *t) {
-    return trajectory_measure(t->frames, t->bodies, (double)t->contact_start[t->frames]);
+    return measure(t->frames, t->bodies, (double)t->contact_start[t->frames]);
 }
 
 TrajectoryContact *trajectory_add_contacts(Trajectory *t, int frame, int added, Error *error) {
     assert(frame >= t->last_step && frame < t->frames && added >= 0);
     int64_t count = t->contact_start[t->last_step + 1];
-    if (trajectory_measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES)
+    if (measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES)
         return error_input(error, "trajectory", "its contacts take more than 2 GiB"), NULL;
     void *contacts = t->contacts;
     /* At least one, so that NULL is a failure. */
@@ -138,21 +136,9 @@ uint64_t trajectory_frame_hash(const Trajectory *t, int frame) {
     return hash;
 }
 
-static void copy_frame(Trajectory *to, int to_frame, const Trajectory *from, int from_frame) {
-    size_t bodies = (size_t)from->bodies, to_at = (size_t)to_frame * bodies, at = (size_t)from_frame * bodies;
-    memcpy(to->position + to_at, from->position + at, bodies * sizeof *to->position);
-    memcpy(to->angle + to_at, from->angle + at, bodies * sizeof *to->angle);
-    memcpy(to->velocity + to_at, from->velocity + at, bodies * sizeof *to->velocity);
-    memcpy(to->angular_velocity + to_at, from->angular_velocity + at, bodies * sizeof *to->angular_velocity);
-}
-
-/* The verdict's frame may have been left out; what it saw is there in the next one. */
-static int kept_frame(const Trajectory *to, int frame, int step) {
-    const int kept = frame / step + (frame % step != 0);
-    return frame >= 0 && kept < to->frames ? kept : -1;
-}
-
 static void copy_head(Trajectory *to, const Trajectory *from, int step) {
+    /* The verdict's frame may have been left out; what it saw is there in the next one. */
+    const int frame = from->verdict_frame, kept = frame / step + (frame % step != 0);
     memcpy(to->scene, from->scene, sizeof to->scene);
     memcpy(to->method, from->method, sizeof to->method);
     memcpy(to->program, from->program, sizeof to->program);
@@ -160,7 +146,7 @@ static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     to->iterations = from->iterations;
     to->dt = from->dt * (float)step;
     to->bomb = from->bomb;
-    trajectory_judge(to, from->verdict, kept_frame(to, from->verdict_frame, step), from->verdict_body);
+    trajectory_judge(to, from->verdict, frame >= 0 && kept < to->frames ? kept : -1, from->verdict_body);
     to->no_velocities = from->no_velocities;
     to->no_contacts = from->no_contacts;
     to->no_impulses = from->no_impulses;
@@ -179,8 +165,13 @@ Trajectory *trajectory_every(const Trajectory *from, int step, Error *error) {
     bool ok = true;
     if (from->name != NULL && (ok = trajectory_make_names(to, error)))
         memcpy(to->name, from->name, (size_t)from->bodies * sizeof *to->name);
+    const size_t bodies = (size_t)from->bodies;
     for (int frame = 0; frame < to->frames; frame++) {
-        copy_frame(to, frame, from, frame * step);
+        const size_t at = (size_t)frame * bodies, of = at * (size_t)step;
+        memcpy(to->position + at, from->position + of, bodies * sizeof *to->position);
+        memcpy(to->angle + at, from->angle + of, bodies * sizeof *to->angle);
+        memcpy(to->velocity + at, from->velocity + of, bodies * sizeof *to->velocity);
+        memcpy(to->angular_velocity + at, from->angular_velocity + of, bodies * sizeof *to->angular_velocity);
         for (int64_t i = from->contact_start[frame * step]; ok && i < from->contact_start[frame * step + 1]; i++)
             ok = trajectory_add_contact(to, frame, &from->contacts[i], error);
     }
@@ -196,16 +187,16 @@ bool trajectory_has_masses(const Trajectory *trajectory) {
     return true;
 }
 
-static bool is_of_bomb_and_box(const Trajectory *trajectory, const TrajectoryContact *contact) {
-    if (contact->a != trajectory->bomb && contact->b != trajectory->bomb) return false;
-    return !trajectory->fixed[contact->a] && !trajectory->fixed[contact->b];
-}
-
 int trajectory_impact(const Trajectory *trajectory) {
-    if (trajectory->bomb < 0) return -1;
+    const int bomb = trajectory->bomb;
+    if (bomb < 0) return -1;
     for (int step = 1; step < trajectory->frames; step++)
-        for (int64_t i = trajectory->contact_start[step]; i < trajectory->contact_start[step + 1]; i++)
-            if (is_of_bomb_and_box(trajectory, &trajectory->contacts[i])) return step;
+        for (int64_t i = trajectory->contact_start[step]; i < trajectory->contact_start[step + 1]; i++) {
+            const TrajectoryContact *contact = &trajectory->contacts[i];
+            if ((contact->a == bomb || contact->b == bomb) && !trajectory->fixed[contact->a] &&
+                !trajectory->fixed[contact->b])
+                return step;
+        }
     return -1;
 }
 
@@ -245,32 +236,27 @@ void trajectory_name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]
     name[used] = '\0';
 }
 
-static uint64_t trajectory_add(uint64_t hash, const void *data, size_t size) {
+static uint64_t add(uint64_t hash, const void *data, size_t size) {
     uint64_t parts[] = {hash, hash_xxh3(data, size)};
     return hash_xxh3(parts, sizeof parts);
 }
 
 uint64_t trajectory_hash(const Trajectory *run) {
     size_t bodies = (size_t)run->bodies, poses = bodies * (size_t)run->frames;
-    uint64_t hash = trajectory_add(0, run->size, bodies * sizeof *run->size);
-    hash = trajectory_add(hash, run->fixed, bodies * sizeof *run->fixed);
-    if (run->name != NULL) hash = trajectory_add(hash, run->name, bodies * sizeof *run->name);
-    hash = trajectory_add(hash, &run->camera_center, sizeof run->camera_center);
-    hash = trajectory_add(hash, &run->camera_size, sizeof run->camera_size);
-    hash = trajectory_add(hash, run->position, poses * sizeof *run->position);
-    hash = trajectory_add(hash, run->angle, poses * sizeof *run->angle);
-    hash = trajectory_add(hash, run->velocity, poses * sizeof *run->velocity);
-    hash = trajectory_add(hash, run->angular_velocity, poses * sizeof *run->angular_velocity);
-    hash = trajectory_add(hash, run->contact_start, ((size_t)run->frames + 1) * sizeof *run->contact_start);
-    return trajectory_add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
+    uint64_t hash = add(0, run->size, bodies * sizeof *run->size);
+    hash = add(hash, run->fixed, bodies * sizeof *run->fixed);
+    if (run->name != NULL) hash = add(hash, run->name, bodies * sizeof *run->name);
+    hash = add(hash, &run->camera_center, sizeof run->camera_center);
+    hash = add(hash, &run->camera_size, sizeof run->camera_size);
+    hash = add(hash, run->position, poses * sizeof *run->position);
+    hash = add(hash, run->angle, poses * sizeof *run->angle);
+    hash = add(hash, run->velocity, poses * sizeof *run->velocity);
+    hash = add(hash, run->angular_velocity, poses * sizeof *run->angular_velocity);
+    hash = add(hash, run->contact_start, ((size_t)run->frames + 1) * sizeof *run->contact_start);
+    return add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
 }
 
 bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
-
-static bool same_velocity(const Trajectory *a, size_t i, const Trajectory *b, size_t k) {
-    return memcmp(&a->velocity[i], &b->velocity[k], sizeof(Vec2)) == 0 &&
-           memcmp(&a->angular_velocity[i], &b->angular_velocity[k], sizeof(float)) == 0;
-}
 
 bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
     bool in_a = trajectory_has(a, frame, body), in_b = trajectory_has(b, frame, body);
@@ -278,7 +264,9 @@ bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, 
     size_t i = trajectory_at(a, frame, body), k = trajectory_at(b, frame, body);
     return memcmp(&a->position[i], &b->position[k], sizeof(Vec2)) == 0 &&
            memcmp(&a->angle[i], &b->angle[k], sizeof(float)) == 0 &&
-           (!trajectory_both_move(a, b) || same_velocity(a, i, b, k));
+           (!trajectory_both_move(a, b) ||
+            (memcmp(&a->velocity[i], &b->velocity[k], sizeof(Vec2)) == 0 &&
+             memcmp(&a->angular_velocity[i], &b->angular_velocity[k], sizeof(float)) == 0));
 }
 
 StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {

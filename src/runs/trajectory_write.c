@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/npz.h"
 #include "engine/engine.h"
+#include "runs/runs.h"
 #include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 
@@ -81,61 +82,39 @@ static bool begin_npz(TrajectoryStream *stream, Error *error) {
     return true;
 }
 
-static bool trajectory_write_append(TrajectoryStream *stream, int array, const void *rows, int64_t count,
-                                    Error *error) {
+static bool append(TrajectoryStream *stream, int array, const void *rows, int64_t count, Error *error) {
     return stream->array[array] < 0 || npz_stream_append(stream->npz, stream->array[array], rows, count, error);
 }
 
-static bool add_block(TrajectoryStream *stream, const TrajectoryContact *contacts, int64_t count, Error *error) {
-    Block *block = &stream->block;
-    for (int64_t i = 0; i < count; i++) {
-        block->bodies[i][0] = contacts[i].a;
-        block->bodies[i][1] = contacts[i].b;
-        block->feature[i] = contacts[i].feature;
-        block->point[i] = contacts[i].point;
-        block->normal[i] = contacts[i].normal;
-        block->impulse[i][0] = contacts[i].normal_impulse;
-        block->impulse[i][1] = contacts[i].tangent_impulse;
-    }
-    return trajectory_write_append(stream, ARRAY_CONTACT_BODIES, block->bodies, count, error) &&
-           trajectory_write_append(stream, ARRAY_CONTACT_FEATURE, block->feature, count, error) &&
-           trajectory_write_append(stream, ARRAY_CONTACT_POINT, block->point, count, error) &&
-           trajectory_write_append(stream, ARRAY_CONTACT_NORMAL, block->normal, count, error) &&
-           trajectory_write_append(stream, ARRAY_CONTACT_IMPULSE, block->impulse, count, error);
-}
-
 static bool add_contacts(TrajectoryStream *stream, const Trajectory *part, Error *error) {
-    const int64_t count = part->contact_start[part->frames];
+    Block *block = &stream->block;
+    const int64_t all = part->contact_start[part->frames];
     for (int frame = stream->begun ? 1 : 0; frame <= part->frames; frame++) {
         const int64_t start = stream->contacts + part->contact_start[frame];
-        if (!trajectory_write_append(stream, ARRAY_CONTACT_START, &start, 1, error)) return false;
+        if (!append(stream, ARRAY_CONTACT_START, &start, 1, error)) return false;
     }
     stream->begun = true;
-    for (int64_t i = 0; i < count; i += BLOCK)
-        if (!add_block(stream, part->contacts + i, count - i < BLOCK ? count - i : BLOCK, error)) return false;
-    stream->contacts += count;
+    for (int64_t first = 0; first < all; first += BLOCK) {
+        const TrajectoryContact *contacts = part->contacts + first;
+        const int64_t count = all - first < BLOCK ? all - first : BLOCK;
+        for (int64_t i = 0; i < count; i++) {
+            block->bodies[i][0] = contacts[i].a;
+            block->bodies[i][1] = contacts[i].b;
+            block->feature[i] = contacts[i].feature;
+            block->point[i] = contacts[i].point;
+            block->normal[i] = contacts[i].normal;
+            block->impulse[i][0] = contacts[i].normal_impulse;
+            block->impulse[i][1] = contacts[i].tangent_impulse;
+        }
+        if (!append(stream, ARRAY_CONTACT_BODIES, block->bodies, count, error) ||
+            !append(stream, ARRAY_CONTACT_FEATURE, block->feature, count, error) ||
+            !append(stream, ARRAY_CONTACT_POINT, block->point, count, error) ||
+            !append(stream, ARRAY_CONTACT_NORMAL, block->normal, count, error) ||
+            !append(stream, ARRAY_CONTACT_IMPULSE, block->impulse, count, error))
+            return false;
+    }
+    stream->contacts += all;
     return true;
-}
-
-static bool add_npz(TrajectoryStream *stream, const Trajectory *part, Error *error) {
-    const int64_t frames = part->frames;
-    stream->bytes += trajectory_bytes(part);
-    if (stream->bytes > TRAJECTORY_MAX_BYTES) return error_input(error, stream->path, "the run takes more than 2 GiB");
-    return trajectory_write_append(stream, ARRAY_POSITION, part->position, frames, error) &&
-           trajectory_write_append(stream, ARRAY_ANGLE, part->angle, frames, error) &&
-           trajectory_write_append(stream, ARRAY_VELOCITY, part->velocity, frames, error) &&
-           trajectory_write_append(stream, ARRAY_ANGULAR_VELOCITY, part->angular_velocity, frames, error) &&
-           (stream->head->no_contacts || add_contacts(stream, part, error));
-}
-
-/* The last arrays of the file: what is known after the run. */
-static bool finish_npz(TrajectoryStream *stream, Error *error) {
-    const Trajectory *head = stream->head;
-    if (head->program[0] != '\0' && !add_array(stream, ARRAY_PROGRAM, head->program, error)) return false;
-    return (head->verdict[0] == '\0' || (add_array(stream, ARRAY_VERDICT, head->verdict, error) &&
-                                         add_array(stream, ARRAY_VERDICT_FRAME, &head->verdict_frame, error) &&
-                                         add_array(stream, ARRAY_VERDICT_BODY, &head->verdict_body, error))) &&
-           npz_stream_finish(stream->npz, error);
 }
 
 static const char *const text_heads[] = {
@@ -143,15 +122,6 @@ static const char *const text_heads[] = {
 
 static bool text_failed(const TrajectoryStream *stream, Error *error) {
     return error_system(error, stream->path, "cannot write: %s", strerror(errno));
-}
-
-static bool open_text(TrajectoryStream *stream, Error *error) {
-    stream->draft = file_draft(stream->path, error);
-    if (stream->draft < 0) return false;
-    const int copy = dup(stream->draft);
-    stream->out = copy >= 0 ? fdopen(copy, "w") : NULL;
-    if (stream->out == NULL && copy >= 0) close(copy);
-    return (stream->out != NULL && fputs(text_heads[stream->format], stream->out) >= 0) || text_failed(stream, error);
 }
 
 TrajectoryStream *trajectory_stream_create(const Trajectory *head, int frames, TrajectoryFormat format,
@@ -165,7 +135,15 @@ TrajectoryStream *trajectory_stream_create(const Trajectory *head, int frames, T
         return NULL;
     }
     *stream = (TrajectoryStream){.head = head, .format = format, .path = name, .frames = frames, .draft = -1};
-    if (format == TRAJECTORY_NPZ ? begin_npz(stream, error) : open_text(stream, error)) return stream;
+    if (format == TRAJECTORY_NPZ) {
+        if (begin_npz(stream, error)) return stream;
+    } else if ((stream->draft = file_draft(path, error)) >= 0) {
+        const int copy = dup(stream->draft);
+        stream->out = copy >= 0 ? fdopen(copy, "w") : NULL;
+        if (stream->out == NULL && copy >= 0) close(copy);
+        if (stream->out != NULL && fputs(text_heads[format], stream->out) >= 0) return stream;
+        text_failed(stream, error);
+    }
     trajectory_stream_destroy(stream);
     return NULL;
 }
@@ -179,48 +157,64 @@ void trajectory_stream_destroy(TrajectoryStream *stream) {
     free(stream);
 }
 
-static void print_states(FILE *out, const Trajectory *t, int first) {
+/* With the C locale's decimal point. */
+static bool print_part(TrajectoryStream *stream, const Trajectory *t, Error *error) {
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (c == (locale_t)0) return error_memory(error, stream->path);
+    locale_t previous = uselocale(c);
     for (int frame = 0; frame < t->frames; frame++) {
-        for (int body = 0; body < t->bodies; body++) {
+        const int number = stream->added + frame;
+        if (stream->format == TRAJECTORY_HASHES)
+            fprintf(stream->out, "%d,%016" PRIx64 "\n", number, trajectory_frame_hash(t, frame));
+        for (int body = 0; stream->format == TRAJECTORY_CSV && body < t->bodies; body++) {
             if (t->fixed[body] || !trajectory_has(t, frame, body)) continue;
-            size_t i = trajectory_at(t, frame, body);
-            fprintf(out, "%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", first + frame, body, (double)t->position[i].x,
+            const size_t i = trajectory_at(t, frame, body);
+            fprintf(stream->out, "%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", number, body, (double)t->position[i].x,
                     (double)t->position[i].y, (double)t->angle[i], (double)t->velocity[i].x, (double)t->velocity[i].y,
                     (double)t->angular_velocity[i]);
         }
     }
-}
-
-static void print_hashes(FILE *out, const Trajectory *t, int first) {
-    for (int frame = 0; frame < t->frames; frame++)
-        fprintf(out, "%d,%016" PRIx64 "\n", first + frame, trajectory_frame_hash(t, frame));
-}
-
-/* With the C locale's decimal point. */
-static bool print_part(TrajectoryStream *stream, const Trajectory *part, Error *error) {
-    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (c == (locale_t)0) return error_memory(error, stream->path);
-    locale_t previous = uselocale(c);
-    (stream->format == TRAJECTORY_CSV ? print_states : print_hashes)(stream->out, part, stream->added);
     uselocale(previous);
     freelocale(c);
     return !ferror(stream->out) || text_failed(stream, error);
 }
 
 bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Error *error) {
+    const int64_t frames = part->frames;
     assert(stream->added + part->frames <= stream->frames);
-    bool done = stream->npz != NULL ? add_npz(stream, part, error) : print_part(stream, part, error);
+    if (stream->npz == NULL) {
+        if (!print_part(stream, part, error)) return false;
+    } else {
+        stream->bytes += trajectory_bytes(part);
+        if (stream->bytes > TRAJECTORY_MAX_BYTES)
+            return error_input(error, stream->path, "the run takes more than 2 GiB");
+        if (!append(stream, ARRAY_POSITION, part->position, frames, error) ||
+            !append(stream, ARRAY_ANGLE, part->angle, frames, error) ||
+            !append(stream, ARRAY_VELOCITY, part->velocity, frames, error) ||
+            !append(stream, ARRAY_ANGULAR_VELOCITY, part->angular_velocity, frames, error) ||
+            (!stream->head->no_contacts && !add_contacts(stream, part, error)))
+            return false;
+    }
     stream->added += part->frames;
-    return done;
+    return true;
 }
 
 bool trajectory_stream_finish(TrajectoryStream *stream, Error *error) {
+    const Trajectory *head = stream->head;
     assert(stream->added == stream->frames);
-    if (stream->npz != NULL) return finish_npz(stream, error);
-    FILE *out = stream->out;
-    stream->out = NULL;
-    if (fclose(out) != 0) return text_failed(stream, error);
-    return file_draft_publish(stream->draft, stream->path, error);
+    if (stream->npz == NULL) {
+        FILE *out = stream->out;
+        stream->out = NULL;
+        if (fclose(out) != 0) return text_failed(stream, error);
+        return file_draft_publish(stream->draft, stream->path, error);
+    }
+    /* The last arrays of the file: what is known after the run. */
+    if (head->program[0] != '\0' && !add_array(stream, ARRAY_PROGRAM, head->program, error)) return false;
+    if (head->verdict[0] != '\0' && (!add_array(stream, ARRAY_VERDICT, head->verdict, error) ||
+                                     !add_array(stream, ARRAY_VERDICT_FRAME, &head->verdict_frame, error) ||
+                                     !add_array(stream, ARRAY_VERDICT_BODY, &head->verdict_body, error)))
+        return false;
+    return npz_stream_finish(stream->npz, error);
 }
 
 bool trajectory_write(const Trajectory *t, const char *path, Error *error) {

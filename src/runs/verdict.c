@@ -6,8 +6,9 @@
 #include "base/hash.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "runs/runs_internal.h"
+#include "runs/contact_finder.h"
 #include "runs/runs.h"
+#include "runs/runs_internal.h"
 #include "scenes/scenes.h"
 
 #include <math.h>

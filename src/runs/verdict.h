@@ -4,7 +4,9 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "runs/contact_finder.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
 #include <stddef.h>

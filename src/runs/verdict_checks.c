@@ -4,7 +4,6 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "runs/runs_internal.h"
-#include "runs/runs.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
 

@@ -3,8 +3,8 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "runs/runs_internal.h"
 #include "runs/runs.h"
+#include "runs/runs_internal.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
 

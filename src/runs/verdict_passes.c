@@ -3,7 +3,6 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "runs/runs_internal.h"
-#include "runs/runs.h"
 #include "runs/verdict.h"
 
 #include <math.h>

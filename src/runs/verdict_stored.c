@@ -3,7 +3,6 @@
    come from a scene or are assumed, the others are found again. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"

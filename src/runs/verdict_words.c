@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
 

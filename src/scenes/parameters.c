@@ -109,7 +109,7 @@ ExpressionShown expression_show(const YamlTree *tree, int node, double value, co
 }
 
 /* Errors are where the reading is, or at a place that it has passed. */
-static bool parameters_fail(const Expression *e, const char *at, const char *text) {
+static bool fail(const Expression *e, const char *at, const char *text) {
     return yaml_error_at(e->tree, e->node, (size_t)(at - e->text), e->error, "%s%s (got %s)", e->what, text,
                          show_text(e->tree, e->node).text);
 }
@@ -118,8 +118,8 @@ static bool parameters_fail(const Expression *e, const char *at, const char *tex
 static bool take_name(Expression *e, double *value) {
     Parameters *parameters = e->tree->context;
     const size_t length = strspn(e->at + 1, PARAMETER_LETTERS);
-    if (length == 0) return parameters_fail(e, e->at, ": a parameter's name must follow the '$'");
-    if (parameters == NULL) return parameters_fail(e, e->at, " must not contain parameters");
+    if (length == 0) return fail(e, e->at, ": a parameter's name must follow the '$'");
+    if (parameters == NULL) return fail(e, e->at, " must not contain parameters");
     const SceneParameter *parameter = parameters_find(parameters, e->at + 1, length);
     if (parameter == NULL) {
         char name[SCENE_PARAMETER_SIZE];
@@ -139,7 +139,7 @@ static bool take_sum(Expression *e, double *value);
 static bool take_operand(Expression *e, double *value) {
     e->at += strspn(e->at, " ");
     if (e->parts++ == EXPRESSION_MAX_PARTS)
-        return parameters_fail(e, e->at, ": an expression has too many numbers, signs and parentheses");
+        return fail(e, e->at, ": an expression has too many numbers, signs and parentheses");
     if (parse_leading_double(e->at, value, &e->at)) return true;
     if (*e->at == '$') return take_name(e, value);
     if (*e->at == '-') {
@@ -148,22 +148,10 @@ static bool take_operand(Expression *e, double *value) {
         *value = -*value;
         return true;
     }
-    if (*e->at != '(') return parameters_fail(e, e->at, ": a number, a $name or '(' is expected here");
+    if (*e->at != '(') return fail(e, e->at, ": a number, a $name or '(' is expected here");
     e->at++;
     if (!take_sum(e, value)) return false;
-    return *e->at++ == ')' || parameters_fail(e, e->at - 1, ": an operator or ')' is expected here");
-}
-
-static bool parameters_apply(const Expression *e, const char *operator, double number, double *value) {
-    switch (*operator) {
-    case '+': *value += number; break;
-    case '-': *value -= number; break;
-    case '*': *value *= number; break;
-    default:
-        if (number == 0) return parameters_fail(e, operator, " is divided by 0");
-        *value /= number;
-    }
-    return isfinite(*value) || parameters_fail(e, operator, " has an intermediate result that is infinite");
+    return *e->at++ == ')' || fail(e, e->at - 1, ": an operator or ')' is expected here");
 }
 
 /* Operands with these operators between them, from left to right. Blanks behind them are taken, too. */
@@ -171,9 +159,15 @@ static bool take_chain(Expression *e, bool take(Expression *e, double *value), c
     if (!take(e, value)) return false;
     for (e->at += strspn(e->at, " "); *e->at != '\0' && strchr(operators, *e->at) != NULL;
          e->at += strspn(e->at, " ")) {
-        const char *operator= e->at++;
+        const char *sign = e->at++;
         double number = 0;
-        if (!take(e, &number) || !parameters_apply(e, operator, number, value)) return false;
+        if (!take(e, &number)) return false;
+        if (*sign == '/' && number == 0) return fail(e, sign, " is divided by 0");
+        *value = *sign == '+'   ? *value + number
+                 : *sign == '-' ? *value - number
+                 : *sign == '*' ? *value * number
+                                : *value / number;
+        if (!isfinite(*value)) return fail(e, sign, " has an intermediate result that is infinite");
     }
     return true;
 }
@@ -186,10 +180,9 @@ bool expression_read(const YamlTree *tree, int node, const char *what, double *v
     const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
     Expression e = {tree, node, what, text, text, 0, error};
     if (!expression_is(tree, node) && !(parse_leading_double(text, value, &e.at) && *e.at == '\0'))
-        return parameters_fail(&e, text, " must be a number");
+        return fail(&e, text, " must be a number");
     e.at = text;
-    return take_sum(&e, value) &&
-           (*e.at == '\0' || parameters_fail(&e, e.at, ": an operator or the end is expected here"));
+    return take_sum(&e, value) && (*e.at == '\0' || fail(&e, e.at, ": an operator or the end is expected here"));
 }
 
 /* The key `parameters` of a scene. */
@@ -219,61 +212,44 @@ static const Field fields[] = {[VALUE] = {"value", field_bound, offsetof(ScenePa
                                {"whole", field_switch, offsetof(SceneParameter, whole), NULL, false},
                                {NULL, NULL, 0, NULL, false}};
 
-static bool copy_name(const YamlTree *tree, int node, char *name, Error *error) {
-    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
-    size_t length = strspn(text, PARAMETER_LETTERS);
-    if (length == 0 || text[length] != '\0' || length >= SCENE_PARAMETER_SIZE)
-        return yaml_error(tree, node, error,
-                          "a parameter's name must have 1 to %d characters of a-z, 0-9 and _ (got %s)",
-                          SCENE_PARAMETER_SIZE - 1, yaml_show(tree, node).text);
-    memcpy(name, text, length + 1);
-    return true;
-}
-
 static bool is_whole(double value) { return value == floor(value); }
 
-/* Checks that involve several keys. */
-static bool parameters_check(const YamlTree *tree, const int *nodes, const SceneParameter *parameter, Error *error) {
-    const double numbers[] = {parameter->value, parameter->from, parameter->to};
-    for (int i = VALUE; i <= TO; i++)
-        if (parameter->whole && !is_whole(numbers[i]))
-            return yaml_error(tree, nodes[i], error, "%s must be a whole number, because whole is on (got %s)",
-                              fields[i].key, expression_show(tree, nodes[i], numbers[i], "").text);
-    return (parameter->value >= parameter->from && parameter->value <= parameter->to) ||
-           yaml_error(tree, nodes[VALUE], error, "value must be from %.9g to %.9g (got %s)", parameter->from,
-                      parameter->to, expression_show(tree, nodes[VALUE], parameter->value, "").text);
-}
-
 static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int value, Error *error) {
-    if (parameters->count == SCENE_MAX_PARAMETERS)
-        return yaml_error(tree, key, error, "a scene must have at most %d parameters", SCENE_MAX_PARAMETERS);
+    const char *name = tree->nodes[key].kind == YAML_SCALAR ? yaml_text(tree, key) : "";
+    const size_t length = strspn(name, PARAMETER_LETTERS);
     SceneParameter parameter = {.whole = false};
     int nodes[FIELDS_MAX];
-    if (!copy_name(tree, key, parameter.name, error)) return false;
-    if (parameters_find(parameters, parameter.name, strlen(parameter.name)) != NULL)
-        return yaml_error(tree, key, error, "key '%s' is given twice", parameter.name);
-    if (!fields_read(tree, value, "a parameter", fields, &parameter, nodes, error) ||
-        !parameters_check(tree, nodes, &parameter, error))
-        return false;
+    if (parameters->count == SCENE_MAX_PARAMETERS)
+        return yaml_error(tree, key, error, "a scene must have at most %d parameters", SCENE_MAX_PARAMETERS);
+    if (length == 0 || name[length] != '\0' || length >= SCENE_PARAMETER_SIZE)
+        return yaml_error(tree, key, error,
+                          "a parameter's name must have 1 to %d characters of a-z, 0-9 and _ (got %s)",
+                          SCENE_PARAMETER_SIZE - 1, yaml_show(tree, key).text);
+    memcpy(parameter.name, name, length + 1);
+    if (parameters_find(parameters, name, length) != NULL)
+        return yaml_error(tree, key, error, "key '%s' is given twice", name);
+    if (!fields_read(tree, value, "a parameter", fields, &parameter, nodes, error)) return false;
+    const double numbers[] = {parameter.value, parameter.from, parameter.to};
+    for (int i = VALUE; i <= TO; i++)
+        if (parameter.whole && !is_whole(numbers[i]))
+            return yaml_error(tree, nodes[i], error, "%s must be a whole number, because whole is on (got %s)",
+                              fields[i].key, expression_show(tree, nodes[i], numbers[i], "").text);
+    if (!(parameter.value >= parameter.from && parameter.value <= parameter.to))
+        return yaml_error(tree, nodes[VALUE], error, "value must be from %.9g to %.9g (got %s)", parameter.from,
+                          parameter.to, expression_show(tree, nodes[VALUE], parameter.value, "").text);
     parameters->nodes[parameters->count] = key;
     parameters->items[parameters->count++] = parameter;
     return true;
 }
 
-/* The value's node of the key `parameters`, 0 if it is missing. The scene's table refuses a second one. */
-static int find_node(const YamlTree *tree) {
-    bool mapping = tree->nodes[0].kind == YAML_MAPPING;
-    for (int key = 1; mapping && key < tree->nodes[0].end;) {
-        int value = tree->nodes[key].end;
-        if (tree->nodes[key].kind == YAML_SCALAR && strcmp(yaml_text(tree, key), "parameters") == 0) return value;
-        key = tree->nodes[value].end;
-    }
-    return 0;
-}
-
 bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error) {
     *parameters = (Parameters){.count = 0};
-    int node = find_node(tree);
+    int node = 0; /* of the value; the scene's table refuses a second key */
+    for (int key = 1; node == 0 && tree->nodes[0].kind == YAML_MAPPING && key < tree->nodes[0].end;) {
+        const int value = tree->nodes[key].end;
+        if (tree->nodes[key].kind == YAML_SCALAR && strcmp(yaml_text(tree, key), "parameters") == 0) node = value;
+        key = tree->nodes[value].end;
+    }
     if (node == 0) return true;
     if (tree->nodes[node].kind != YAML_MAPPING)
         return yaml_error(tree, node, error, "parameters must be a mapping of names to values (got %s)",
@@ -295,18 +271,6 @@ static int find_common(const char *name) {
 
 static double bomb_speed(const Scene *scene) { return vec2_distance(scene_bomb_body(scene).velocity, vec2(0, 0)); }
 
-static double common_value(const Scene *scene, int which) {
-    switch (which) {
-    case ITERATIONS: return scene->iterations;
-    case DT: return (double)scene->dt;
-    case FRICTION: return (double)scene->bodies[scene->body_count - 1].friction;
-    case BOMB_X: return (double)scene->bomb.x.value;
-    case BOMB_Y: return (double)scene->bomb.y;
-    case BOMB_MASS: return (double)scene->bomb.mass.value;
-    default: return bomb_speed(scene);
-    }
-}
-
 /* The parameter of the file with this name, or NULL. */
 static const SceneParameter *find_own(const Scene *scene, const char *name) {
     for (int i = 0; i < scene->parameter_count; i++)
@@ -326,25 +290,18 @@ static int steps_of_time(int steps, double ratio) {
     return count > SCENE_MAX_FRAMES ? SCENE_MAX_FRAMES : (int)count;
 }
 
-static void change_dt(Scene *scene, double dt) {
-    const double ratio = dt / (double)scene->dt;
-    scene->dt = (float)dt;
-    scene->frames = steps_of_time(scene->frames, ratio);
-    if (scene->frames == 0) scene->frames = 1;
-    scene->bomb.frame = steps_of_time(scene->bomb.frame, ratio);
-    scene->last_body_until = steps_of_time(scene->last_body_until, ratio);
-}
-
-static void change_speed(Scene *scene, double speed) {
-    const float ratio = (float)(speed / bomb_speed(scene));
-    scene->bomb.velocity_factor *= ratio;
-    scene->bomb.velocity = vec2_scale(ratio, scene->bomb.velocity);
-}
-
 static void change(Scene *scene, int which, double value) {
+    const double ratio = value / (double)scene->dt; /* of dt */
+    const float faster = which == BOMB_SPEED ? (float)(value / bomb_speed(scene)) : 1;
     switch (which) {
     case ITERATIONS: scene->iterations = (int)value; break;
-    case DT: change_dt(scene, value); break;
+    case DT:
+        scene->dt = (float)value;
+        scene->frames = steps_of_time(scene->frames, ratio);
+        if (scene->frames == 0) scene->frames = 1;
+        scene->bomb.frame = steps_of_time(scene->bomb.frame, ratio);
+        scene->last_body_until = steps_of_time(scene->last_body_until, ratio);
+        break;
     case FRICTION:
         for (int i = 0; i < scene->body_count; i++) scene->bodies[i].friction = (float)value;
         scene->bomb.friction = (float)value;
@@ -352,7 +309,7 @@ static void change(Scene *scene, int which, double value) {
     case BOMB_X: scene->bomb.x.value = (float)value; break;
     case BOMB_Y: scene->bomb.y = (float)value; break;
     case BOMB_MASS: scene->bomb.mass.value = (float)value; break;
-    default: change_speed(scene, value);
+    default: scene->bomb.velocity_factor *= faster; scene->bomb.velocity = vec2_scale(faster, scene->bomb.velocity);
     }
 }
 
@@ -385,7 +342,14 @@ SceneParameters scene_parameters(const Scene *scene) {
     SceneParameters all = {.count = scene->parameter_count};
     memcpy(all.items, scene->parameters, sizeof scene->parameters);
     for (int which = 0; which < (scene->bomb.present ? COMMON : BOMB_X); which++) {
-        const double value = common_value(scene, which);
+        const double values[COMMON] = {[ITERATIONS] = scene->iterations,
+                                       [DT] = (double)scene->dt,
+                                       [FRICTION] = (double)scene->bodies[scene->body_count - 1].friction,
+                                       [BOMB_X] = (double)scene->bomb.x.value,
+                                       [BOMB_Y] = (double)scene->bomb.y,
+                                       [BOMB_MASS] = (double)scene->bomb.mass.value,
+                                       [BOMB_SPEED] = scene->bomb.present ? bomb_speed(scene) : 0};
+        const double value = values[which];
         const double ranges[COMMON][2] = {[ITERATIONS] = {1, value < 20 ? 40 : 2 * value},
                                           [DT] = {value / 4, value * 4},
                                           [FRICTION] = {0, 1},

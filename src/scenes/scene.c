@@ -21,24 +21,6 @@ bool field_overlaps(const YamlTree *tree, int node, const Field *field, void *me
                       yaml_show(tree, node).text);
 }
 
-/* The node of body `index`: its entry in the list, or the bomb. */
-static int node_of(const YamlTree *tree, int bodies, int bomb, const Scene *scene, int index) {
-    return index < scene->body_count ? bodies_entry(tree, bodies, index) : bomb;
-}
-
-static bool scene_refuse(const YamlTree *tree, int bodies, int bomb, const Scene *scene, const BodyPair *pair,
-                         const Box *boxes, Error *error) {
-    const int node = node_of(tree, bodies, bomb, scene, pair->b);
-    const int other = bodies_entry(tree, bodies, pair->a);
-    char what[32] = "the bomb";
-    if (pair->b < scene->body_count) snprintf(what, sizeof what, "body %d", pair->b);
-    return yaml_error(tree, node, error,
-                      "%s starts %.3g m inside body %d (line %d), more than the slop of %g m; move one of them, or "
-                      "write 'overlaps: allowed'",
-                      what, overlap_depth(&boxes[pair->a], &boxes[pair->b]), pair->a, tree->nodes[other].place.line + 1,
-                      (double)CONTACT_SLOP);
-}
-
 bool overlaps_check(const YamlTree *tree, int bodies, int bomb, const Scene *scene, Error *error) {
     const bool with_bomb = scene->bomb.present && scene->bomb.frame == 0;
     const int count = scene->body_count + with_bomb;
@@ -53,8 +35,16 @@ bool overlaps_check(const YamlTree *tree, int bodies, int bomb, const Scene *sce
     bool ok = boxes != NULL && fixed != NULL && overlap_find(boxes, fixed, count, SCENE_OVERLAP, &pair);
     if (!ok)
         error_memory(error, tree->source.path);
-    else if (pair.a >= 0)
-        ok = scene_refuse(tree, bodies, bomb, scene, &pair, boxes, error);
+    else if (pair.a >= 0) {
+        const int other = bodies_entry(tree, bodies, pair.a);
+        char what[32] = "the bomb";
+        if (pair.b < scene->body_count) snprintf(what, sizeof what, "body %d", pair.b);
+        ok = yaml_error(tree, pair.b < scene->body_count ? bodies_entry(tree, bodies, pair.b) : bomb, error,
+                        "%s starts %.3g m inside body %d (line %d), more than the slop of %g m; move one of them, or "
+                        "write 'overlaps: allowed'",
+                        what, overlap_depth(&boxes[pair.a], &boxes[pair.b]), pair.a, tree->nodes[other].place.line + 1,
+                        (double)CONTACT_SLOP);
+    }
     free(boxes);
     free(fixed);
     return ok;
@@ -110,38 +100,30 @@ void launches_free(LaunchTable *table) {
     *table = (LaunchTable){.count = 0};
 }
 
-/* Row i, completed by the scene's own launch. */
-static Launch scene_complete(const LaunchTable *table, int i, const Scene *scene) {
-    const int *fields = table->csv.fields;
-    const Launch *row = (const Launch *)table->csv.rows + i;
-    Launch launch = launch_of(scene);
-    if (fields[X] >= 0) launch.x = row->x;
-    if (fields[ROTATION] >= 0) launch.rotation = row->rotation;
-    if (fields[SPIN] >= 0) launch.spin = row->spin;
-    if (fields[MASS] >= 0) launch.mass = row->mass;
-    if (fields[FRAME] >= 0) launch.frame = row->frame;
-    return launch;
-}
-
-/* The checks of a scene file that need the scene. */
-static bool scene_fits(const LaunchTable *table, int i, const Scene *scene, const Launch *launch, Error *error) {
-    if (launch->frame > scene->frames)
-        return csv_table_error(&table->csv, i, FRAME, error,
-                               "the bomb would come in frame %d, after the last of %s (frames: %d)", launch->frame,
-                               scene->name, scene->frames);
-    Scene launched = launch_scene(scene, launch);
-    Vec2 velocity = scene_bomb_body(&launched).velocity;
-    if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) <= range_speed.maximum) return true;
-    return csv_table_error(&table->csv, i, X, error, "the bomb of %s would start with (%g, %g) m/s, above %g",
-                           scene->name, (double)velocity.x, (double)velocity.y, (double)range_speed.maximum);
-}
-
 bool launches_for(const LaunchTable *table, const Scene *scene, Launch *out, Error *error) {
+    const int *fields = table->csv.fields;
     if (!scene->bomb.present)
         return error_input(error, table->csv.csv.path, "the scene %s has no bomb to launch", scene->name);
     for (int i = 0; i < table->count; i++) {
-        out[i] = scene_complete(table, i, scene);
-        if (!scene_fits(table, i, scene, &out[i], error)) return false;
+        /* The row, completed by the scene's own launch. */
+        const Launch *row = (const Launch *)table->csv.rows + i;
+        Launch launch = launch_of(scene);
+        if (fields[X] >= 0) launch.x = row->x;
+        if (fields[ROTATION] >= 0) launch.rotation = row->rotation;
+        if (fields[SPIN] >= 0) launch.spin = row->spin;
+        if (fields[MASS] >= 0) launch.mass = row->mass;
+        if (fields[FRAME] >= 0) launch.frame = row->frame;
+        out[i] = launch;
+        /* The checks of a scene file that need the scene. */
+        if (launch.frame > scene->frames)
+            return csv_table_error(&table->csv, i, FRAME, error,
+                                   "the bomb would come in frame %d, after the last of %s (frames: %d)", launch.frame,
+                                   scene->name, scene->frames);
+        const Scene launched = launch_scene(scene, &launch);
+        const Vec2 velocity = scene_bomb_body(&launched).velocity;
+        if (fmaxf(fabsf(velocity.x), fabsf(velocity.y)) > range_speed.maximum)
+            return csv_table_error(&table->csv, i, X, error, "the bomb of %s would start with (%g, %g) m/s, above %g",
+                                   scene->name, (double)velocity.x, (double)velocity.y, (double)range_speed.maximum);
     }
     return true;
 }
@@ -162,7 +144,7 @@ bool launch_has_family(const Scene *scene) {
            scene_span_varies(&bomb->mass);
 }
 
-static bool scene_spread(const Scene *scene, bool scoring, int count, Launch *out, Error *error) {
+static bool spread(const Scene *scene, bool scoring, int count, Launch *out, Error *error) {
     const SceneBomb *bomb = &scene->bomb;
     if (!launch_has_family(scene))
         return error_input(
@@ -181,24 +163,20 @@ static bool scene_spread(const Scene *scene, bool scoring, int count, Launch *ou
 }
 
 bool launches_for_training(const Scene *scene, int count, Launch *out, Error *error) {
-    return scene_spread(scene, false, count, out, error);
+    return spread(scene, false, count, out, error);
 }
 
 bool launches_for_scoring(const Scene *scene, int count, Launch *out, Error *error) {
-    return scene_spread(scene, true, count, out, error);
-}
-
-static bool bomb_touches(const ContactProblem *problem) {
-    for (int i = 0; problem->bomb >= 0 && i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        bool bomb = contact->a == problem->bomb || contact->b == problem->bomb;
-        if (bomb && problem->bodies[contact->a].inv_mass > 0 && problem->bodies[contact->b].inv_mass > 0) return true;
-    }
-    return false;
+    return spread(scene, true, count, out, error);
 }
 
 Phase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame) {
-    if (tracker->touch == 0 && bomb_touches(problem)) tracker->touch = frame;
+    for (int i = 0; tracker->touch == 0 && problem->bomb >= 0 && i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const bool bomb = contact->a == problem->bomb || contact->b == problem->bomb;
+        if (bomb && problem->bodies[contact->a].inv_mass > 0 && problem->bodies[contact->b].inv_mass > 0)
+            tracker->touch = frame;
+    }
     if (tracker->touch == 0) return PHASE_REST;
     int since = frame - tracker->touch;
     if (since < tracker->impact_frames) return PHASE_IMPACT;

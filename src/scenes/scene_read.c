@@ -89,54 +89,37 @@ static bool field_int(const YamlTree *tree, int node, const Field *field, void *
 
 /* Reads the list of bodies: single bodies and patterns. */
 
-/* A kind of pattern. Every position is computed in float32 from the first one and not from its neighbour, so that
-   rounding does not add up. */
-typedef struct PatternKind {
-    const char *name;
-    int64_t (*body_count)(int count);
-    Vec2 (*position)(Vec2 first, Vec2 spacing, int count, int64_t i); /* of body i */
-} PatternKind;
+typedef enum PatternKind { ONE_BODY, ROW, STACK, PYRAMID } PatternKind;
 
 /* One entry of a scene's bodies: a single body, or a pattern of equal bodies. */
 typedef struct Pattern {
-    const PatternKind *kind; /* NULL: one body */
-    int count;               /* bodies of a row or a stack, rows of a pyramid */
-    Vec2 spacing;            /* m */
-    int until;               /* the step after which a single body is removed; 0: never */
-    BodyDef first;           /* the first body; the others differ from it by their position only */
-    BodyName name;           /* of each; may be empty */
+    PatternKind kind;
+    int count;     /* bodies of a row or a stack, rows of a pyramid */
+    Vec2 spacing;  /* m */
+    int until;     /* the step after which a single body is removed; 0: never */
+    BodyDef first; /* the first body; the others differ from it by their position only */
+    BodyName name; /* of each; may be empty */
 } Pattern;
 
-static int64_t line_body_count(int count) { return count; }
-
-static Vec2 line_position(Vec2 first, Vec2 spacing, int count, int64_t i) {
-    (void)count;
-    return vec2(first.x + spacing.x * (float)i, first.y + spacing.y * (float)i);
+static int64_t count_bodies(const Pattern *pattern) {
+    const int64_t count = pattern->count;
+    return pattern->kind == ONE_BODY ? 1 : pattern->kind == PYRAMID ? count * (count + 1) / 2 : count;
 }
 
-static int64_t pyramid_body_count(int rows) { return (int64_t)rows * (rows + 1) / 2; }
-
-/* Row by row from below, each from left to right; a row has one body less than the row below it and begins half a
-   spacing further right. */
-static Vec2 pyramid_position(Vec2 first, Vec2 spacing, int rows, int64_t i) {
-    int row = 0;
-    for (; i >= rows - row; row++) i -= rows - row;
-    return vec2(first.x + 0.5f * spacing.x * (float)row + spacing.x * (float)i, first.y + spacing.y * (float)row);
-}
-
-static const PatternKind row = {"row", line_body_count, line_position};
-static const PatternKind stack = {"stack", line_body_count, line_position};
-static const PatternKind pyramid = {"pyramid", pyramid_body_count, pyramid_position};
-static const PatternKind *const pattern_kinds[] = {&row, &stack, &pyramid, NULL};
-
-static int64_t pattern_body_count(const Pattern *pattern) {
-    return pattern->kind == NULL ? 1 : pattern->kind->body_count(pattern->count);
-}
-
+/* Every position is computed in float32 from the first one and not from its neighbour, so that rounding does not add
+   up. A pyramid goes row by row from below, each from left to right; a row has one body less than the row below it and
+   begins half a spacing further right. */
 static BodyDef pattern_body(const Pattern *pattern, int64_t i) {
     BodyDef body = pattern->first;
-    if (pattern->kind != NULL)
-        body.position = pattern->kind->position(body.position, pattern->spacing, pattern->count, i);
+    const Vec2 first = body.position, spacing = pattern->spacing;
+    int row = 0;
+    if (pattern->kind == PYRAMID) {
+        for (; i >= pattern->count - row; row++) i -= pattern->count - row;
+        body.position =
+            vec2(first.x + 0.5f * spacing.x * (float)row + spacing.x * (float)i, first.y + spacing.y * (float)row);
+    } else if (pattern->kind != ONE_BODY) {
+        body.position = vec2(first.x + spacing.x * (float)i, first.y + spacing.y * (float)i);
+    }
     return body;
 }
 
@@ -150,12 +133,10 @@ static bool field_body_name(const YamlTree *tree, int node, const Field *field, 
 }
 
 static bool field_pattern(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    bool scalar = tree->nodes[node].kind == YAML_SCALAR;
-    for (const PatternKind *const *kind = pattern_kinds; scalar && *kind != NULL; kind++) {
-        if (strcmp(yaml_text(tree, node), (*kind)->name) != 0) continue;
-        *(const PatternKind **)member = *kind;
-        return true;
-    }
+    static const char *const names[] = {[ROW] = "row", [STACK] = "stack", [PYRAMID] = "pyramid"};
+    PatternKind *kind = member;
+    for (*kind = ROW; is_scalar(tree, node) && *kind <= PYRAMID; (*kind)++)
+        if (strcmp(yaml_text(tree, node), names[*kind]) == 0) return true;
     return yaml_error(tree, node, error, "%s must be row, stack or pyramid (got %s)", field->key,
                       yaml_show(tree, node).text);
 }
@@ -190,12 +171,12 @@ static bool check_keys(const YamlTree *tree, int node, const Pattern *pattern, c
         if (nodes[moving] != 0)
             return yaml_error(tree, nodes[moving], error, "a static body must not have the key '%s'",
                               body_fields[moving].key);
-    if (pattern->kind != NULL && nodes[UNTIL] != 0)
+    if (pattern->kind != ONE_BODY && nodes[UNTIL] != 0)
         return yaml_error(tree, nodes[UNTIL], error, "until is only for a single body, not for a pattern");
     for (int key = COUNT; key <= SPACING; key++) {
-        if (pattern->kind == NULL && nodes[key] != 0)
+        if (pattern->kind == ONE_BODY && nodes[key] != 0)
             return yaml_error(tree, nodes[key], error, "%s needs the key 'pattern' beside it", body_fields[key].key);
-        if (pattern->kind != NULL && nodes[key] == 0)
+        if (pattern->kind != ONE_BODY && nodes[key] == 0)
             return yaml_error(tree, node, error, "a pattern needs the key '%s'", body_fields[key].key);
     }
     return true;
@@ -207,24 +188,12 @@ static bool read_entry(const YamlTree *tree, int node, Pattern *pattern, int *no
            check_keys(tree, node, pattern, nodes, error);
 }
 
-/* Appends the names of the bodies from `first` on; the scene's array begins with its first name. */
-static bool add_names(const YamlTree *tree, const Pattern *pattern, Scene *scene, int first, Error *error) {
-    if (scene->names == NULL && pattern->name.text[0] == '\0') return true;
-    /* And one more: realloc() to nothing may return NULL. */
-    BodyName *names = realloc(scene->names, ((size_t)scene->body_count + 1) * sizeof *names);
-    if (names == NULL) return error_memory(error, tree->source.path);
-    if (scene->names == NULL) memset(names, 0, (size_t)first * sizeof *names);
-    scene->names = names;
-    for (int i = first; i < scene->body_count; i++) names[i] = pattern->name;
-    return true;
-}
-
-static bool scene_read_within(float value) { return fabsf(value) <= range_position.maximum; }
+static bool is_within(float value) { return fabsf(value) <= range_position.maximum; }
 
 /* Appends the entry's bodies. `place` is the node for errors: too many bodies, or too far away. */
 static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, Scene *scene, size_t *capacity,
                        Error *error) {
-    int64_t count = pattern_body_count(pattern);
+    int64_t count = count_bodies(pattern);
     if (count > SCENE_MAX_BODIES - scene->body_count)
         return yaml_error(tree, place, error, "a scene must have at most %d bodies (got %lld)", SCENE_MAX_BODIES,
                           (long long)scene->body_count + count);
@@ -234,12 +203,20 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
     if (!room) return error_memory(error, tree->source.path);
     for (int64_t i = 0; i < count; i++) {
         BodyDef body = pattern_body(pattern, i);
-        if (!scene_read_within(body.position.x) || !scene_read_within(body.position.y))
+        if (!is_within(body.position.x) || !is_within(body.position.y))
             return yaml_error(tree, place, error, "body %lld of the pattern is at (%g, %g), beyond %g m", (long long)i,
                               (double)body.position.x, (double)body.position.y, (double)range_position.maximum);
         scene->bodies[scene->body_count++] = body;
     }
-    return add_names(tree, pattern, scene, scene->body_count - (int)count, error);
+    if (scene->names == NULL && pattern->name.text[0] == '\0') return true;
+    /* The names, which begin with the first that is given. And one more: realloc() to nothing may return NULL. */
+    const int first = scene->body_count - (int)count;
+    BodyName *names = realloc(scene->names, ((size_t)scene->body_count + 1) * sizeof *names);
+    if (names == NULL) return error_memory(error, tree->source.path);
+    if (scene->names == NULL) memset(names, 0, (size_t)first * sizeof *names);
+    scene->names = names;
+    for (int i = first; i < scene->body_count; i++) names[i] = pattern->name;
+    return true;
 }
 
 /* Fills bodies and body_count of the Scene that member points to. */
@@ -262,25 +239,6 @@ static bool field_bodies(const YamlTree *tree, int node, const Field *field, voi
     return true;
 }
 
-/* The value's node of a key of the last body. */
-static int last_body_node(const YamlTree *tree, int node, const char *key) {
-    int entry = node + 1;
-    while (tree->nodes[entry].end < tree->nodes[node].end) entry = tree->nodes[entry].end;
-    int at = entry + 1;
-    while (strcmp(yaml_text(tree, at), key) != 0) at = tree->nodes[at + 1].end;
-    return at + 1;
-}
-
-/* Checks that a body with `until` is removed within the run, and that there is no bomb, which would take its index.
-   node: of the bodies. */
-static bool bodies_check_until(const YamlTree *tree, int node, const Scene *scene, Error *error) {
-    int until = last_body_node(tree, node, body_fields[UNTIL].key);
-    if (scene->bomb.present) return yaml_error(tree, until, error, "until cannot be combined with a bomb");
-    return scene->last_body_until <= scene->frames ||
-           yaml_error(tree, until, error, "until %d is after the last frame (frames: %d)", scene->last_body_until,
-                      scene->frames);
-}
-
 int bodies_entry(const YamlTree *tree, int node, int index) {
     int entry = node + 1;
     for (int64_t last = -1;; entry = tree->nodes[entry].end) {
@@ -288,7 +246,7 @@ int bodies_entry(const YamlTree *tree, int node, int index) {
         int nodes[FIELDS_MAX];
         Error none = {0};
         if (!read_entry(tree, entry, &pattern, nodes, &none)) return entry;
-        last += pattern_body_count(&pattern);
+        last += count_bodies(&pattern);
         if (index <= last || tree->nodes[entry].end == tree->nodes[node].end) return entry;
     }
 }
@@ -387,34 +345,6 @@ static bool field_camera(const YamlTree *tree, int node, const Field *field, voi
     return fields_read(tree, node, "a camera", fields, member, nodes, error);
 }
 
-/* Letters, digits and dashes, as in all methods' names. */
-static bool copy_method(const YamlTree *tree, int node, char *method, Error *error) {
-    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
-    size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789-");
-    if (length == 0 || text[length] != '\0' || length >= SCENE_NAME_SIZE)
-        return yaml_error(tree, node, error, "a method's name must consist of a-z, 0-9 and - (got %s)",
-                          yaml_show(tree, node).text);
-    memcpy(method, text, length + 1);
-    return true;
-}
-
-static bool has_control_character(const char *text) {
-    for (; *text != '\0'; text++)
-        if ((unsigned char)*text < 0x20 || *text == 0x7f) return true;
-    return false;
-}
-
-static bool copy_path(const YamlTree *tree, int node, char *path, Error *error) {
-    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
-    if (text[0] == '\0' || has_control_character(text))
-        return yaml_error(tree, node, error, "a network must be the path of a file (got %s)",
-                          yaml_show(tree, node).text);
-    int folder = text[0] == '/' ? 0 : (int)file_folder_length(tree->source.path);
-    int length = snprintf(path, SCENE_PATH_SIZE, "%.*s%s", folder, tree->source.path, text);
-    return (length >= 0 && length < SCENE_PATH_SIZE) ||
-           yaml_error(tree, node, error, "the path of a network must have at most %d bytes", SCENE_PATH_SIZE - 1);
-}
-
 static bool field_networks(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Scene *scene = member;
     if (tree->nodes[node].kind != YAML_MAPPING)
@@ -425,8 +355,24 @@ static bool field_networks(const YamlTree *tree, int node, const Field *field, v
         if (scene->network_count == SCENE_MAX_NETWORKS)
             return yaml_error(tree, key, error, "a scene must have at most %d networks", SCENE_MAX_NETWORKS);
         SceneNetwork *network = &scene->networks[scene->network_count];
-        if (!copy_method(tree, key, network->method, error) || !copy_path(tree, value, network->path, error))
-            return false;
+        /* Letters, digits and dashes, as in all methods' names. */
+        const char *method = is_scalar(tree, key) ? yaml_text(tree, key) : "";
+        const size_t length = strspn(method, "abcdefghijklmnopqrstuvwxyz0123456789-");
+        if (length == 0 || method[length] != '\0' || length >= SCENE_NAME_SIZE)
+            return yaml_error(tree, key, error, "a method's name must consist of a-z, 0-9 and - (got %s)",
+                              yaml_show(tree, key).text);
+        memcpy(network->method, method, length + 1);
+        const char *file = is_scalar(tree, value) ? yaml_text(tree, value) : "";
+        bool plain = file[0] != '\0';
+        for (const char *c = file; plain && *c != '\0'; c++) plain = (unsigned char)*c >= 0x20 && *c != 0x7f;
+        if (!plain)
+            return yaml_error(tree, value, error, "a network must be the path of a file (got %s)",
+                              yaml_show(tree, value).text);
+        const int folder = file[0] == '/' ? 0 : (int)file_folder_length(tree->source.path);
+        const int size = snprintf(network->path, SCENE_PATH_SIZE, "%.*s%s", folder, tree->source.path, file);
+        if (size < 0 || size >= SCENE_PATH_SIZE)
+            return yaml_error(tree, value, error, "the path of a network must have at most %d bytes",
+                              SCENE_PATH_SIZE - 1);
         if (scene_network(scene, network->method) != NULL)
             return yaml_error(tree, key, error, "key '%s' is given twice", network->method);
         scene->network_count++;
@@ -435,7 +381,7 @@ static bool field_networks(const YamlTree *tree, int node, const Field *field, v
     return true;
 }
 
-/* Parameters are read first, because other numbers may use them. */
+/* They are read first, because other numbers may use them. */
 static bool field_parameters(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     (void)node, (void)field, (void)error;
     Scene *scene = member;
@@ -461,44 +407,40 @@ static const Field scene_fields[] = {
     {"parameters", field_parameters, 0, NULL, false},
     {NULL, NULL, 0, NULL, false}};
 
-static bool read_fields(const YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {
-    int nodes[FIELDS_MAX];
-    if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error) ||
-        !common_set(scene, tree->source.path, settings, count, error))
-        return false;
-    const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
-    if (scene->last_body_until > 0 && !bodies_check_until(tree, bodies, scene, error)) return false;
-    if (scene->bomb.present && scene->bomb.frame > scene->frames)
-        return yaml_error(tree, bomb, error, "the bomb's frame %d is after the last (frames: %d)", scene->bomb.frame,
-                          scene->frames);
-    return scene->overlaps_allowed || overlaps_check(tree, bodies, bomb, scene, error);
-}
-
 static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {
     Parameters parameters;
+    int nodes[FIELDS_MAX];
     if (!parameters_read(&parameters, tree, error) ||
         !parameters_set(&parameters, tree->source.path, settings, count, error))
         return false;
     tree->context = &parameters;
-    bool ok = read_fields(tree, scene, settings, count, error) && parameters_all_used(&parameters, tree, error);
-    tree->context = NULL;
-    return ok;
-}
-
-/* The name is used in captions and file names, so it must be printable. */
-static void name_scene(Scene *scene, const char *path) {
-    char file[NAME_MAX + 1];
-    snprintf(file, sizeof file, "%s", path_is_standard(path) ? "stdin" : path + file_folder_length(path));
-    char *ending = strrchr(file, '.');
-    if (ending != NULL && ending != file) *ending = '\0';
-    source_printable(scene->name, sizeof scene->name, file);
+    if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error) ||
+        !common_set(scene, tree->source.path, settings, count, error))
+        return false;
+    const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
+    if (scene->last_body_until > 0) {
+        /* The body is removed within the run, and there is no bomb, which would take its index. */
+        int entry = bodies + 1;
+        while (tree->nodes[entry].end < tree->nodes[bodies].end) entry = tree->nodes[entry].end;
+        int key = entry + 1;
+        while (strcmp(yaml_text(tree, key), body_fields[UNTIL].key) != 0) key = tree->nodes[key + 1].end;
+        if (scene->bomb.present) return yaml_error(tree, key + 1, error, "until cannot be combined with a bomb");
+        if (scene->last_body_until > scene->frames)
+            return yaml_error(tree, key + 1, error, "until %d is after the last frame (frames: %d)",
+                              scene->last_body_until, scene->frames);
+    }
+    if (scene->bomb.present && scene->bomb.frame > scene->frames)
+        return yaml_error(tree, bomb, error, "the bomb's frame %d is after the last (frames: %d)", scene->bomb.frame,
+                          scene->frames);
+    return (scene->overlaps_allowed || overlaps_check(tree, bodies, bomb, scene, error)) &&
+           parameters_all_used(&parameters, tree, error);
 }
 
 Scene *scene_read(const char *path, Error *error) { return scene_read_with(path, NULL, 0, error); }
 
 static const char *on(bool value) { return value ? "on" : "off"; }
 
-static void scene_read_trace(const Scene *scene) {
+static void trace(const Scene *scene) {
     trace_line("scene %s: %d bodies%s, %d steps of %g s, %d iterations, warm starting %s, accumulated impulses %s, "
                "position correction %s, hash %016" PRIx64,
                scene->name, scene->body_count, scene->bomb.present ? " and a bomb" : "", scene->frames,
@@ -512,15 +454,20 @@ static void scene_read_trace(const Scene *scene) {
 }
 
 Scene *scene_of_tree(YamlTree *tree, const SceneSetting *settings, int count, Error *error) {
+    const char *path = tree->source.path;
+    char file[NAME_MAX + 1];
     Scene *scene = calloc(1, sizeof *scene);
-    if (scene == NULL) {
-        error_memory(error, tree->source.path);
-        return NULL;
-    }
+    if (scene == NULL) return error_memory(error, path), NULL;
     scene->warm_starting = scene->accumulate_impulses = scene->position_correction = true;
-    name_scene(scene, tree->source.path);
-    if (read_tree(tree, scene, settings, count, error)) {
-        scene_read_trace(scene);
+    /* The name is used in captions and file names, so it must be printable. */
+    snprintf(file, sizeof file, "%s", path_is_standard(path) ? "stdin" : path + file_folder_length(path));
+    char *ending = strrchr(file, '.');
+    if (ending != NULL && ending != file) *ending = '\0';
+    source_printable(scene->name, sizeof scene->name, file);
+    const bool ok = read_tree(tree, scene, settings, count, error);
+    tree->context = NULL;
+    if (ok) {
+        trace(scene);
         return scene;
     }
     scene_destroy(scene);

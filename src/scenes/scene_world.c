@@ -28,23 +28,17 @@ bool scene_add_bomb(const Scene *scene, World *world, Error *error) {
     return true;
 }
 
-static bool add_bodies(const Scene *scene, World *world, Error *error) {
-    for (int i = 0; i < scene->body_count; i++)
-        if (!world_add_body(world, &scene->bodies[i], error)) return false;
-    bool bomb_at_start = scene->bomb.present && scene->bomb.frame == 0;
-    return !bomb_at_start || scene_add_bomb(scene, world, error);
-}
-
 World *scene_world(const Scene *scene, Error *error) {
     const WorldDef def = {.gravity = scene->gravity,
                           .warm_starting = scene->warm_starting,
                           .position_correction = scene->position_correction};
     World *world = world_create(&def, error);
-    if (world != NULL && !add_bodies(scene, world, error)) {
-        world_destroy(world);
-        world = NULL;
-    }
-    return world;
+    bool ok = world != NULL;
+    for (int i = 0; ok && i < scene->body_count; i++) ok = world_add_body(world, &scene->bodies[i], error);
+    if (ok && scene->bomb.present && scene->bomb.frame == 0) ok = scene_add_bomb(scene, world, error);
+    if (ok) return world;
+    world_destroy(world);
+    return NULL;
 }
 
 const char *scene_network(const Scene *scene, const char *method) {

@@ -1,26 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Scenes: bodies, bomb, launches, parameters; worlds made from them; the phases of a run. */
+/* Scenes: bodies, bomb, launches, parameters; worlds made from them; the phases of a run.
+
+     Scene *scene = scene_read("scenes/stack.yaml", &error);
+     World *world = scene != NULL ? scene_world(scene, &error) : NULL; */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
 #include "engine/engine.h"
 
 #include <stdint.h>
-
-/* The phases of a run, counted from the step in which the bomb first touches a box that can move: impact (the scene
-   sets the number of frames), the 60 frames after, and all other frames. */
-
-typedef enum Phase { PHASE_IMPACT, PHASE_AFTER, PHASE_REST } Phase;
-
-enum { PHASES = PHASE_REST + 1, AFTER_FRAMES = 60 };
-
-typedef struct PhaseTracker {
-    int impact_frames; /* the scene's */
-    int touch;         /* number of the first step in which the bomb touches; 0: not yet */
-} PhaseTracker;
-
-/* The phase of step `frame`, which has this contact problem. Call it for all steps in order. */
-Phase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame);
 
 /* A scene: the state before the first step, and the bomb. Read from YAML (libyaml); constant while worlds run. SI
    units, radians, y up. */
@@ -232,3 +220,18 @@ bool launches_for_training(const Scene *scene, int count, Launch *out, Error *er
 /* The same over the midpoints of that grid, and other rotations, spins and masses: all launches are held-out. Over x =
    -5 to 5 m none is 0, where a bomb on a stack is an exact tie. */
 bool launches_for_scoring(const Scene *scene, int count, Launch *out, Error *error);
+
+/* The phases of a run, counted from the step in which the bomb first touches a box that can move: impact (the scene
+   sets the number of frames), the 60 frames after, and all other frames. */
+
+typedef enum Phase { PHASE_IMPACT, PHASE_AFTER, PHASE_REST } Phase;
+
+enum { PHASES = PHASE_REST + 1, AFTER_FRAMES = 60 };
+
+typedef struct PhaseTracker {
+    int impact_frames; /* the scene's */
+    int touch;         /* number of the first step in which the bomb touches; 0: not yet */
+} PhaseTracker;
+
+/* The phase of step `frame`, which has this contact problem. Call it for all steps in order. */
+Phase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame);

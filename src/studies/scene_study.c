@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "base/machine.h"
 #include "methods/methods.h"
+#include "runs/launch_check.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 #include "studies/chart_table.h"

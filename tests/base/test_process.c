@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "base/machine.h"
+#include "base/process.h"
 
 TEST(a_program_is_fed_and_what_it_says_comes_back) {
     Process process;

@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "base/base.h"
+#include "base/settings.h"
 
 typedef struct Values {
     int iterations;

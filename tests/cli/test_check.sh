@@ -57,27 +57,17 @@ grep -q '"pair-net": ".*networks/pair-net.npz"' out || fail "no networks: $(<out
 scene "bomb: {x: {from: -5, to: 5, value: 4}, y: 25, size: [1, 1], mass: 20, frame: 30, velocity: [0, -20]}" "$height"
 run 0 check tower.yaml -o misses.png
 says "    misses: launches from x = -4.9 to -1.25 and from 1.25 to 4.9 m strike no box (32 of 41 tried)"
-run 0 check tower.yaml -o misses.png --json
-says '"misses": {"tried": 41, "missed": 32, "x": [[-4.9'
 # What needs an impact goes on with the launches that strike.
 run 0 chart tower.yaml --quick --methods engine:k=10 -o chart
 complains "twinbox: note: tower: 4 of 5 launches strike no box; the impact is scored and timed on the others"
 says "tower: 1 method and settings, 5 launches of which 1 strikes a box"
 equal "times of the impact" "$(awk -F, '$4 == "closed" && $5 == "impact" && $7 > 0' chart/chart.csv | wc -l)" 1
-sed 's/{from: -5, to: 5, value: 4}/{from: 6, to: 9, value: 8}/' tower.yaml >beside.yaml
-run 0 check beside.yaml -o misses.png
-says "    misses: launches from x = 6.03 to 8.97 m strike no box (41 of 41 tried); chart and train refuse such a scene"
 scene "bomb: {x: 4, y: 25, size: [1, 1], mass: 20, frame: 30}" "$height"
 run 0 check tower.yaml -o misses.png
 says "    misses: the bomb strikes no box"
 sed 's/^frames: .*/frames: 200000/' tower.yaml >long.yaml
 run 0 check long.yaml -o misses.png
 says "    misses: not looked for, as the scene is large"
-
-scene "$(bomb 25)" "$height"
-run 0 check tower.yaml -o -
-cmp -s out first.png || fail "-o - does not write the picture"
-equal "the summary on standard error" "$(cat err)" "$(head -n 6 expected)"
 
 # The picture is what render draws of that frame. The path of the bomb is in it, too.
 run 0 render tower.yaml -o frames --frames 0 --size 1280x720
@@ -105,9 +95,6 @@ wrong "tower.yaml:8:5: error: body 6 starts 0.5 m inside body 1 (line 7)"
 scene "$(bomb 2)" "$height"
 wrong "tower: error: launch 82 at x = -0.95 m"
 wrong "free x: -5 to -0.99, 1 to 5"
-scene "$(bomb 12)" "$height"
-wrong "tower: error: launch 82 at x = -0.95 m"
-wrong "(with height = 20, an end of its range)"
 # Parameters that are not valid at an end.
 scene "camera: {center: [0, 0], size: [\$width, 1]}" "parameters: {height: {value: 5, from: 0, to: 6}, width: {value: 1, from: 1, to: 2}}"
 wrong "tower.yaml:7:29: error: count must be a whole number from 1 to 25000 (got 0, from \$height with height = 0)"
@@ -120,8 +107,6 @@ scene "networks: {pair-net: $scenes/networks/sain.npz}" "$height"
 wrong "sain.npz: error: "
 scene "networks: {engine: $scenes/networks/pair-net.npz}" "$height"
 wrong "pair-net.npz: error: the method engine has no network"
-scene "networks: {pear-net: $scenes/networks/pair-net.npz}" "$height"
-wrong "did you mean 'pair-net'?"
 
 # Scenes of the repository are in order (tests/scenes/test_stability.c and tests/runs/test_launch_check.c read them all).
 ! brief || finish
@@ -131,15 +116,7 @@ printf '%s\n' "gravity: [0, -10]" "dt: 1/60" "iterations: 10" "frames: 2" "bodie
     "  - {static: true, size: [10, 1], position: [0, -0.5]}" "  - {mass: 1, size: [1, 0.05], position: [0, 0.025]}" >thin.yaml
 run 0 check thin.yaml -o thin.png
 says "    size: of the smallest side, 0.05 m, contacts leave 20% as overlap (slop, 0.01 m), and a box falls by 5.56% in a step: "
-equal "lines about thin boxes" "$(grep -c '    thin:' out)" 0
-sed 's/0.05]/0.03]/; s/0.025]/0.015]/' thin.yaml >plate.yaml
-run 0 check plate.yaml -o plate.png
-says "    thin: boxes under 0.05 m that lie on one another can change places with the engine"
-run 0 check thin.yaml -o thin.png --json
-says '"size": {"smallest_side": 0.05'
 sed 's/0.05]/0.5]/; s/0.025]/0.25]/' thin.yaml >thick.yaml
 run 0 check thick.yaml -o thick.png
 equal "lines about the size" "$(grep -c size: out)" 0
-run 0 check thick.yaml -o thick.png --json
-says '"size": null'
 finish

@@ -76,24 +76,12 @@ PYTHON
 "$twinbox" simulate "$scenes/stack.yaml" --method momentum -o momentum.npz >/dev/null
 "$twinbox" simulate "$scenes/stack.yaml" --bomb-frame 299 -o late.npz >/dev/null
 "$twinbox" simulate "$scenes/stack.yaml" --frames 5 --method momentum -o short.npz >/dev/null
-"$twinbox" simulate "$scenes/stack.yaml" --frames 5 -o begin.npz >/dev/null
-"$twinbox" simulate "$scenes/single.yaml" --frames 5 -o single.npz >/dev/null
 both 0 compare engine.npz engine.npz
 check "twinbox compare runs 1" <<'PYTHON'
 assert result["passed"] is True and result["cause"] == "none"
 assert all(result[key] is None for key in ("first", "largest", "beyond", "contacts", "beyond_contacts", "growth", "shifted", "words"))
 states("equal: %d frames of %d bodies" % (result["frames"], result["expected"]["bodies"]))
 PYTHON
-both 1 compare engine.npz begin.npz
-check "twinbox compare runs 1" <<'PYTHON'
-assert result["words"] == "frames: 301 and 6" and result["frames"] == 6 and result["first"] is None
-PYTHON
-both 1 compare engine.npz single.npz
-check "twinbox compare runs 1" <<'PYTHON'
-states(result["words"] + "\n")
-assert result["passed"] is False and result["first"] is None and result["cause"] is None and result["frames"] == 0
-PYTHON
-
 both 1 compare engine.npz momentum.npz --scene "$scenes/stack.yaml" --tolerance 0.01
 check "twinbox compare runs 1" <<'PYTHON'
 for run in result["expected"], result["actual"]:
@@ -138,12 +126,6 @@ states(f"{counts['different']} of {counts['frames']} frames differ", "verdict: "
        f"first difference: {failed[0]['name']}: {failed[0]['words']}\n")
 assert result["tolerance"] == "differences above 1 in at most 0% of the pixels", result["tolerance"]
 PYTHON
-both 0 compare actual actual
-check "twinbox compare 1" <<'PYTHON'
-assert result["passed"] is True and result["counts"]["equal"] == 3 and result["verdict"] == "equal"
-assert all(run["words"] == "equal states" for run in result["trajectories"])
-PYTHON
-
 both 0 simulate "$scenes/stack.yaml" -o run.npz
 check "twinbox simulate 1" <<'PYTHON'
 states(f"{result['scene']} by {result['method']}: {result['steps']} steps of {result['dt']:.6g} s, {result['bodies']} bodies",

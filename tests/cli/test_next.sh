@@ -43,16 +43,9 @@ equal "after a run" "$(tail -1 ../said)" "next: twinbox render run.npz -o out/ru
 do_run 0 export run.npz -o run.csv
 do_run 0 import run.csv -o again.npz
 equal "after an import" "$(tail -1 ../said)" "next: twinbox render again.npz -o out/again --video out/again.mp4"
-mv "$name.yaml" other.yaml
-do_run 0 figure strip run.npz --moments 1 -o strip.png
-equal "commands after a figure without its scene" "$(next_count)" 0
-
 # Not with -q, beside JSON, or beside data on standard output.
-do_run 0 check other.yaml --json
+do_run 0 check "$name.yaml" --json
 equal "commands beside JSON" "$(next_count)" 0
 do_run 0 new -q quiet.yaml --like wall
 equal "what new -q prints" "$(cat ../said ../errors)" ""
-do_run 0 simulate other.yaml --frames 3 -o -
-equal "commands beside data" "$(next_count)" 0
-equal "commands beside data, in the errors" "$(grep -c ^next: ../errors)" 0
 finish

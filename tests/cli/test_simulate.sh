@@ -49,16 +49,14 @@ assert abs(run["position"][0, 1, 1] - 0.51) < 1e-6
 late = numpy.isnan(run["position"][:, 11, 0])
 assert not late.any()
 PYTHON
-# A run has the verdict that is printed, and has it while it is written in parts, too.
-for scene in stack stability/card_house; do
-    run 0 simulate "$scenes/$scene.yaml" -o judged.npz
-    printed=$(sed -n 's/^    verdict: //p' out)
-    /usr/bin/python3 -c "
+# A run has the verdict that is printed.
+run 0 simulate "$scenes/stack.yaml" -o judged.npz
+printed=$(sed -n 's/^    verdict: //p' out)
+/usr/bin/python3 -c "
 import numpy, sys
 run = numpy.load('judged.npz', allow_pickle=False)
 assert str(run['verdict']) == sys.argv[1] != '', (str(run['verdict']), sys.argv[1])
-assert 0 < run['verdict_frame'] < len(run['position'])" "$printed" || fail "$scene: the verdict in the run"
-done
+assert 0 < run['verdict_frame'] < len(run['position'])" "$printed" || fail "the verdict in the run"
 run 0 simulate "$scenes/single.yaml" --frames 12 --bomb-frame 5 -o late.npz
 /usr/bin/python3 -c "
 import numpy
@@ -81,8 +79,6 @@ import numpy
 run = numpy.load('gone.npz', allow_pickle=False)
 there = ~numpy.isnan(run['angle'][:, 11])
 assert there.tolist() == 600 * [True] + 11 * [False], there" || fail "a body that has gone is NaN"
-run 0 compare gone.npz gone.npz
-says "equal"
 
 # A file of the same kind is replaced, and an empty one; devices and links to files are written through.
 : >empty.npz

@@ -3,7 +3,7 @@
 #include "made.h"
 
 #include "base/file.h"
-#include "cli/larger_commands.h"
+#include "cli/judge.h"
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step; no scene file may have that speed. */
 TEST(a_run_that_overflows_has_a_verdict) {

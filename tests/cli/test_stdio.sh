@@ -8,7 +8,6 @@ sed 's/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stdin.yaml
 cp -r "$scenes/networks" networks
 run 0 simulate stdin.yaml --frames 60 -o run.npz
 run 0 simulate stdin.yaml --frames 60 --method momentum:k=3 -o other.npz
-run 0 solve stdin.yaml --frame 41 -o impact.npz
 run 0 export run.npz -o run.csv
 sed '/^#/d' run.csv >bare.csv
 sed -n 's/^# size: //p' run.csv | { echo body,width,height,static; sed 's/static$/1/; s/dynamic$/0/'; } >sizes.csv
@@ -38,31 +37,18 @@ while IFS='|' read -r command file; do
 done <<'TABLE'
 simulate @ --frames 20 -o OUT.csv|stdin.yaml
 solve @ --frame 41 -o OUT.npz -m engine|stdin.yaml
-dataset @ --launches launches.csv -o OUT.npz|stdin.yaml
 dataset stdin.yaml --launches @ -o OUT.npz|launches.csv
 compare run.npz @ --tolerance 100|other.npz
-compare @ other.npz --tolerance 10|run.npz
-compare run.npz other.npz --tolerance 10 --scene @|stdin.yaml
-compare run.npz @|run.npz
 export @ -o OUT.csv|run.npz
 import @ -o OUT.npz|run.csv
 import bare.csv --sizes @ --dt 1/60 -o OUT.npz|sizes.csv
-solve @ -m engine|impact.npz
 figure strip @ --moments 2 -o OUT.svg|run.npz
 figure strip run.npz --moments 2 --view-from @ -o OUT.svg|other.npz
-figure divergence run.npz other.npz --scene @ -o OUT.svg|stdin.yaml
 TABLE
-"$twinbox" train - --iterations 5 -o piped.npz <pairs.npz >out 2>err || fail "train -: $(head -c 300 err)"
 "$twinbox" train pairs.npz --iterations 5 --from - -o more.npz <net.npz >out 2>err || fail "train --from -: $(head -c 300 err)"
-
-# Drawn frames: from a run, a scene, and another run's view.
 run 0 render run.npz --frames 0:1 --size 320x180 -o frames
 "$twinbox" render - --frames 0:1 --size 320x180 -o frames_run <run.npz >out 2>err || fail "render a run from -"
 cmp -s frames/frame_000001.png frames_run/frame_000001.png || fail "render - draws another frame"
-"$twinbox" render - --frames 0:1 --size 320x180 -o frames_scene <stdin.yaml >out 2>err || fail "render a scene from -"
-"$twinbox" render run.npz --view-from - --frames 0:1 --size 320x180 -o frames_view <run.npz >out 2>err ||
-    fail "render --view-from -"
-cmp -s frames/frame_000001.png frames_view/frame_000001.png || fail "--view-from - gives another view"
 
 # A page names the file of its run, so that the command it copies finds it.
 "$twinbox" page - -o - <run.npz 2>err | grep -q "^<title>Stdin: engine" || fail "page - -o -: $(head -c 300 err)"
@@ -82,22 +68,13 @@ while IFS='|' read -r command file; do
     checks=$((checks + 1))
 done <<'TABLE'
 simulate stdin.yaml --frames 20 -o @|a.npz
-simulate stdin.yaml --frames 20 --hash @|a.hash
 simulate stdin.yaml --frames 20 --verdict @|a.json
-solve stdin.yaml --frame 41 -o @|b.npz
-dataset stdin.yaml --launches launches.csv -o @|c.npz
 export run.npz -o @|b.csv
-import run.csv -o @|d.npz
 figure strip run.npz --moments 2 -o @|a.svg
 page run.npz other.npz -o @|a.html
 check stdin.yaml -o @|a.png
 new @ --like wall|wall.yaml
 TABLE
-"$twinbox" compare run.npz other.npz --csv - >written 2>err
-run 1 compare run.npz other.npz --csv far.csv
-cmp -s written far.csv || fail "compare --csv -"
-"$twinbox" train pairs.npz --iterations 5 -o - >written 2>err || fail "train -o -"
-"$twinbox" train pairs.npz --iterations 5 --from written -o more.npz >out 2>err || fail "the network that train wrote to -: $(head -c 300 err)"
 "$twinbox" simulate stdin.yaml --frames 20 -o - 2>err >written
 complains "stdin by engine: 20 steps"
 
@@ -117,7 +94,5 @@ complains "--json: error: cannot be combined with a file written to standard out
 equal "status where standard output is full" $? 3
 script -qec "'$twinbox' simulate stdin.yaml --frames 5 -o - 2>err" /dev/null >terminal
 complains "binary data cannot go to a terminal"
-script -qec "'$twinbox' simulate stdin.yaml --frames 5 --hash - 2>err" /dev/null | grep -q '^frame,hash' ||
-    fail "text does not go to a terminal"
 
 finish

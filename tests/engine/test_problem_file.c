@@ -2,7 +2,7 @@
 /* Contact problems in files: they come back bit by bit, and what is inconsistent is refused. */
 #include "testing.h"
 
-#include "runs/runs.h"
+#include "runs/problem_file.h"
 
 enum { BODIES = 3, CONTACTS = 3 };
 

@@ -4,7 +4,7 @@
 #include "files.h"
 
 #include "base/hash.h"
-#include "base/machine.h"
+#include "base/process.h"
 #include "figures/sketch_writers.h"
 #include "pixels/type.h"
 

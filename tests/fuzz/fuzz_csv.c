@@ -3,6 +3,7 @@
 #include "fuzz.h"
 
 #include "paper/paper_tables.h"
+#include "runs/run_files.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 #include "studies/chart_table.h"

@@ -3,11 +3,11 @@
 #include "fuzz.h"
 
 #include "learning/dataset.h"
-#include "runs/runs.h"
+#include "runs/problem_file.h"
+#include "runs/trajectory.h"
 #include "fuzz_archive.h"
 #include "base/npz.h"
 #include "methods/methods.h"
-#include "runs/trajectory.h"
 
 #include <math.h>
 #include <stdlib.h>

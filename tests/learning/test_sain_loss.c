@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "base/base.h"
+#include "base/random.h"
 #include "learning/sain_fit.h"
 
 enum { SAMPLES = 40, ROWS = 3 * SAMPLES };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The functions of the module, linked to this program: runs are those of simulate(), and damaged bundles are refused.
    Networks come from files here, and the archives of bundles are called by other names. */
+#include "base/random.h"
 #include "made.h"
 #include "sanitized.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Networks of pairs for tests, and the solvers that use them. */
 #pragma once
+#include "base/settings.h"
 #include "made.h"
 #include "worlds.h"
 

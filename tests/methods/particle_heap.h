@@ -4,6 +4,7 @@
 #include "testing.h"
 
 #include "base/base.h"
+#include "base/random.h"
 #include "methods/gns_graph.h"
 
 enum { HEAP_BODIES = 7, HEAP_PARTICLES = HEAP_BODIES * BOX_PARTICLES };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The settings of a method, given or not. */
+#include "base/settings.h"
 #include "made.h"
 
 #include "methods/sweeps.h"

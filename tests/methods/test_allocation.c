@@ -7,6 +7,7 @@
 
 #include "methods/sain.h"
 #include "methods/scene_net.h"
+#include "base/settings.h"
 
 static World *make_pyramid(void) {
     World *world = make_world();

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file may hold, and which solver takes it. */
+#include "base/settings.h"
 #include "pair_networks.h"
 
 TEST(texts_that_do_not_fit_each_other_are_refused) {

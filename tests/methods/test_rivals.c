@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws that every contact solver of the registry must keep that needs no program and no network. */
+#include "base/settings.h"
 #include "consistent.h"
 #include "kernels.h"
 

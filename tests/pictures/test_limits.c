@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a page leaves out, and what is refused. Runs of noise, which does not pack. */
+#include "base/random.h"
 #include "made.h"
 #include "files.h"
 

@@ -3,6 +3,7 @@
 #include "made.h"
 
 #include "base/machine.h"
+#include "base/process.h"
 #include "files.h"
 #include "mesa.h"
 #include "pictures/render.h"

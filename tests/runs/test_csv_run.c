@@ -4,6 +4,8 @@
 #include "owned.h"
 
 #include "example.h"
+#include "runs/compare_runs.h"
+#include "runs/run_files.h"
 #include "runs/trajectory.h"
 
 static const CsvRunOptions defaults = {.name = "file"};

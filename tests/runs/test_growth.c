@@ -2,6 +2,9 @@
 /* Growth of a distance: exponentials, whose rate is known. */
 #include "made.h"
 #include "files.h"
+#include "runs/compare_runs.h"
+#include "runs/divergence.h"
+#include "runs/trajectory.h"
 
 enum { FRAMES = 200 };
 

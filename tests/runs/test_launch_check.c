@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Launches whose bomb would start inside a body are refused, where the bodies are when it is added. */
 #include "made.h"
+#include "runs/launch_check.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
 
 #include <glob.h>
 

@@ -3,6 +3,7 @@
 #include "made.h"
 
 #include "runs/runs.h"
+#include "runs/trajectory.h"
 #include "runs/verdict.h"
 
 /* Both verdicts, in words. */

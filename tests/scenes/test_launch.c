@@ -85,13 +85,8 @@ TEST(broken_launches_are_refused_with_their_place) {
         CASE("x\n1\n\0\n", "3:1: error: control character 0x00"),
         CASE("x,spin\n,1\n", "2:1: error: x: the field is empty"),
         CASE("x\n2e6\n", "2:1: error: x: '2e6' is greater than 1e+06"),
-        CASE("rotation\n1e5\n", "2:1: error: rotation: '1e5' is greater than 10000"),
-        CASE("spin\n-1e5\n", "2:1: error: spin: '-1e5' is less than -10000"),
         CASE("mass\n0\n", "2:1: error: mass: '0' is less than 1e-06"),
-        CASE("mass\n1e10\n", "2:1: error: mass: '1e10' is greater than 1e+09"),
         CASE("frame\n1.5\n", "2:1: error: frame: '1.5' is not a whole number"),
-        CASE("frame\n-1\n", "2:1: error: frame: '-1' is less than 0"),
-        CASE("frame\n1000001\n", "2:1: error: frame: '1000001' is greater than 1e+06"),
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         LaunchTable table;

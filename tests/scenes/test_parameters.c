@@ -129,29 +129,24 @@ static Scene *set_one(const char *text, const char *name, double value) {
     return scene;
 }
 
+static double value_of(const Scene *scene, const char *name) {
+    const SceneParameters all = scene_parameters(scene);
+    return scene_parameter(&all, name)->value;
+}
+
 TEST(what_every_scene_has_can_be_set) {
-    Scene *scene = set_one(BOMBED("[3, -4]"), "iterations", 7);
-    assert_int_equal(scene->iterations, 7);
-    scene_destroy(scene);
-    scene = set_one(BOMBED("[3, -4]"), "friction", 0.75);
-    assert_true(scene->bodies[0].friction == 0.75F && scene->bomb.friction == 0.75F);
-    scene_destroy(scene);
-    scene = set_one(BOMBED("[3, -4]"), "bomb_x", -2.5);
-    assert_near(scene->bomb.x.value, -2.5, 0);
-    scene_destroy(scene);
-    scene = set_one(BOMBED("[3, -4]"), "bomb_y", 8.25);
-    assert_near(scene->bomb.y, 8.25, 0);
-    scene_destroy(scene);
-    scene = set_one(BOMBED("[3, -4]"), "bomb_mass", 40);
-    assert_near(scene->bomb.mass.value, 40, 0);
-    scene_destroy(scene);
-    scene = set_one(BOMBED("[3, -4]"), "bomb_speed", 10);
-    assert_near(scene_bomb_body(scene).velocity.x, 6, 1e-6);
-    assert_near(scene_bomb_body(scene).velocity.y, -8, 1e-6);
-    scene_destroy(scene);
-    scene = set_one(BOMBED("{times_position: -1}"), "bomb_speed", 0.5);
-    assert_near(vec2_distance(scene_bomb_body(scene).velocity, vec2(0, 0)), 0.5, 1e-6);
-    scene_destroy(scene);
+    static const SceneSetting settings[] = {{"iterations", 7}, {"friction", 0.75}, {"bomb_x", -2.5},
+                                            {"bomb_y", 8.25},  {"bomb_mass", 40},  {"bomb_speed", 10}};
+    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) {
+        OWN(Scene) *scene = set_one(BOMBED("[3, -4]"), settings[i].name, settings[i].value);
+        assert_near(value_of(scene, settings[i].name), settings[i].value, 1e-6);
+    }
+    OWN(Scene) *fast = set_one(BOMBED("[3, -4]"), "bomb_speed", 10);
+    assert_near(scene_bomb_body(fast).velocity.x, 6, 1e-6);
+    OWN(Scene) *lawful = set_one(BOMBED("{times_position: -1}"), "bomb_speed", 0.5);
+    assert_near(vec2_distance(scene_bomb_body(lawful).velocity, vec2(0, 0)), 0.5, 1e-6);
+    OWN(Scene) *rough = set_one(BOMBED("[3, -4]"), "friction", 0.75);
+    assert_true(rough->bodies[0].friction == 0.75F && rough->bomb.friction == 0.75F);
 }
 
 TEST(settings_are_read_from_text) {
@@ -210,57 +205,27 @@ TEST(a_value_in_its_bounds_may_be_refused) {
 #define OPERATOR ": an operator or the end is expected here (got "
 
 static const Refused expressions[] = {
-    {SCENE("0*$height"), "6:44: error: mass must be greater than 0 (got 0 kg, from 0*$height with height = 10 boxes)"},
     {SCENE("1e9*$height"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+10 kg, from 1e9*$height with "
                            "height = 10 boxes)"},
-    {SCENE("1e38*$height*10"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+40 kg, from 1e38*$height*10 "
-                               "with height = 10 boxes)"},
     {SCENE("2 - $height"),
      "6:44: error: mass must be greater than 0 (got -8 kg, from 2 - $height with height = 10 boxes)"},
-    {SCENE("0/$height"), "6:44: error: mass must be greater than 0 (got 0 kg, from 0/$height with height = 10 boxes)"},
     {SCENE("$height/0"), "6:51: error: mass is divided by 0 (got $height/0 with height = 10 boxes)"},
-    {SCENE("1/0*$height"), "6:45: error: mass is divided by 0 (got 1/0*$height with height = 10 boxes)"},
     {SCENE("1/($height - 10)"), "6:45: error: mass is divided by 0 (got 1/($height - 10) with height = 10 boxes)"},
-    {SCENE("1/1e-400"), "6:45: error: mass is divided by 0 (got 1/1e-400)"},
-    {SCENE("$"), "6:44: error: mass: a parameter's name must follow the '$' (got $)"},
     {SCENE("2*$"), "6:46: error: mass: a parameter's name must follow the '$' (got 2*$)"},
-    {SCENE("$*2"), "6:44: error: mass: a parameter's name must follow the '$' (got $*2)"},
-    {SCENE("$Height"), "6:44: error: mass: a parameter's name must follow the '$' (got $Height)"},
     {SCENE("2*$hieght"), "6:46: error: mass: '$hieght' is not a parameter; did you mean 'height'?"},
     {SCENE("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: height, ratio"},
     {MASS("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: none"},
-    {MASS("$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"),
-     "6:44: error: mass: '$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa' is not a parameter; known: none"},
     {SCENE("2*"), "6:46: error: mass" OPERAND "2*)"},
     {SCENE("'*2'"), "6:45: error: mass" OPERAND "*2)"},
-    {SCENE("2**3"), "6:46: error: mass" OPERAND "2**3)"},
-    {SCENE("2//3"), "6:46: error: mass" OPERAND "2//3)"},
-    {SCENE("2 + "), "6:47: error: mass" OPERAND "2 +)"},
-    {SCENE("2 * * 3"), "6:48: error: mass" OPERAND "2 * * 3)"},
-    {SCENE("()"), "6:45: error: mass" OPERAND "())"},
     {SCENE("2$height"), "6:45: error: mass" OPERATOR "2$height with height = 10 boxes)"},
-    {SCENE("2 3*$height"), "6:46: error: mass" OPERATOR "2 3*$height with height = 10 boxes)"},
-    {SCENE("$height$ratio"), "6:51: error: mass" OPERATOR "$height$ratio with height = 10 boxes, ratio = 0.1)"},
-    {SCENE("(2)3"), "6:47: error: mass" OPERATOR "(2)3)"},
-    {SCENE("2*3)"), "6:47: error: mass" OPERATOR "2*3))"},
-    {SCENE("$height^2"), "6:51: error: mass" OPERATOR "$height^2 with height = 10 boxes)"},
     {SCENE("2*(3+4"), "6:50: error: mass: an operator or ')' is expected here (got 2*(3+4)"},
-    {SCENE("2*inf"), "6:46: error: mass" OPERAND "2*inf)"},
-    {SCENE("2*abs(3)"), "6:46: error: mass" OPERAND "2*abs(3))"},
-    {SCENE("1e308*1e308"), "6:44: error: mass" OPERAND "1e308*1e308)"},
     {SCENE(EIGHT("1e38*") "1e38"), "6:83: error: mass has an intermediate result that is infinite (got "
                                    "1e38*1e38*1e38*1e38*1e38*1e38*1e38*1e38*1...)"},
-    {SCENE(EIGHT("1*1*") EIGHT("1*1*") "1"),
-     "6:108: error: mass: an expression has too many numbers, signs and parentheses (got "
-     "1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1...)"},
     {SCENE(EIGHT(EIGHT(EIGHT("(((("))) "1"),
      "6:76: error: mass: an expression has too many numbers, signs and parentheses (got "
      "(((((((((((((((((((((((((((((((((((((((((...)"},
     {SCENE(EIGHT(EIGHT("(-")) "1"), "6:76: error: mass: an expression has too many numbers, signs and parentheses (got "
                                     "(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(...)"},
-    {BODY("size: [1, $height], mass: 1, position: [0, 0]"),
-     "6:16: error: size: '$height' is not a parameter; known: none"},
-    /* A text that is written otherwise than it is has the place of its begin. */
     {SCENE("\"\\x32*$speed\""), "6:45: error: mass: '$speed' is not a parameter; known: height, ratio"},
 };
 
@@ -279,16 +244,9 @@ TEST(the_caret_is_under_what_is_wrong) {
 static const Refused whole_numbers[] = {
     {WHOLE("frames: 3*$half"),
      "2:9: error: frames must be a whole number from 1 to 1000000 (got 1.5, from 3*$half with half = 0.5)"},
-    {WHOLE("frames: 0*$half"),
-     "2:9: error: frames must be a whole number from 1 to 1000000 (got 0, from 0*$half with half = 0.5)"},
     {WHOLE("iterations: 2*$big"),
      "2:13: error: iterations must be a whole number from 1 to 1000000 (got 2000000, from 2*$big with big = 1000000)"},
-    {WHOLE("iterations: $big*$big*$big*$big"),
-     "2:13: error: iterations must be a whole number from 1 to 1000000 (got 1e+24, from $big*$big*$big*$big with big = "
-     "1000000)"},
-    {WHOLE("iterations: 1/0"), "2:14: error: iterations is divided by 0 (got 1/0)"},
     {WHOLE("iterations: 2*$haf"), "2:15: error: iterations: '$haf' is not a parameter; did you mean 'half'?"},
-    {WHOLE("dt: $half*$half*$half"), "1:1: error: a scene needs the key 'iterations'"},
 };
 
 #define PARAMETERS(text) BASE GROUND "parameters:\n  " text "\n"
@@ -297,31 +255,19 @@ static const Refused whole_numbers[] = {
 
 static const Refused parameters[] = {
     {BASE GROUND "parameters: 3\n", "7:13: error: parameters must be a mapping of names to values (got 3)"},
-    {BASE GROUND "parameters:\n", "7:1: error: parameters must be a mapping of names to values (got nothing)"},
     {BASE GROUND "parameters: {}\nparameters: {}\n", "8:1: error: key 'parameters' is given twice"},
     {BASE GROUND "parameters: {}\n", NULL},
-    {PARAMETERS("a: 3"), "8:6: error: a parameter must be a mapping of keys to values (got 3)"},
     {PARAMETERS("A: {value: 1, from: 0, to: 2}"),
      "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got A)"},
-    {PARAMETERS("[a]: {value: 1, from: 0, to: 2}"),
-     "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got a list)"},
     {PARAMETERS(NAME_32 ": {value: 1, from: 0, to: 2}"),
      "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got " NAME_32 ")"},
     {ONE("value: 1, from: 0"), "8:6: error: a parameter needs the key 'to'"},
     {ONE("value: 1, form: 0"), "8:17: error: 'form' is not a key of a parameter; did you mean 'from'?"},
-    {ONE("value: 1, from: 2, to: 3"), "8:14: error: value must be from 2 to 3 (got 1)"},
     {ONE("value: 1/2, from: 0.75, to: 3"), "8:14: error: value must be from 0.75 to 3 (got 0.5, from 1/2)"},
-    {ONE("value: 1, from: 3, to: 0"), "8:14: error: value must be from 3 to 0 (got 1)"},
     {ONE("value: x, from: 3, to: 0"), "8:14: error: value must be a number (got x)"},
-    {ONE("value: [1], from: 3, to: 0"), "8:14: error: value must be a number (got a list)"},
-    {ONE("value: .nan, from: 3, to: 0"), "8:14: error: value must be a number (got .nan)"},
-    {ONE("value: 1e999, from: 3, to: 0"), "8:14: error: value must be a number (got 1e999)"},
     {ONE("value: 1, from: $a, to: 3"), "8:23: error: from must not contain parameters (got $a)"},
     {ONE("value: 1.5, from: 1, to: 2, whole: on"),
      "8:14: error: value must be a whole number, because whole is on (got 1.5)"},
-    {ONE("value: 1, from: 1, to: 2.5, whole: on"),
-     "8:30: error: to must be a whole number, because whole is on (got 2.5)"},
-    {ONE("value: 1, from: 1, to: 2, unit: [m]"), "8:39: error: unit must be a text of at most 24 bytes (got a list)"},
     {ONE("value: 1, from: 1, to: 2, unit: " NAME_32),
      "8:39: error: unit must be a text of at most 24 bytes (got " NAME_32 ")"},
     {ONE("value: 1, from: 0, to: 2"), "8:3: error: no number of the scene uses the parameter '$a'"},

@@ -11,85 +11,49 @@ static const Refused keys[] = {
     {BASE, "1:1: error: a scene needs the key 'bodies'"},
     {GROUND, "1:1: error: a scene needs the key 'gravity'"},
     {"hello\n", "1:1: error: a scene must be a mapping of keys to values (got hello)"},
-    {"- 1\n", "1:1: error: a scene must be a mapping of keys to values (got a list)"},
     {BASE GROUND "gravty: 1\n", "7:1: error: 'gravty' is not a key of a scene; did you mean 'gravity'?"},
-    {BASE GROUND "colour: red\n", "7:1: error: 'colour' is not a key of a scene; known: " SCENE_KEYS},
     {BASE GROUND "\"a\\eb\": red\n", "7:2: error: 'a?b' is not a key of a scene; known: " SCENE_KEYS},
     {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is given twice"},
     {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
     {BASE GROUND ": 1\n", "7:1: error: expected a key; check the indentation"},
     {BASE GROUND "\"\": 1\n", "7:2: error: a key must be a word"},
     {BODY("massa: 1"), "6:6: error: 'massa' is not a key of a body; did you mean 'mass'?"},
-    {BODY("frictoin: 1"), "6:6: error: 'frictoin' is not a key of a body; did you mean 'friction'?"},
-    {BODY(BOX ", mass: 1"), "6:47: error: key 'mass' is given twice"},
     {BODY("mass: 1, position: [0, 0]"), "6:5: error: a body needs the key 'size'"},
-    {BODY("size: [1, 1], mass: 1"), "6:5: error: a body needs the key 'position'"},
     {BASE "bodies:\n  - box\n", "6:5: error: a body must be a mapping of keys to values (got box)"},
     {BASE "bodies:\n", "5:1: error: bodies must be a list of at least one body (got nothing)"},
     {BASE "bodies: []\n", "5:9: error: bodies must be a list of at least one body (got none)"},
-    {BASE "bodies: {}\n", "5:9: error: bodies must be a list of at least one body (got a mapping)"},
 };
 
 static const Refused numbers[] = {
     {"gravity: 10\n", "1:10: error: gravity must be a list of two numbers (got 10)"},
-    {"gravity: [10]\n", "1:10: error: gravity must be a list of two numbers (got 1)"},
-    {"gravity: [1, 2, 3]\n", "1:10: error: gravity must be a list of two numbers (got 3)"},
     {"gravity: [0, [1]]\n", "1:14: error: gravity must be a number (got a list)"},
     {"gravity: [0, -1e5]\n", "1:14: error: gravity must be from -10000 to 10000 m/s^2 (got -1e5)"},
     {"gravity: [0, .nan]\n", "1:14: error: gravity must be a number (got .nan)"},
-    {"gravity: [.inf, 0]\n", "1:11: error: gravity must be a number (got .inf)"},
     {"dt: NaN\n", "1:5: error: dt must be a number (got NaN)"},
-    {"dt: inf\n", "1:5: error: dt must be a number (got inf)"},
-    {"dt: 1e999\n", "1:5: error: dt must be a number (got 1e999)"},
-    {"dt: 1/0\n", "1:6: error: dt is divided by 0 (got 1/0)"},
-    {"dt: 0x1p-6\n", "1:6: error: dt: an operator or the end is expected here (got 0x1p-6)"},
-    {"dt: 1 60\n", "1:5: error: dt must be a number (got 1 60)"},
     {"dt:\n", "1:1: error: dt must be a number (got nothing)"},
-    {"dt: 0\n", "1:5: error: dt must be greater than 0 (got 0)"},
     {"dt: -1/60\n", "1:5: error: dt must be greater than 0 (got -0.0166666675 s, from -1/60)"},
     {"dt: 2\n", "1:5: error: dt must be from 1e-05 to 1 s (got 2)"},
-    {"dt: 1e-6\n", "1:5: error: dt must be from 1e-05 to 1 s (got 1e-6)"},
-    {"iterations: 0\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 0)"},
     {"iterations: 2.5\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 2.5)"},
     {"iterations: 1000001\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 1000001)"},
-    {"iterations: 99999999999999999999\n",
-     "1:13: error: iterations must be a whole number from 1 to 1000000 (got 99999999999999999999)"},
     {"frames: [1]\n", "1:9: error: frames must be a whole number from 1 to 1000000 (got a list)"},
     {"warm_starting: maybe\n", "1:16: error: warm_starting must be on or off (got maybe)"},
-    {"warm_starting: [on]\n", "1:16: error: warm_starting must be on or off (got a list)"},
     {"camera: {center: [0, 0]}\n", "1:9: error: a camera needs the key 'size'"},
-    {"camera: {size: [0, 1]}\n", "1:17: error: size must be greater than 0 (got 0)"},
-    {"camera: {zoom: 1}\n", "1:10: error: 'zoom' is not a key of a camera; known: center, size"},
     {"dt: " TEXT_64 "\n", "1:5: error: dt must be a number (got aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
 };
 
 static const Refused bodies[] = {
     {BODY("size: [1, 1], mass: -10, position: [0, 0]"), "6:26: error: mass must be greater than 0 (got -10)"},
-    {BODY("size: [1, 1], mass: 1e10, position: [0, 0]"), "6:26: error: mass must be from 1e-06 to 1e+09 kg (got 1e10)"},
-    {BODY("size: [1, 1], mass: {a: 1}, position: [0, 0]"), "6:26: error: mass must be a number (got a mapping)"},
     {BODY("size: [1, 0]"), "6:16: error: size must be greater than 0 (got 0)"},
-    {BODY("size: [-1, 1]"), "6:13: error: size must be greater than 0 (got -1)"},
-    {BODY("size: [1, 1e5]"), "6:16: error: size must be from 0.001 to 10000 m (got 1e5)"},
     {BODY("position: [0, 2e6]"), "6:20: error: position must be from -1e+06 to 1e+06 m (got 2e6)"},
-    {BODY("angle: 1e5"), "6:13: error: angle must be from -10000 to 10000 rad (got 1e5)"},
-    {BODY("velocity: [1e5, 0]"), "6:17: error: velocity must be from -10000 to 10000 m/s (got 1e5)"},
-    {BODY("spin: 1e5"), "6:12: error: spin must be from -10000 to 10000 rad/s (got 1e5)"},
     {BODY("friction: -0.1"), "6:16: error: friction must be from 0 to 10 (got -0.1)"},
-    {BODY("friction: 11"), "6:16: error: friction must be from 0 to 10 (got 11)"},
     {BODY("size: [1, 1], position: [0, 0]"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
-    {BODY("size: [1, 1], position: [0, 0], static: off"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
     {BODY(BOX ", static: true"), "6:26: error: a static body must not have a mass"},
     {BODY("static: on, size: [1, 1], position: [0, 0], velocity: [0, 0]"),
      "6:60: error: a static body must not have the key 'velocity'"},
-    {BODY("static: on, size: [1, 1], position: [0, 0], spin: 1"),
-     "6:56: error: a static body must not have the key 'spin'"},
     {BODY(BOX ", pattern: heap"), "6:56: error: pattern must be row, stack or pyramid (got heap)"},
-    {BODY(BOX ", pattern: [row]"), "6:56: error: pattern must be row, stack or pyramid (got a list)"},
     {BODY(BOX ", pattern: row, count: 3"), "6:5: error: a pattern needs the key 'spacing'"},
     {BODY(BOX ", pattern: row, spacing: [1, 1]"), "6:5: error: a pattern needs the key 'count'"},
     {BODY(BOX ", count: 3"), "6:54: error: count needs the key 'pattern' beside it"},
-    {BODY(BOX ", spacing: [1, 1]"), "6:56: error: spacing needs the key 'pattern' beside it"},
-    {BODY(BOX ", pattern: row, count: 0"), "6:68: error: count must be a whole number from 1 to 25000 (got 0)"},
     {BODY(BOX ", pattern: row, count: 3, spacing: [0, 5e5]"), NULL}, /* 0, 5e5, 1e6: just within reach */
     {BODY(BOX ", pattern: row, count: 4, spacing: [0, 5e5]"),
      "6:68: error: body 3 of the pattern is at (0, 1.5e+06), beyond 1e+06 m"},
@@ -101,18 +65,15 @@ static const Refused bodies[] = {
 static const Refused names[] = {
     {BODY(BOX ", name: " TEXT_31), NULL},
     {BODY(BOX ", name: 7"), NULL},
-    {BODY(BOX ", name: " TEXT_31 "a"), NAME_IS "(got " TEXT_31 "a)"},
     {BODY(BOX ", name: " TEXT_31 "\xc3\xa4"), NAME_IS "(got " TEXT_31 "\xc3\xa4)"},
     {BODY(BOX ", name: \"\""),
      "6:54: error: name must be a text of 1 to 31 bytes without control characters (got nothing)"},
     {BODY(BOX ", name: [a]"), NAME_IS "(got a list)"},
-    {BODY(BOX ", name: {a: b}"), NAME_IS "(got a mapping)"},
     {BODY(BOX ", name: \"a\\nb\""),
      "6:54: error: name must be a text of 1 to 31 bytes without control characters (got a?b)"},
     {BODY(BOX ", name: a\xe2\x80\xae"
               "b"),
      NAME_IS "(got a?b)"},
-    {BODY(BOX ", name: a, name: b"), "6:56: error: key 'name' is given twice"},
 };
 
 static const Refused untils[] = {
@@ -135,16 +96,9 @@ static const Refused bombs[] = {
     {BASE GROUND "bomb: {y: 1}\n", "7:7: error: a bomb needs the key 'x'"},
     {BASE GROUND "bomb: {" BOMB ", angle: 1}\n", "7:45: error: 'angle' is not a key of a bomb; known: x, y, size, "
                                                  "mass, friction, rotation, spin, frame, velocity, impact_frames"},
-    {BASE GROUND "bomb: {" BOMB ", frame: -1}\n",
-     "7:52: error: frame must be a whole number from 0 to 1000000 (got -1)"},
     {BASE GROUND "bomb: {" BOMB ", frame: 300}\n", NULL},
     {BASE GROUND "bomb: {" BOMB ", frame: 301}\n", "7:7: error: the bomb's frame 301 is after the last (frames: 300)"},
-    {BASE GROUND "bomb: {" BOMB ", impact_frames: 0}\n",
-     "7:60: error: impact_frames must be a whole number from 1 to 1000000 (got 0)"},
-    {BASE GROUND "bomb: {" BOMB ", velocity: 3}\n", "7:55: error: velocity must be a list of two numbers (got 3)"},
     {BASE GROUND "bomb: {" BOMB ", velocity: {}}\n", "7:55: error: a velocity law needs the key 'times_position'"},
-    {BASE GROUND "bomb: {" BOMB ", velocity: {times: 3}}\n",
-     "7:56: error: 'times' is not a key of a velocity law; known: times_position"},
     {BASE GROUND "bomb: {" BOMB ", velocity: {times_position: 1000}}\n",
      "7:55: error: the bomb's start velocity is (1000, 15000) m/s; the largest allowed component is 10000"},
 };
@@ -157,18 +111,9 @@ static const Refused families[] = {
      NULL},
     {FAMILY("{from: -5}", "mass: 50"), "7:11: error: a family of launches needs the key 'to'"},
     {FAMILY("{from: 5, to: -5}", "mass: 50"), "7:18: error: x: from must be less than to (got 5 and -5)"},
-    {FAMILY("{from: 5, to: 5}", "mass: 50"), "7:18: error: x: from must be less than to (got 5 and 5)"},
     {FAMILY("{from: .nan, to: 5}", "mass: 50"), "7:18: error: from must be a number (got .nan)"},
-    {FAMILY("{from: -5, to: .inf}", "mass: 50"), "7:26: error: to must be a number (got .inf)"},
-    {FAMILY("{from: -2e6, to: 5}", "mass: 50"), "7:18: error: from must be from -1e+06 to 1e+06 m (got -2e6)"},
     {FAMILY("{from: -5, to: 5, value: 6}", "mass: 50"), "7:36: error: x: value must be from -5 to 5 (got 6)"},
-    {FAMILY("{from: -5, to: 5, step: 1}", "mass: 50"),
-     "7:29: error: 'step' is not a key of a family of launches; known: from, to, value"},
-    {FAMILY("[-5, 5]", "mass: 50"), "7:11: error: x must be a number (got a list)"},
     {FAMILY("1", "mass: {from: 0, to: 50}"), "7:48: error: from must be greater than 0 (got 0)"},
-    {FAMILY("1", "mass: 50, frame: {from: 1, to: 2}"),
-     "7:52: error: frame must be a whole number from 0 to 1000000 (got a mapping)"},
-    /* The end of the family that is farthest away is the fastest. */
     {FAMILY("{from: -5, to: 9000}", "mass: 50, velocity: {times_position: -1.5}"),
      "7:74: error: the bomb's start velocity is (-13500, -22.5) m/s; the largest allowed component is 10000"},
 };
@@ -177,7 +122,6 @@ static const Refused networks[] = {
     {BASE GROUND "networks: x.npz\n", "7:11: error: networks must be a mapping of methods to files (got x.npz)"},
     {BASE GROUND "networks: {Pair: x.npz}\n", "7:12: error: a method's name must consist of a-z, 0-9 and - (got Pair)"},
     {BASE GROUND "networks: {a: [b]}\n", "7:15: error: a network must be the path of a file (got a list)"},
-    {BASE GROUND "networks: {a: \"\"}\n", "7:16: error: a network must be the path of a file (got nothing)"},
     {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network must be the path of a file (got b?c)"},
     {BASE GROUND "networks: {a: b, a: c}\n", "7:18: error: key 'a' is given twice"},
     {BASE GROUND "networks: {a: b, b: b, c: b, d: b, e: b, f: b, g: b, h: b, "
@@ -185,34 +129,21 @@ static const Refused networks[] = {
      "7:108: error: a scene must have at most 16 networks"},
     {BASE GROUND "networks: {a: " TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 "}\n",
      "7:15: error: the path of a network must have at most 511 bytes"},
-    {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n",
-     "7:12: error: a method's name must consist of a-z, 0-9 and - (got "
-     "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
 };
 
 static const Refused yaml[] = {
     {"a: &x 1\n", "1:4: error: anchors (&) are not allowed"},
     {"a: *x\n", "1:4: error: aliases (*) are not allowed"},
     {"a: !x 1\n", "1:4: error: tags (!) are not allowed"},
-    {"a: !!float 1\n", "1:4: error: tags (!) are not allowed"},
-    {BASE GROUND "<<: {dt: 1}\n", "7:1: error: '<<' is not a key of a scene; known: " SCENE_KEYS},
     {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed"},
     {BASE GROUND "---\n" BASE GROUND, "7:1: error: a file must hold one document only"},
     {"a: \"\\0\"\n", "1:5: error: a text must not contain the character \\0"},
     {"a: \x01\n", "1:4: error: control character 0x01"},
-    {"a: \xc2\x85\n", "1:4: error: the character U+0085 is not allowed"},
     {"a: x\xe2\x80\xa8y\n", "1:5: error: the character U+2028 is not allowed"},
-    {"a: \xef\xbb\xbf\n", "1:4: error: the character U+FEFF is not allowed"},
     {"a: b\n\xc3\xa4\xff\n", "2:2: error: not UTF-8 text"},
     {"a: \xc0\x80\n", "1:4: error: not UTF-8 text"},
-    {"a: \xed\xa0\x80\n", "1:4: error: not UTF-8 text"},
-    {"a: \xf4\x90\x80\x80\n", "1:4: error: not UTF-8 text"},
     {"a: \xe2\x82", "1:4: error: not UTF-8 text"},
-    {"\xff\xfe"
-     "a",
-     "1:1: error: not UTF-8 text"},
     {"", "1:1: error: the file is empty"},
-    {"# nothing\n", "1:1: error: the file is empty"},
 };
 
 TEST(keys_are_checked) { CHECK_TABLE(keys); }
@@ -289,25 +220,6 @@ TEST(byte_order_mark_is_no_character) {
                                           "      | ^");
 }
 
-TEST(places_beyond_the_text_are_shown_at_its_end) {
-    static const struct {
-        const char *text;
-        Place place;
-        const char *message;
-    } cases[] = {{"a\nbc\r\n", {2, 0}, "x:2:3: error: e\n    2 | bc\n      |   ^"},
-                 {"a\nbc", {9, 9}, "x:2:3: error: e\n    2 | bc\n      |   ^"},
-                 {"a\nbc", {0, 9}, "x:1:2: error: e\n    1 | a\n      |  ^"},
-                 {"", {0, 1}, "x:1:1: error: e\n    1 | \n      | ^"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[8];
-        strcpy(text, cases[i].text);
-        const Source source = {"x", text, strlen(text)};
-        error = (Error){0};
-        assert_false(source_error(&source, cases[i].place, &error, "e"));
-        assert_string_equal(error.message, cases[i].message);
-    }
-}
-
 /* Marks that turn the direction of text could make a line look like another one. */
 TEST(excerpt_hides_what_does_not_print) {
     expect_refused("dt: \"\xe2\x80\xae\xe2\x80\x8bx\"\n", "1:6: error: dt must be a number (got ??x)\n"
@@ -327,13 +239,6 @@ TEST(excerpt_of_a_long_line_is_cut_around_the_caret) {
                    "aaaaaaaaaaaaaaaaaaaaaaaa...\n"
                    "      |    "
                    "                                                                      ^");
-}
-
-TEST(files_that_are_no_files_are_refused) {
-    static const char *const paths[] = {"/dev/zero", "/tmp", "/nonexistent/scene.yaml"};
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        assert_refused(scene_read(paths[i], &error), paths[i]);
-    }
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Include testing.h first. */
 #pragma once
-#include "base/machine.h"
+#include "base/process.h"
 
 /* The program, with this file, prints this line first. */
 static inline void expect_first_line(const char *program, const char *path, const char *line) {

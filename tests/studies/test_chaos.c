@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run compared with a shifted one. */
 #include "made.h"
+#include "runs/compare_runs.h"
+#include "runs/divergence.h"
+#include "runs/trajectory.h"
 
 OWNED_VALUE(Chaos, chaos_free)
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scores of methods with a known ranking: the reference has no error, more sweeps have less, noise has more. */
+#include "base/settings.h"
 #include "made.h"
 
 #include "studies/rollout.h"

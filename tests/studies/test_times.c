@@ -2,6 +2,7 @@
 /* Times of methods whose work is known. The system's clock is replaced by one that counts: reading it takes some
    nanoseconds, so does collision detection, and the solver of the method "known" takes what its settings say. So every
    time that a study writes is known exactly. */
+#include "base/settings.h"
 #include "made.h"
 
 #include "methods/sweeps.h"

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Verdicts on runs: of simulate, of stored ones for check and import, and as JSON. */
+#include "cli/judge.h"
+
+#include "base/base.h"
+#include "base/file.h"
+#include "base/json.h"
+#include "cli/notes.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <string.h>
+
+Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error) {
+    SimulateVerdict verdict;
+    char words[TRAJECTORY_VERDICT_SIZE];
+    Recorder *recorder = recorder_create(scene, method, error);
+    if (recorder == NULL) return NULL;
+    const StepObserver observer = simulate_verdict_observer(&verdict);
+    const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1, .progress = progress};
+    Trajectory *run = NULL;
+    if (simulate_verdict_begin(&verdict, scene, method, error) && simulate_watched(scene, method, &watch, error) &&
+        simulate_verdict_end(&verdict, error)) {
+        run = recorder_take(recorder);
+        simulate_verdict_words(&verdict, words);
+        trajectory_judge(run, words, verdict.reading.frame, verdict.reading.body);
+    }
+    simulate_verdict_free(&verdict);
+    recorder_destroy(recorder);
+    return run;
+}
+
+bool judged_run_find(JudgedRun *judged, const Trajectory *run, const JudgeOptions *options, Error *error) {
+    *judged = (JudgedRun){.scene = options->scene != NULL
+                                       ? scene_read_with(options->scene, options->set.items, options->set.count, error)
+                                       : trajectory_scene(run, error)};
+    const RunScene by = {judged->scene, options->scene == NULL, options->skin};
+    if (by.scene == NULL || !simulate_verdict_of_run(&judged->verdict, &by, run, error)) return false;
+    simulate_verdict_words(&judged->verdict, judged->words);
+    return true;
+}
+
+void judged_run_print(const JudgedRun *judged, const JudgeOptions *options) {
+    const VerdictReading *reading = &judged->verdict.reading;
+    printf("    verdict: %s\n    deepest overlap: %.3g m\n", judged->words, reading->deepest);
+    if (!isnan(reading->drift))
+        printf("    drift after the first %.3g s: %.3g m\n",
+               simulate_verdict_falls(&judged->verdict, VERDICT_CREEP_FROM), reading->drift);
+    if (isnan(reading->excess))
+        printf("    energy gained: unknown without masses\n");
+    else
+        printf("    energy gained: %.3g J above what start and bomb brought\n", reading->excess);
+    if (options->scene == NULL)
+        note_print("assumed: bodies of %g kg/m2 and a gravity of %g m/s2; with --scene SCENE they are the scene's",
+                   (double)VERDICT_DENSITY, (double)VERDICT_GRAVITY);
+}
+
+void judged_run_free(JudgedRun *judged) {
+    simulate_verdict_free(&judged->verdict);
+    scene_destroy(judged->scene);
+}
+
+/* What the value is. */
+static const char *quantity(const VerdictReading *reading) {
+    static const char *const quantities[VERDICTS] = {
+        [VERDICT_SETTLES] = "speed of the fastest body",
+        [VERDICT_STANDS] = "distance moved",
+        [VERDICT_CREEPS] = "distance in 10 falls",
+        [VERDICT_COLLAPSES] = "bodies that fell",
+        [VERDICT_SINKS] = "penetration",
+        [VERDICT_TUNNELS] = "speed",
+        [VERDICT_EXPLODES] = "energy gained",
+        [VERDICT_NON_FINITE] = "highest speed before",
+        [VERDICT_ADAPTER_FAILED] = "highest speed before",
+    };
+    if (reading->verdict == VERDICT_MOVES)
+        return strcmp(reading->unit, "s") == 0 ? "time in the air" : "speed of the fastest body";
+    if (reading->verdict == VERDICT_FALLS)
+        return reading->struck ? "bodies that fell" : strcmp(reading->unit, "deg") == 0 ? "rotation" : "descent";
+    return quantities[reading->verdict];
+}
+
+void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key) {
+    const VerdictWatch *watch = &verdict->watch;
+    const VerdictReading *reading = &verdict->reading;
+    const VerdictCount *count = &reading->count;
+    char words[TRAJECTORY_VERDICT_SIZE];
+    simulate_verdict_words(verdict, words);
+    json_begin_object(json, key, JSON_LINES);
+    json_put_text(json, "format", "twinbox simulate verdict 1");
+    json_put_text(json, "scene", verdict->scene->name);
+    json_put_text(json, "method", verdict->method);
+    json_put_int(json, "steps", watch->frame);
+    json_put_number(json, "dt", (double)verdict->scene->dt);
+    json_put_text(json, "verdict", verdict_name(reading->verdict));
+    json_put_text(json, "words", words);
+    json_put_bool(json, "holds", verdict_holds(reading->verdict));
+    json_put_bool(json, "sound", verdict_sound(reading->verdict));
+    json_put_int(json, "frame", reading->frame);
+    json_put_number(json, "time", reading->frame * (double)verdict->scene->dt);
+    if (!json_put_absent(json, "body", reading->body < 0)) json_put_int(json, "body", reading->body);
+    json_put_text(json, "quantity", quantity(reading));
+    json_put_number(json, "value", reading->value);
+    json_put_text(json, "unit", reading->unit);
+    if (reading->reason[0] != '\0') json_put_text(json, "reason", reading->reason);
+    json_put_text(json, "falls_judged",
+                  watch->run.stands       ? "to the end"
+                  : watch->run.until_bomb ? "until the bomb touches"
+                                          : "no");
+    /* What became of the bodies that started at rest. */
+    json_put_int(json, "bodies", count->stood);
+    json_begin_array(json, "fallen", JSON_ONE_LINE);
+    for (int i = 0; i < watch->body_count; i++)
+        if (watch->bodies[i].stands && watch->bodies[i].fell > 0) json_put_int(json, NULL, i);
+    json_end(json);
+    json_put_int(json, "left", count->left);
+    json_put_int(json, "moved", count->moved);
+    json_put_number(json, "farthest", count->farthest);
+    json_put_bool(json, "at_rest", !reading->moving);
+    json_put_number(json, "kinetic", watch->kinetic);
+    json_put_number(json, "energy", watch->energy);
+    json_put_number(json, "available", watch->own.available);
+    json_put_number(json, "drift", reading->drift);
+    json_put_number(json, "gained", reading->gained);
+    json_put_number(json, "deepest", reading->deepest);
+    json_put_number(json, "excess", reading->excess);
+    json_end(json);
+}
+
+static void print_json(FILE *out, const void *context) {
+    JsonWriter json = {.out = out};
+    simulate_verdict_put(context, &json, NULL);
+}
+
+bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error) {
+    return file_write_text(path, print_json, verdict, error);
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contacts between boxes in given poses, as the engine's collision detection finds them: for runs that do not state
+   theirs. Zero-initialise; free with contact_finder_free(). */
+#pragma once
+#include "base/base.h"
+#include "engine/contact_set.h"
+
+typedef struct ContactFinder {
+    SortAndSweep broad_phase;
+    PairList pairs;
+    Box *boxes;
+    Bounds *bounds;
+    bool *fixed;
+    size_t box_capacity, bound_capacity, fixed_capacity;
+    ContactSet set; /* positions, normals, separations and feature ids of the last search */
+} ContactFinder;
+
+void contact_finder_free(ContactFinder *finder);
+
+/* Boxes that are apart by less than 2 `skin` (m) touch, too: separation > 0. ERROR_INPUT: too many pairs. */
+bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error);
