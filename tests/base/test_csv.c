@@ -71,12 +71,6 @@ TEST(broken_tables_are_refused_with_their_place) {
     }
 }
 
-TEST(large_and_missing_files_are_refused) {
-    Csv csv;
-    assert_refused(csv_read(&csv, write_table("a\n1\n2\n", 6), 5, 1, 3, &error), "larger than 5 bytes");
-    assert_refused(csv_read(&csv, temporary_path("none.csv"), 5, 1, 3, &error), "cannot open");
-}
-
 TEST(what_is_put_is_read_again) {
     static const char *const texts[] = {"k=20", "k=20,warm=off", "say \"k\"", "\"", ",", "", " a "};
     enum { COUNT = sizeof texts / sizeof *texts };
@@ -94,16 +88,6 @@ TEST(what_is_put_is_read_again) {
     assert_int_equal(csv.width, COUNT);
     for (int i = 0; i < COUNT; i++) assert_string_equal(csv_text(&csv, 1, i), texts[i]);
     csv_free(&csv);
-}
-
-TEST(shown_text_is_short_and_prints) {
-    assert_string_equal(csv_show("").text, "");
-    assert_string_equal(csv_show("1e999").text, "1e999");
-    assert_string_equal(csv_show("\xc3\xa4\x1b[2J").text, "???[2J");
-    assert_string_equal(csv_show("01234567890123456789012345678901234567890123456").text,
-                        "01234567890123456789012345678901234567890123456");
-    assert_string_equal(csv_show("012345678901234567890123456789012345678901234567").text,
-                        "01234567890123456789012345678901234567890123...");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -53,17 +53,6 @@ TEST(new_files_follow_the_umask) {
     assert_int_equal(status.st_mode & 0777, 0640);
 }
 
-TEST(names_without_folder_are_in_this_one) {
-    int here = open(".", O_RDONLY | O_DIRECTORY);
-    assert_true(here >= 0);
-    assert_int_equal(chdir(fresh_folder("here")), 0);
-    write_file("plain", "text");
-    assert_file("plain", "text");
-    assert_int_equal(count_files(".", ""), 1);
-    assert_int_equal(fchdir(here), 0);
-    close(here);
-}
-
 TEST(links_are_followed) {
     fresh_folder("links");
     const char *target = temporary_path("links/target"), *link = temporary_path("links/link");
@@ -206,32 +195,6 @@ TEST(directories_are_made_with_those_above) {
     assert_error(refused, ERROR_SYSTEM, strerror(EEXIST));
     assert_false(file_make_directory("", &empty));
     assert_error(empty, ERROR_SYSTEM, strerror(ENOENT));
-}
-
-TEST(folders_end_with_their_slash) {
-    assert_int_equal(file_folder_length("scenes/single.yaml"), 7);
-    assert_int_equal(file_folder_length("single.yaml"), 0);
-    assert_int_equal(file_folder_length("/single.yaml"), 1);
-    assert_int_equal(file_folder_length("a/b/"), 4);
-}
-
-TEST(many_files_wait_for_the_disk_once) {
-    const char *path = temporary_path("soon");
-    assert_ok(file_write_soon(path, "old and long", 12, &error), error);
-    assert_ok(file_write_soon(path, "new", 3, &error), error);
-    assert_ok(file_sync(path, &error), error);
-    assert_ok(file_sync(temporary_folder, &error), error);
-    assert_file(path, "new");
-    assert_false(file_write_soon(temporary_path("no/such/folder"), "new", 3, &error));
-    assert_error(error, ERROR_SYSTEM, "no/such/folder");
-}
-
-TEST(paths_are_printed_whole_or_refused) {
-    char path[8];
-    assert_ok(file_path(path, sizeof path, &error, "%s/%s.x", "ab", "cd"), error);
-    assert_string_equal(path, "ab/cd.x");
-    assert_refused(file_path(path, sizeof path, &error, "%s/%s.x", "ab", "cde"),
-                   "path: error: ab/cde.... is longer than 7 bytes");
 }
 
 RUN_TESTS(NULL, NULL)

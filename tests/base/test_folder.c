@@ -84,16 +84,6 @@ TEST_WITH(links_out_of_the_folder_are_refused, make_tree, NULL) {
     refuse("tree", true, ERROR_INPUT, "such links are not followed");
 }
 
-TEST_WITH(links_to_hidden_places_are_refused, make_tree, NULL) {
-    make_link(".b", "tree/seen");
-    refuse("tree", true, ERROR_INPUT, "which is hidden");
-}
-
-TEST_WITH(links_to_nothing_are_refused, make_tree, NULL) {
-    make_link("nothing", "tree/nothing.x");
-    refuse("tree", true, ERROR_INPUT, "tree/nothing.x: error: cannot be read");
-}
-
 TEST_WITH(a_folder_that_does_not_exist_is_the_users_mistake, make_tree, NULL) {
     refuse("nowhere", true, ERROR_INPUT, "nowhere/: error: cannot be read");
     refuse("tree/a.x", true, ERROR_INPUT, "tree/a.x/: error: cannot be read");

@@ -123,18 +123,4 @@ TEST(size_depth_and_memory_of_a_value_are_limited) {
     refuse(text, repeat(text, "[", "[", 3000, ""), "1:2050: error: maximum parsing depth reached");
 }
 
-TEST(the_memory_of_a_value_is_reused) {
-    FREED char *text = malloc(MAX_SIZE + 1);
-    const size_t items = 10000; /* 2 MB if all were kept */
-    int count;
-    OWN(JsonReader) reader = open_text(text, repeat(text, "[", "{\"a\": \"b\"}, ", items, "0]"));
-    assert_ok(read_array(&reader, &count, &error), error);
-    assert_int_equal(count, items + 1);
-}
-
-TEST(a_large_file_is_refused) {
-    JsonReader reader;
-    assert_refused(json_read_open(&reader, store("[1, 2]", 6), 5, &error), "larger than 5 bytes");
-}
-
 RUN_TESTS(NULL, NULL)

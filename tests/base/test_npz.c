@@ -108,42 +108,6 @@ TEST(bad_texts_are_not_written) {
     }
 }
 
-TEST(truncated_files_are_refused) {
-    const char *path = temporary_path("truncated.npz");
-    write_arrays(path);
-    size_t size;
-    FREED char *data = read_whole(path, &size);
-    for (size_t length = 0; length < size; length++) {
-        write_bytes(path, data, length);
-        if (read_and_compare(path) != 0) fail_msg("cut off at %zu, and read", length);
-    }
-}
-
-static uint32_t random_next(uint32_t *seed) { return *seed = *seed * 1664525 + 1013904223; }
-
-/* Whatever is changed, what is read is what was written. */
-TEST(flipped_bytes_are_refused_or_harmless) {
-    const char *path = temporary_path("flipped.npz");
-    write_arrays(path);
-    size_t size;
-    FREED char *data = read_whole(path, &size), *damaged = malloc(size);
-    uint32_t seed = 1;
-    int refused = 0;
-    for (int round = 0; round < 4000; round++) {
-        memcpy(damaged, data, size);
-        for (int flips = 1 + round % 3; flips > 0; flips--)
-            damaged[(random_next(&seed) >> 4) % size] ^= (char)(1 + (random_next(&seed) >> 8) % 255);
-        write_bytes(path, damaged, size);
-        refused += read_and_compare(path) == 0;
-    }
-    assert_true(refused > 1000);
-}
-
-TEST(failed_writes_tell) {
-    assert_false(npz_write(temporary_path("nowhere/x.npz"), arrays, ARRAYS, &error));
-    assert_error(error, ERROR_SYSTEM, "nowhere/x.npz: error: cannot write: ");
-}
-
 /* A file with this kind and version; whether it is a table of version 3. */
 static bool is_table(const char *kind, int32_t version, Error *error) {
     const NpzArray head[] = {{"kind", NPZ_TEXT, 0, {0}, kind}, {"version", NPZ_INT32, 0, {0}, &version}};
@@ -162,29 +126,6 @@ TEST(kind_and_version_are_checked) {
     assert_refused(is_table("tables", 3, &error), "kind.npz: error: not a file of kind 'table'");
     assert_refused(is_table("table", 2, &error), "table of version 2; expected version 3");
     assert_refused(is_table("table", 4, &error), "kind.npz: error: table of version 4; expected version 3");
-}
-
-TEST(scalars_and_names_are_read) {
-    const NpzArray fields[] = {{"hash", NPZ_UINT64, 0, {0}, &hash},
-                               {"good", NPZ_TEXT, 0, {0}, "z\xc3\xa4h"},
-                               {"bad", NPZ_TEXT, 0, {0}, "z\33[2J"},
-                               {"worse", NPZ_TEXT, 0, {0}, "\x7f"},
-                               {"turned", NPZ_TEXT, 0, {0}, "a\xe2\x80\xae"}};
-    const char *path = temporary_path("fields.npz");
-    assert_ok(npz_write(path, fields, 5, &error), error);
-    OWN(NpzFile) *file = npz_of(path);
-    uint64_t found = 0;
-    char text[16];
-    assert_ok(npz_read_scalar(file, "hash", NPZ_UINT64, &found, sizeof found, &error), error);
-    assert_true(found == hash);
-    assert_ok(npz_read_name(file, "good", text, sizeof text, &error), error);
-    assert_string_equal(text, "z\xc3\xa4h");
-    assert_refused(npz_read_name(file, "bad", text, sizeof text, &error),
-                   "fields.npz: error: the name of the bad has the control character");
-    assert_refused(npz_read_name(file, "worse", text, sizeof text, &error), "worse");
-    assert_refused(npz_read_name(file, "turned", text, sizeof text, &error),
-                   "fields.npz: error: the name of the turned has the control character U+202E");
-    assert_refused(npz_read_scalar(file, "hash", NPZ_INT64, &found, sizeof found, &error), "hash");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -100,14 +100,6 @@ TEST(one_number_is_a_scalar) {
     expect("np.float64(2.5)", NPZ_FLOAT32, 0, NULL, (const float[]){2.5F}, 4);
 }
 
-TEST(texts_of_either_order_are_read) {
-    char text[16];
-    OWN(NpzFile) *file = make("np.array('z\\u00e4h', '>U8')");
-    npz_convert(file);
-    assert_ok(npz_read_text(file, "array", text, sizeof text, &error), error);
-    assert_string_equal(text, "z\xc3\xa4h");
-}
-
 static void expect_refused(const char *expression, bool converts, NpzType type, int rank, const int64_t *shape,
                            const char *reason) {
     Error error = {0};
@@ -134,19 +126,6 @@ TEST(what_does_not_fit_is_refused) {
     expect_refused("[np.nan]", true, NPZ_UINT8, 1, one, "item [0] is nan, which does not fit into uint8");
     expect_refused("[1., 2.]", true, NPZ_FLOAT32, 0, NULL, "is float64 of 1 dimensions; expected float32 of 0");
     expect_refused("'1'", true, NPZ_FLOAT32, 0, NULL, "is text of 0 dimensions; expected float32 of 0");
-}
-
-/* Files of twinbox itself have exact types. */
-TEST(nothing_is_converted_unless_it_is_wanted) {
-    const int64_t grid[] = {2, 2};
-    expect_refused("np.zeros((2, 2))", false, NPZ_FLOAT32, 2, grid,
-                   "is float64 of 2 dimensions; expected float32 of 2");
-    expect_refused("np.zeros((2, 2), '>f4')", false, NPZ_FLOAT32, 2, grid,
-                   "is float32 of 2 dimensions, big-endian; expected float32 of 2");
-    expect_refused("np.asfortranarray(np.zeros((2, 2), 'f4'))", false, NPZ_FLOAT32, 2, grid,
-                   "is float32 of 2 dimensions, in Fortran order; expected float32 of 2");
-    expect_refused("np.zeros(1, 'f4')", false, NPZ_FLOAT32, 0, NULL,
-                   "is float32 of 1 dimensions; expected float32 of 0");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -108,20 +108,4 @@ TEST(what_numpy_writes_is_read) {
     expect_arrays(path);
 }
 
-static void expect_refused(const char *expression, const char *reason) {
-    const char *path = temporary_path("refused.npz");
-    run_python(printed("import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression), path);
-    Error error = {0};
-    OWN(NpzFile) *file = npz_of(path);
-    assert_refused(npz_read(file, "array", NPZ_FLOAT32, 1, (const int64_t[]){3}, &error), reason, "'array' is ");
-}
-
-TEST(other_arrays_of_numpy_are_refused) {
-    expect_refused("np.zeros(3, complex)", "of the unsupported type '<c16'");
-    expect_refused("np.array([None, {}])", "of the unsupported type '|O'");
-    expect_refused("np.array(['a', 'b'])", "an array of texts");
-    expect_refused("np.zeros(3, [('x', 'f4')])", "not a plain array");
-    expect_refused("np.zeros((1, 1, 1, 1, 1))", "of more than 4 dimensions");
-}
-
 RUN_TESTS(NULL, NULL)

@@ -45,22 +45,6 @@ TEST(what_is_no_decimal_is_refused) {
     }
 }
 
-/* As strtod reads it, up to what is no part of it. */
-TEST(a_leading_number_leaves_the_rest) {
-    double value = 7;
-    const char *rest = NULL;
-    assert_true(parse_leading_double("-0.1e1*$x", &value, &rest));
-    assert_true(value == -1);
-    assert_string_equal(rest, "*$x");
-    assert_true(parse_leading_double("0.1", &value, &rest));
-    assert_true(value == 0.1);
-    assert_string_equal(rest, "");
-    static const char *const texts[] = {"", "*2", "$x", " 1", "1e39*2", "inf", "nan"};
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
-        if (parse_leading_double(texts[i], &value, &rest)) fail_msg("'%s' is taken", texts[i]);
-    assert_true(value == 0.1);
-}
-
 /* A thread's own locale stands for one of the user's: C.UTF-8 always exists but has the same point, so a
    German one is used where the machine has it. */
 TEST(locale_does_not_matter) {

@@ -55,19 +55,6 @@ TEST(nothing_is_estimated_at_the_beginning) {
     assert_near(estimate_at(&slower, 201), 1e5 - 201, 10);
 }
 
-/* Ten seconds of which the first two bring half a per cent: the mean rate would give 6 min 37 s. */
-TEST(a_slow_start_is_no_reason_to_despair) {
-    const Work work = {0.0025, 2, 0.995 / 8};
-    int shown = 0;
-    for (double time = 0.1; time < 10; time += 0.1) {
-        const double seconds = estimate_at(&work, time);
-        if (none(seconds)) continue;
-        shown++;
-        if (seconds > 2 * true_left(&work, time) + 1) fail_msg("%g s left after %g s of 10", seconds, time);
-    }
-    assert_true(shown > 30);
-}
-
 /* A stage ten times slower, or faster, than the one before: the estimate knows the new rate after half of the old
    stage's time. */
 TEST(the_recent_rate_counts) {
@@ -77,19 +64,6 @@ TEST(the_recent_rate_counts) {
     assert_near(estimate_at(&slower, 90), 110, 1);
     /* Between the two, the halves of the window disagree. */
     assert_true(none(estimate_at(&slower, 120)));
-}
-
-/* Half of it was done in an earlier run. */
-TEST(a_jump_is_no_rate) {
-    const Work work = {5, 0.1, 0.005};
-    for (double time = 0.2; time < 4; time += 0.2) assert_true(none(estimate_at(&work, time)));
-    assert_near(estimate_at(&work, 5), 100 - 4.9, 0.5);
-}
-
-TEST(stalled_work_has_no_estimate) {
-    const Work work = {0.01, 30, 0};
-    assert_near(estimate_at(&work, 30), 70, 1e-3);
-    assert_true(none(estimate_at(&work, 60)));
 }
 
 TEST(texts_have_few_digits) {

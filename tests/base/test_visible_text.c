@@ -62,12 +62,6 @@ TEST(a_name_is_no_second_message) {
     assert_string_equal(where.message, "ffmpeg: error: failed, in scene \\x1b");
 }
 
-TEST(additions_end_where_the_message_does) {
-    error_input(&error, "a", "b");
-    for (int i = 0; i < 5000; i++) error_add(&error, ", %s", "more");
-    assert_true(strlen(error.message) < sizeof error.message);
-}
-
 TEST(controls_are_found) {
     assert_int_equal(control_in_text("a \xc3\xa4 \xff"), 0);
     assert_int_equal(control_in_text("a\nb"), '\n');

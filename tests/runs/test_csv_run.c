@@ -117,19 +117,6 @@ TEST(what_is_written_is_read_back) {
     assert_int_equal(notes.count, 1); /* the units */
 }
 
-/* A body that never moves need not be static, which the file states, too. */
-TEST(kinds_and_missing_velocities_are_read_back) {
-    const char *path = temporary_path("example.csv");
-    OWN(Trajectory) *t = read_ok(HEAD ROWS, &defaults);
-    t->fixed[0] = 0;
-    assert_ok(csv_run_write(t, path, &error), error);
-    OWN(Trajectory) *run = csv_run_read(path, &defaults, &notes, &error);
-    assert_ok(run != NULL, error);
-    TrajectoryDifference difference;
-    trajectory_compare(t, run, &difference);
-    assert_true(difference.equal && run->no_velocities && !run->fixed[0]);
-}
-
 static const struct {
     const char *text, *reason;
 } refused[] = {
@@ -196,22 +183,6 @@ TEST(few_rows_of_many_bodies_are_refused) {
     const CsvRunOptions options = {.name = "many", .dt = 1};
     assert_refused(csv_run_read(path, &options, &notes, &error),
                    "60000 frames of 60000 bodies take 86400000000 bytes; expected at most ");
-}
-
-TEST(damaged_files_are_refused_or_harmless) {
-    char text[] = HEAD ROWS, damaged[sizeof text];
-    uint32_t seed = 7;
-    for (int round = 0; round < 3000; round++) {
-        memcpy(damaged, text, sizeof text);
-        for (int k = 0; k < 1 + round % 3; k++) {
-            seed = seed * 1664525 + 1013904223;
-            damaged[(seed >> 4) % (sizeof text - 1)] = "0123456789,.-\n#e \0\xff:"[(seed >> 20) % 20];
-        }
-        error = (Error){0};
-        const char *path = write_bytes(temporary_path("damaged.csv"), damaged, sizeof damaged - 1);
-        OWN(Trajectory) *run = csv_run_read(path, &defaults, &notes, &error);
-        if (run == NULL) assert_int_equal(error.kind, ERROR_INPUT);
-    }
 }
 
 RUN_TESTS(NULL, NULL)

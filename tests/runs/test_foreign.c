@@ -70,22 +70,6 @@ TEST(long_and_strange_names_of_files_become_names) {
     trajectory_destroy(t);
 }
 
-TEST(a_run_without_velocities_is_written_without) {
-    const char *path = temporary_path("again.npz");
-    OWN(Trajectory) *t = read_changed("run.npz", "");
-    assert_ok(trajectory_write(t, path, &error), error);
-    run_python("import sys, numpy as np\n"
-               "f = np.load(sys.argv[1])\n"
-               "assert f.files == 'version scene method scene_hash dt bomb camera size fixed position angle'.split()\n",
-               path);
-    OWN(Trajectory) *again = trajectory_of(path);
-    assert_true(again->no_velocities && again->no_contacts);
-    assert_string_equal(again->scene, "run");
-    TrajectoryDifference difference;
-    trajectory_compare(t, again, &difference);
-    assert_true(difference.equal && difference.poses_only);
-}
-
 /* Unknown velocities are neither equal to known ones nor different from them. */
 TEST(only_poses_are_compared_with_a_run_without_velocities) {
     OWN(Trajectory) *t = read_changed("run.npz", ""),
@@ -137,26 +121,6 @@ TEST(names_of_bodies_are_read_and_written_and_kept_by_every) {
     assert_true(trajectory_hash(again) != hash);
 }
 
-/* A near name is no mistake where the right one is there; a far one never is. */
-TEST(other_arrays_are_ignored) {
-    Trajectory *t = read_changed("run.npz", "a.update(sizes=[1], mass=[1, 2, 3], box=1, time=[0, 1], colour='red',\n"
-                                            "         friction=0.5, names='a b', kind=[1, 2, 3])");
-    assert_int_equal(t->bodies, 3);
-    trajectory_destroy(t);
-    t = read_changed("run.npz", "a.update(labels=['a', 'b'], notes=np.array([None, {}]), half=np.zeros(3, 'f2'),\n"
-                                "         cube=np.zeros((1, 1, 1, 1, 2)), table=np.zeros(3, [('x', 'f4')]), z=1j)");
-    assert_int_equal(t->bodies, 3);
-    trajectory_destroy(t);
-    expect_refused("a['velocity'] = a['position'] * 1j; a['angular_velocity'] = a['angle']",
-                   "'velocity' is of the unsupported type '<c16'");
-}
-
-/* -1/3 and 1/3 in 11 bits. */
-TEST(positions_of_16_bits_are_converted) {
-    OWN(Trajectory) *t = read_changed("run.npz", "a['position'] = (a['position'] * 0 + [-1/3, 1/3]).astype('f2')");
-    assert_true(t->position[0].x == -0.333251953125F && t->position[0].y == 0.333251953125F);
-}
-
 TEST(what_is_needed_is_told) {
     expect_refused("del a['position']", "has no array 'position'; a trajectory needs position, angle, size and dt");
     expect_refused("del a['angle']", "error: has no array 'angle'");
@@ -176,21 +140,5 @@ TEST(what_is_needed_is_told) {
 }
 
 #define NAMES "n = a['body_name'] = np.zeros((3, 32), 'u1'); "
-
-TEST(values_are_checked_as_ever) {
-    expect_refused("a['position'][1, 1, 0] = 1e39", "array 'position': item [1, 1, 0] is 9.99");
-    expect_refused("a['position'] = a['position'][:, :, :1]",
-                   "array 'position' has shape (3, 3, 1); expected (3, 3, 2)");
-    expect_refused("a['position'] = a['position'][0]",
-                   "array 'position' is float64 of 2 dimensions; expected float32 of 3");
-    expect_refused("a['fixed'] = [0, 0, 0.5]", "array 'fixed': item [2] is 0.5, which does not fit into uint8");
-    expect_refused(NAMES "n[1] = 65", "body 1: its name must have at most 31 bytes, and a 0 behind them");
-    expect_refused(NAMES "n[1, 0] = 27", "body 1: its name must be UTF-8 without control characters");
-    expect_refused(NAMES "n[2, 0] = 0xff", "body 2: its name must be UTF-8 without control characters");
-    expect_refused(NAMES "n[0, :3] = list('\\u202e'.encode())", "body 0: its name must be UTF-8 without control");
-    expect_refused(NAMES "a['body_name'] = n[1:]", "array 'body_name' has shape (2, 32); expected (3, 32)");
-    expect_refused("a['body_name'] = ['a', 'b', 'c']", "an array of texts");
-    expect_refused("a['scene'] = 5", "array 'scene' is int64 of 0 dimensions; expected text of 0");
-}
 
 RUN_TESTS(NULL, NULL)

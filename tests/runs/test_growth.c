@@ -57,27 +57,6 @@ TEST(what_is_saturated_does_not_count) {
     assert_true(growth.saturated && growth.first == -1 && growth.end == 20 && growth.count == 0 && isnan(growth.rate));
 }
 
-TEST(zeros_and_what_is_not_known_are_left_out) {
-    fill(1e-6, 2);
-    for (int frame = 0; frame < 30; frame++) distance[frame] = 0;
-    distance[50] = 0;
-    for (int frame = 150; frame < FRAMES; frame++) distance[frame] = NAN;
-    Growth growth = measured(0, FRAMES);
-    assert_true(growth.first == 30 && growth.last == 149 && growth.count == 119 && !growth.saturated);
-    assert_near(growth.rate, 2, 1e-9);
-}
-
-TEST(too_few_frames_have_no_rate) {
-    fill(1e-6, 2);
-    Growth growth = measured(40, 40 + GROWTH_MIN_FRAMES - 1);
-    assert_true(growth.count == GROWTH_MIN_FRAMES - 1 && isnan(growth.rate) && growth.first == 40);
-    assert_near(measured(40, 40 + GROWTH_MIN_FRAMES).rate, 2, 1e-9);
-    growth = measured(-1, 40);
-    assert_true(growth.count == 0 && growth.first == -1 && isnan(growth.rate));
-    growth = measured(40, 40);
-    assert_true(growth.count == 0 && isnan(growth.rate));
-}
-
 /* A scatter of s up and down in turns is one of s, whatever the rate. */
 TEST(the_scatter_is_that_of_the_logarithm) {
     fill(1e-6, 2);

@@ -116,15 +116,6 @@ TEST_WITH(other_impulses_are_the_solver, make, destroy) {
     assert_true(contacts->largest_a.tangent_impulse == -0.5F && contacts->largest_b.tangent_impulse == 0.25F);
 }
 
-/* The least feature comes first, wherever it stands in the file. */
-TEST_WITH(of_equal_differences_the_first_contact_counts, make, destroy) {
-    b->angle[at(4, 2)] = 1;
-    for (int i = 0; i < CONTACTS; i++) contact(b, 4, i)->normal_impulse = 3;
-    TrajectoryParting parting = parted(0);
-    assert_int_equal(parting.contacts.changed, CONTACTS);
-    assert_true(parting.contacts.largest_b.b == 1 && parting.contacts.largest_b.feature == 6);
-}
-
 TEST_WITH(contacts_in_another_order_are_the_same, make, destroy) {
     b->angle[at(4, 2)] = 1;
     for (int i = 0; i < CONTACTS; i++) *contact(b, 4, i) = *contact(a, 4, CONTACTS - 1 - i);
@@ -168,14 +159,6 @@ TEST_WITH(impulses_of_an_earlier_step_are_hidden, make, destroy) {
     assert_int_equal(parting.contacts.largest_a.feature, 6);
 }
 
-TEST_WITH(hidden_and_never_seen, make, destroy) {
-    contact(a, FRAMES - 1, 1)->normal_impulse = 0;
-    contact(b, FRAMES - 1, 1)->normal_impulse = -0.0F;
-    TrajectoryParting parting = parted(0);
-    expect_first(&parting, -1, -1, PART_NONE);
-    assert_int_equal(parting.step, FRAMES - 1);
-}
-
 TEST_WITH(a_bomb_that_comes_otherwise_is_the_launch, make, destroy) {
     b->position[at(BOMB_FRAME, BOMB)].x += 1;
     TrajectoryParting parting = parted(0);
@@ -185,15 +168,6 @@ TEST_WITH(a_bomb_that_comes_otherwise_is_the_launch, make, destroy) {
     parting = parted(0);
     expect_first(&parting, BOMB_FRAME, 1, PART_ELSEWHERE);
     assert_int_equal(parting.first.bodies, 2);
-}
-
-/* However large the tolerance: a body that is not there is nowhere near. */
-TEST_WITH(a_bomb_in_one_run_only_is_the_launch, make, destroy) {
-    put(b, BOMB_FRAME - 1, BOMB);
-    TrajectoryParting parting = parted(1e9);
-    expect_first(&parting, BOMB_FRAME - 1, BOMB, PART_LAUNCH);
-    assert_int_equal(parting.beyond.frame, BOMB_FRAME - 1);
-    assert_true(!parting.first.by.in_a && parting.first.by.in_b && parting.first.by.distance == 0);
 }
 
 /* 1 m in frame 2, 3 m in frame 5: what is beyond is beyond, and not what is on the limit. */

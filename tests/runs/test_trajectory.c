@@ -4,17 +4,6 @@
 
 #include "example.h"
 
-TEST(a_new_trajectory_is_empty) {
-    OWN(Trajectory) *t = run_sized(3, 2);
-    for (int i = 0; i < 6; i++) {
-        assert_true(isnan(t->position[i].x) && isnan(t->position[i].y) && isnan(t->angle[i]));
-        assert_true(isnan(t->velocity[i].x) && isnan(t->velocity[i].y) && isnan(t->angular_velocity[i]));
-        assert_false(trajectory_has(t, i / 2, i % 2));
-    }
-    for (int k = 0; k <= 3; k++) assert_int_equal(t->contact_start[k], 0);
-    assert_int_equal(t->bomb, -1);
-}
-
 TEST(too_large_a_trajectory_is_refused) {
     static const int cases[][2] = {{INT32_MAX, INT32_MAX}, {1000001, 10000}, {INT32_MAX, 1}, {1, INT32_MAX}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -90,15 +79,6 @@ TEST(a_verdict_keeps_its_place) {
     OWN(Trajectory) *third = trajectory_every(t, 3, &error);
     assert_ok(third != NULL, error);
     assert_true(third->verdict[0] == '\0' && third->verdict_frame == -1);
-}
-
-/* Cut between characters. */
-TEST(a_long_verdict_is_cut) {
-    char words[2 * TRAJECTORY_VERDICT_SIZE + 1] = "";
-    for (int i = 0; i < TRAJECTORY_VERDICT_SIZE; i++) strcat(words, "\xc3\xa4");
-    OWN(Trajectory) *t = example_trajectory();
-    trajectory_judge(t, words, 0, 0);
-    assert_int_equal(strlen(t->verdict), TRAJECTORY_VERDICT_SIZE - 2);
 }
 
 /* Of 8 frames every third: 0, 3 and 6, each with its own state and the contacts of its own step. */
