@@ -174,7 +174,7 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
     bool ok = simulate_watched(scene, method, &watch, error);
     progress_bar_end();
     result->judged = simulate_verdict_end(&result->verdict, error);
-    simulate_verdict_words(&result->verdict, result->words);
+    if (ok || result->judged) simulate_verdict_words(&result->verdict, result->words);
     if (ok) recorder_judge(recorder, result->words, result->verdict.reading.frame, result->verdict.reading.body);
     ok = ok && recorder_finish(recorder, error);
     if (ok) {
