@@ -8,6 +8,7 @@
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"
+#include "runs/trajectory.h"
 #include "sanitized.h"
 
 #include <fcntl.h>
@@ -87,6 +88,7 @@ static double film_error(const VideoOptions *options) {
     char from[300], text[256], decoded[300];
     static uint8_t rgb[3 * PIXELS];
     double squares = 0;
+    Error error = {0};
     snprintf(from, sizeof from, "file:%s", options->path);
     snprintf(decoded, sizeof decoded, "file:%s", temporary_path("decoded"));
     run_words((const char *[]){"ffmpeg", "-y", "-v", "error", "-i", from, "-f", "rawvideo", "-pix_fmt", "rgb24",
