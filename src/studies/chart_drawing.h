@@ -5,7 +5,6 @@
 #include "figures/labels.h"
 #include "figures/plot.h"
 #include "figures/sketch.h"
-#include "pixels/png.h"
 #include "studies/chart_data.h"
 #include "studies/chart_plot.h"
 
@@ -51,19 +50,3 @@ void chart_find_cross(ChartDrawing *drawing);
 /* Draws the names of all lines for which there is room beside marks and curves, settings of coloured ones, and the
    lines through the engine as shipped. */
 void chart_draw_names(ChartDrawing *drawing, int panel);
-
-/* A drawn chart. */
-typedef struct ChartPicture {
-    const Chart *chart;
-    ChartSize size;
-    double width, height; /* mm */
-    PlotPanel panels[CHART_PANELS];
-    bool named[CHART_MAX_LINES]; /* in a panel */
-    Sketch sketch;
-    char caption[PLOT_CAPTION_SIZE];
-} ChartPicture;
-
-/* Free with chart_picture_free(). The chart must outlive it. False with error set if out of memory. */
-bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *scene, const ChartLook *look,
-                        Error *error);
-void chart_picture_free(ChartPicture *picture);

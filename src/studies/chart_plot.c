@@ -41,6 +41,17 @@ static const struct {
 
 static const char *const panel_titles[CHART_PANELS] = {"At the impact", "In the 60 frames after it"};
 
+/* A drawn chart. */
+typedef struct ChartPicture {
+    const Chart *chart;
+    ChartSize size;
+    double width, height; /* mm */
+    PlotPanel panels[CHART_PANELS];
+    bool named[CHART_MAX_LINES]; /* in a panel */
+    Sketch sketch;
+    char caption[PLOT_CAPTION_SIZE];
+} ChartPicture;
+
 /* words: mm that the caption takes below. */
 static void lay_out(ChartPicture *picture, double words) {
     const ChartSize size = picture->size;
@@ -226,8 +237,9 @@ static bool draw_words(ChartPicture *picture, const char *title) {
     return true;
 }
 
-bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *scene, const ChartLook *look,
-                        Error *error) {
+/* To be freed with sketch_free(). False with error set if out of memory. */
+static bool make_picture(ChartPicture *picture, const Chart *chart, const char *scene, const ChartLook *look,
+                         Error *error) {
     char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
     *picture = (ChartPicture){.chart = chart, .size = look->size};
     chart_plain(name, scene);
@@ -237,11 +249,9 @@ bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *s
     if (whole && look->words) whole = draw_words(picture, title);
     snprintf(picture->sketch.title, sizeof picture->sketch.title, "Speed and accuracy: %s", title);
     if (whole) return true;
-    chart_picture_free(picture);
+    sketch_free(&picture->sketch);
     return error_memory(error, scene);
 }
-
-void chart_picture_free(ChartPicture *picture) { sketch_free(&picture->sketch); }
 
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, const ChartLook *look, Error *error) {
     char stem[PATH_MAX], caption[PATH_MAX];
@@ -256,11 +266,11 @@ bool chart_plot(const char *csv_path, const char *scene, const char *folder, con
     ChartPicture picture;
     bool drawn = chart_gather(&chart, &table, scene, csv_path, look, error);
     if (drawn) {
-        drawn = chart_picture_make(&picture, &chart, scene, look, error);
+        drawn = make_picture(&picture, &chart, scene, look, error);
         if (drawn) {
             drawn = sketch_draw(&picture.sketch, stem, SKETCH_PDF, error) &&
                     file_write(caption, picture.caption, strlen(picture.caption), error);
-            chart_picture_free(&picture);
+            sketch_free(&picture.sketch);
         }
         chart_free(&chart);
     }

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Stability: cases, searches for borders, scans, maps, tables. */
+/* Where each method fails: studies along one parameter of a scene, and maps over two.
+
+     const StabilityOptions options = {.folder = "out/stability", .scenes = "scenes", .quick = true};
+     stability_run(&options, &pieces, progress, error);
+     stability_figures_write(options.folder, NULL, progress, error); */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/machine.h"
-#include "figures/plot.h"
-#include "figures/sketch.h"
 #include "methods/methods.h"
-#include "pixels/png.h"
 #include "runs/pieces.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
@@ -15,59 +16,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* How verdicts are drawn: a tile with a symbol. Worse is darker, readable in grey and for the colour-blind; holding is
-   light and round, failing dark and angular, readable in black and white. */
-
-/* Continues Verdict: cells without a verdict. */
-enum { CELL_NOT_APPLICABLE = VERDICTS, CELL_MISSING, VERDICT_LOOKS };
-
-typedef struct VerdictLook {
-    const char *name;
-    uint32_t fill; /* of the tile; NO_COLOUR: none */
-    uint32_t ink;  /* of the symbol */
-    int symbol;    /* of a PlotStyle; VERDICT_STROKE: a stroke across; VERDICT_BARE: none */
-    bool open;
-    double size; /* of the symbol, relative */
-} VerdictLook;
-
-enum { VERDICT_STROKE = PLOT_SYMBOLS, VERDICT_BARE };
-
-extern const VerdictLook verdict_looks[VERDICT_LOOKS];
-
-/* mm: the size of tiles. */
-typedef struct TileSize {
-    double width, height;
-    double symbol_room; /* what a symbol may take; 0: its tile */
-} TileSize;
-
-typedef struct Tile {
-    Point at; /* centre */
-    int look;
-    bool bare; /* without its symbol */
-} Tile;
-
-/* The tile's symbol alone, `width` mm wide. */
-void verdict_draw_symbol(Sketch *sketch, const Tile *tile, double width);
-
-/* Draws all fills, then all symbols. */
-void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size);
-
-/* The grid of a legend's items, row by row; rows are LEGEND_ROW apart. */
-typedef struct LegendPlace {
-    double left, top, width; /* mm: left edge and centre height of the first item; column width */
-    int columns;
-} LegendPlace;
-
-/* Draws tiles and names of the used looks. Returns their number. */
-int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const LegendPlace *place);
-
-/* Finds all borders along a parameter: the values where a method changes from holding to failing.
-
-   A coarse scan finds changes between neighbouring values, bisection narrows each to the resolution. Both sides of a
-   border and their outward neighbours are repeated with other seeds, which shift the start by a tiny amount. A value
-   for which the seeds disagree is undecided; it cannot be a side of a border, so the search moves outward to the next
-   value on which all seeds agree. A border wider than the resolution thus encloses undecided values. A change and its
-   reversal within one step of the scan are found only next to a border. */
+/* The range of a parameter that is scanned. */
 
 enum { BORDER_SEEDS = 3, BORDERS_MAX = 32, BORDER_POINTS_MAX = 128 };
 
@@ -79,34 +28,6 @@ typedef struct BorderScan {
     bool fails_low; /* expected to fail at low values; reverses the order of the list */
     bool either;    /* fails_low is set if the lowest value of the coarse scan fails and the highest holds */
 } BorderScan;
-
-typedef struct BorderProbe {
-    /* The verdict at a value; seed 0 .. BORDER_SEEDS - 1. */
-    bool (*evaluate)(void *context, double value, int seed, Verdict *verdict, Error *error);
-    void *context;
-    int seeds; /* to evaluate: 1 .. BORDER_SEEDS */
-} BorderProbe;
-
-typedef struct Border {
-    double holds_at, fails_at; /* neighbouring values, or NaN */
-    Verdict verdict;           /* at fails_at, the worst of the seeds */
-} Border;
-
-/* Never empty. Without a border it has one entry: if all values hold, holds_at is the last value and the verdict the
-   worst found; if all fail, fails_at is the first value. If the values up to the end are undecided, the last entry has
-   the last value that holds, fails_at = NaN and the worst verdict beyond it. If all values are undecided, both are
-   NaN. */
-typedef struct BorderList {
-    int count;
-    Border items[BORDERS_MAX]; /* ordered from the end expected to hold to the end expected to fail */
-} BorderList;
-
-/* The distinct values of the coarse scan, ascending, rounded to 4 digits so that tables show exactly the value that was
-   run. Returns their number. */
-int border_scan_values(const BorderScan *scan, double values[BORDER_POINTS_MAX]);
-
-/* False with error set if an evaluation fails, memory is short or there are more than BORDERS_MAX borders. */
-bool border_search(BorderList *list, const BorderScan *scan, const BorderProbe *probe, Error *error);
 
 /* The table of stability studies: which scene, which parameter, which range. */
 
@@ -172,102 +93,47 @@ typedef struct StabilityOwn {
 bool stability_own_make(StabilityOwn *own, const char *path, const char *const *texts, int count, bool quick,
                         Error *error);
 
-/* One run of a stability study: a scene with parameter values, and a method; and the converged runs that verdicts need,
-   each computed once for all methods. */
+/* The stability study: where each method fails. Tables: borders between holding and failing along one parameter
+   (stability.csv), maps over two parameters (maps.csv), methods that do not apply to a scene (refusals.csv), network
+   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv), runs
+   beside which the reference did not converge (unconverged.csv). */
 
-enum { STABILITY_PATH_SIZE = 4096 };
+enum { STABILITY_MAX_NAMES = 64 };
 
-/* A parametric scene of the study. */
-typedef struct StabilityPlace {
-    const char *scenes; /* the folder that contains stability/ */
-    const char *scene;  /* file name without folder and extension */
-    const char *file;   /* or this file, if not NULL */
-} StabilityPlace;
+typedef struct StabilityOptions {
+    const char *folder;  /* of the tables; created if missing */
+    const char *scenes;  /* the folder that contains stability/ */
+    const char *methods; /* contenders_parse; NULL: those of the study */
+    bool quick;          /* few studies, small maps */
+    int name_count;      /* of studies and maps to run; 0: all */
+    const char *names[STABILITY_MAX_NAMES];
+    const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
+    Shard shard;
+    /* Draws the tables in the folder; NULL: nothing is drawn. */
+    bool (*draw)(const struct StabilityOptions *options, Error *error);
+} StabilityOptions;
 
-/* "scenes/stability/SCENE.yaml", or the file. ERROR_INPUT if it is too long. */
-bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error);
+/* Runs the studies and maps, writes the tables and draws; a shard does its pieces only. An interrupted run is resumed
+   at the unfinished pieces. The tables do not depend on the number of threads. ERROR_INPUT also for an unknown name,
+   ERROR_INTERRUPTED if progress stops the run. *pieces tells what was done; it has no plan any more. */
+bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error);
 
-/* Reads the scene with these parameter values. The caller frees it. */
-Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error);
+/* The figures of a stability study, drawn from its tables. */
 
-/* The study's scene, in this folder, with a value of its parameter. The caller frees it. */
-Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error);
+/* Reads folder/stability.csv and folder/maps.csv, of the studies of a scene file or, with own NULL, of the table, and
+   draws, as .png, .svg and a caption .txt of one line, which also explains the words of the figure,
+     map-NAME   one per map: a panel per method with a border, a tile per cell; the caption names methods
+                that hold or fail everywhere
+     borders    how far each method holds in each study (studies/stability_internal.h)
+   into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.
 
-/* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by
-   the table of studies, or follows from the scene if it is a file. */
-VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
-                                 const EnergyLog *converged);
+   A table without rows gives no figure. An invalid table is an error "path:line:column: error: text" before anything is
+   drawn. ERROR_INTERRUPTED if progress, which may be NULL, requests a stop;
+   figures already drawn stay. */
+bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error);
 
-/* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those
-   that are shifted by a micrometre. */
-typedef struct Convergence {
-    int steps;           /* of all of them */
-    int first;           /* step that did not converge, in the run by which methods are judged; 0: none */
-    Fallbacks fallbacks; /* of all of them */
-} Convergence;
-
-/* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses
-   (runs/verdict.h). It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre
-   differ in that, and where the converged run is not sound or has a step that did not converge. Of a scene that is not
-   struck it is VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
-bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error);
-
-/* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is
-   not sound, or falls before it is struck, stays as it is. The reference's verdict is what its own run does, so that a
-   study shows the truth, or undecided if a step of it did not converge. */
-Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
-
-/* Shifts the first dynamic body, or if there is none the bomb, along x: by 0 for seed 0, by +-1e-6 m for seeds 1 and
-   2. */
-void stability_shift(Scene *scene, int seed);
-
-/* False, with the reason in error, if the method does not apply to the scene: it cannot be created, or its first step
-   fails. */
-bool stability_applies(const Method *method, const Scene *scene, Error *error);
-
-/* True for a method that makes as many sweeps as the scene sets. */
-bool stability_takes_iterations(const Method *method);
-
-/* A converged run at a value of the scanned parameter. */
-typedef struct ConvergedRun {
-    double value;
-    EnergyLog log;
-    Verdict truth;
-    Convergence convergence;
-} ConvergedRun;
-
-/* Counts runs and reports progress. Zero-initialise. */
-typedef struct RunCounter {
-    const Progress *progress; /* may be NULL */
-    double done, expected;
-    bool stopped;
-} RunCounter;
-
-/* Counts one run. Thread-safe. False with error set if progress stops the study. */
-bool run_counter_add(RunCounter *counter, const char *what, Error *error);
-
-/* A cache of converged runs. They always use a warm start, whatever the scene sets: it does not change the converged
-   solution, but without it a stack of 40 boxes takes minutes. Shifted scenes use the run of the unshifted scene.
-
-   Zero-initialise. Thread-safe; two threads may compute the same run, with the same result. */
-typedef struct ConvergedRuns {
-    int count;
-    size_t capacity;
-    ConvergedRun **runs; /* [count] */
-} ConvergedRuns;
-
-/* The run of the scene at the value by the method "reference", and its truth, judged as `judged`, without a converged
-   run. NULL with error set if it fails. */
-const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
-                                       Error *error);
-
-/* The same, if it was computed before; else NULL. */
-const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value);
-void converged_runs_free(ConvergedRuns *runs);
-
-/* The converged run of a scene, not cached. */
-bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error);
-Convergence convergence_of(const EnergyLog *log);
+/* Continues Verdict: cells without a verdict. */
+enum { CELL_NOT_APPLICABLE = VERDICTS, CELL_MISSING, VERDICT_LOOKS };
 
 /* The tables of a stability study: their rows and layouts (base/csv.h), used by the study, the figures and the
    command line. Names are plain (csv_plain_length); a setting is stored as given and may contain the path of a
@@ -369,31 +235,6 @@ void stability_method_name(char text[STABILITY_TEXT_SIZE], const char *method, c
 void stability_method_text(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);
 
-/* The stability study: where each method fails. Tables: borders between holding and failing along one parameter
-   (stability.csv), maps over two parameters (maps.csv), methods that do not apply to a scene (refusals.csv), network
-   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv), runs
-   beside which the reference did not converge (unconverged.csv). */
-
-enum { STABILITY_MAX_NAMES = 64 };
-
-typedef struct StabilityOptions {
-    const char *folder;  /* of the tables; created if missing */
-    const char *scenes;  /* the folder that contains stability/ */
-    const char *methods; /* contenders_parse; NULL: those of the study */
-    bool quick;          /* few studies, small maps */
-    int name_count;      /* of studies and maps to run; 0: all */
-    const char *names[STABILITY_MAX_NAMES];
-    const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
-    Shard shard;
-    /* Draws the tables in the folder; NULL: nothing is drawn. */
-    bool (*draw)(const struct StabilityOptions *options, Error *error);
-} StabilityOptions;
-
-/* Runs the studies and maps, writes the tables and draws; a shard does its pieces only. An interrupted run is resumed
-   at the unfinished pieces. The tables do not depend on the number of threads. ERROR_INPUT also for an unknown name,
-   ERROR_INTERRUPTED if progress stops the run. *pieces tells what was done; it has no plan any more. */
-bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error);
-
 /* The figure of a stability map: one panel per method, one tile per cell. */
 
 enum { MAP_MAX_VALUES = 128, MAP_MAX_METHODS = 24 };
@@ -412,16 +253,135 @@ typedef struct MapPanels {
    cell, more than MAP_MAX_VALUES values or MAP_MAX_METHODS methods. */
 bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *error);
 
-/* The figures of a stability study, drawn from its tables. */
+/* Finds all borders along a parameter: the values where a method changes from holding to failing.
 
-/* Reads folder/stability.csv and folder/maps.csv, of the studies of a scene file or, with own NULL, of the table, and
-   draws, as .png, .svg and a caption .txt of one line, which also explains the words of the figure,
-     map-NAME   one per map: a panel per method with a border, a tile per cell; the caption names methods
-                that hold or fail everywhere
-     borders    how far each method holds in each study (studies/stability_internal.h)
-   into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.
+   A coarse scan finds changes between neighbouring values, bisection narrows each to the resolution. Both sides of a
+   border and their outward neighbours are repeated with other seeds, which shift the start by a tiny amount. A value
+   for which the seeds disagree is undecided; it cannot be a side of a border, so the search moves outward to the next
+   value on which all seeds agree. A border wider than the resolution thus encloses undecided values. A change and its
+   reversal within one step of the scan are found only next to a border. */
 
-   A table without rows gives no figure. An invalid table is an error "path:line:column: error: text" before anything is
-   drawn. ERROR_INTERRUPTED if progress, which may be NULL, requests a stop;
-   figures already drawn stay. */
-bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error);
+typedef struct BorderProbe {
+    /* The verdict at a value; seed 0 .. BORDER_SEEDS - 1. */
+    bool (*evaluate)(void *context, double value, int seed, Verdict *verdict, Error *error);
+    void *context;
+    int seeds; /* to evaluate: 1 .. BORDER_SEEDS */
+} BorderProbe;
+
+typedef struct Border {
+    double holds_at, fails_at; /* neighbouring values, or NaN */
+    Verdict verdict;           /* at fails_at, the worst of the seeds */
+} Border;
+
+/* Never empty. Without a border it has one entry: if all values hold, holds_at is the last value and the verdict the
+   worst found; if all fail, fails_at is the first value. If the values up to the end are undecided, the last entry has
+   the last value that holds, fails_at = NaN and the worst verdict beyond it. If all values are undecided, both are
+   NaN. */
+typedef struct BorderList {
+    int count;
+    Border items[BORDERS_MAX]; /* ordered from the end expected to hold to the end expected to fail */
+} BorderList;
+
+/* The distinct values of the coarse scan, ascending, rounded to 4 digits so that tables show exactly the value that was
+   run. Returns their number. */
+int border_scan_values(const BorderScan *scan, double values[BORDER_POINTS_MAX]);
+
+/* False with error set if an evaluation fails, memory is short or there are more than BORDERS_MAX borders. */
+bool border_search(BorderList *list, const BorderScan *scan, const BorderProbe *probe, Error *error);
+
+/* One run of a stability study: a scene with parameter values, and a method; and the converged runs that verdicts need,
+   each computed once for all methods. */
+
+enum { STABILITY_PATH_SIZE = 4096 };
+
+/* A parametric scene of the study. */
+typedef struct StabilityPlace {
+    const char *scenes; /* the folder that contains stability/ */
+    const char *scene;  /* file name without folder and extension */
+    const char *file;   /* or this file, if not NULL */
+} StabilityPlace;
+
+/* "scenes/stability/SCENE.yaml", or the file. ERROR_INPUT if it is too long. */
+bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error);
+
+/* Reads the scene with these parameter values. The caller frees it. */
+Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error);
+
+/* The study's scene, in this folder, with a value of its parameter. The caller frees it. */
+Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error);
+
+/* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by
+   the table of studies, or follows from the scene if it is a file. */
+VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
+                                 const EnergyLog *converged);
+
+/* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those
+   that are shifted by a micrometre. */
+typedef struct Convergence {
+    int steps;           /* of all of them */
+    int first;           /* step that did not converge, in the run by which methods are judged; 0: none */
+    Fallbacks fallbacks; /* of all of them */
+} Convergence;
+
+/* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses
+   (runs/verdict.h). It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre
+   differ in that, and where the converged run is not sound or has a step that did not converge. Of a scene that is not
+   struck it is VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
+bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error);
+
+/* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is
+   not sound, or falls before it is struck, stays as it is. The reference's verdict is what its own run does, so that a
+   study shows the truth, or undecided if a step of it did not converge. */
+Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
+
+/* Shifts the first dynamic body, or if there is none the bomb, along x: by 0 for seed 0, by +-1e-6 m for seeds 1 and
+   2. */
+void stability_shift(Scene *scene, int seed);
+
+/* False, with the reason in error, if the method does not apply to the scene: it cannot be created, or its first step
+   fails. */
+bool stability_applies(const Method *method, const Scene *scene, Error *error);
+
+/* True for a method that makes as many sweeps as the scene sets. */
+bool stability_takes_iterations(const Method *method);
+
+/* A converged run at a value of the scanned parameter. */
+typedef struct ConvergedRun {
+    double value;
+    EnergyLog log;
+    Verdict truth;
+    Convergence convergence;
+} ConvergedRun;
+
+/* Counts runs and reports progress. Zero-initialise. */
+typedef struct RunCounter {
+    const Progress *progress; /* may be NULL */
+    double done, expected;
+    bool stopped;
+} RunCounter;
+
+/* Counts one run. Thread-safe. False with error set if progress stops the study. */
+bool run_counter_add(RunCounter *counter, const char *what, Error *error);
+
+/* A cache of converged runs. They always use a warm start, whatever the scene sets: it does not change the converged
+   solution, but without it a stack of 40 boxes takes minutes. Shifted scenes use the run of the unshifted scene.
+
+   Zero-initialise. Thread-safe; two threads may compute the same run, with the same result. */
+typedef struct ConvergedRuns {
+    int count;
+    size_t capacity;
+    ConvergedRun **runs; /* [count] */
+} ConvergedRuns;
+
+/* The run of the scene at the value by the method "reference", and its truth, judged as `judged`, without a converged
+   run. NULL with error set if it fails. */
+const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
+                                       Error *error);
+
+/* The same, if it was computed before; else NULL. */
+const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value);
+void converged_runs_free(ConvergedRuns *runs);
+
+/* The converged run of a scene, not cached. */
+bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error);
+Convergence convergence_of(const EnergyLog *log);

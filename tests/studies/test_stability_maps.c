@@ -4,6 +4,7 @@
 #include "owned.h"
 
 #include "pixels/type.h"
+#include "studies/stability_internal.h"
 
 /* One cell of each verdict, and one sample in the legend. */
 TEST(each_verdict_has_its_tile) {

@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "studies/stability.h"
+#include "studies/stability_internal.h"
 
 /* CIE 1931 luminance from sRGB, as in a grey print. */
 static double luminance(uint32_t rgb) {
