@@ -311,17 +311,6 @@ static bool is_solver(const ChartLine *line) {
            (line->competes || (line->description != NULL && line->description->role == METHOD_REFERENCE));
 }
 
-/* Those that another setting of the line beats in both. */
-static void find_beaten(ChartPanel *panel) {
-    for (int i = 0; i < panel->count; i++)
-        for (int k = 0; k < panel->count; k++) {
-            const ChartMark *mark = &panel->marks[i], *other = &panel->marks[k];
-            if (mark->line == other->line && !mark->lost && !other->lost && other->us <= mark->us &&
-                other->error <= mark->error && (other->us < mark->us || other->error < mark->error))
-                panel->marks[i].beaten = true;
-        }
-}
-
 static int compare_marks(const void *left, const void *right) {
     const ChartMark *a = left, *b = right;
     if (a->line != b->line) return a->line - b->line;
@@ -423,7 +412,14 @@ bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const 
         room = chart->front[p] != NULL;
         for (int i = 0; room && i < panel->count; i++)
             panel->marks[i].on_front = is_on(&panel->marks[i], chart->front[p], chart->front_count[p]);
-        find_beaten(panel);
+        /* Those that another setting of the line beats in both. */
+        for (int i = 0; i < panel->count; i++)
+            for (int k = 0; k < panel->count; k++) {
+                const ChartMark *mark = &panel->marks[i], *other = &panel->marks[k];
+                if (mark->line == other->line && !mark->lost && !other->lost && other->us <= mark->us &&
+                    other->error <= mark->error && (other->us < mark->us || other->error < mark->error))
+                    panel->marks[i].beaten = true;
+            }
     }
     room = room && (!ok || rank(chart, look));
     ok = ok && (room || error_memory(error, path));

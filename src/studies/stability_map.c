@@ -82,21 +82,19 @@ static double map_axis_width(const double *values, int count) {
     return widest;
 }
 
-/* Digits that are not zero at the end: 1 of 40, 2 of 41 and of 0.25. */
-static int digits_of(double value) {
-    char text[32];
-    snprintf(text, sizeof text, "%.2e", fabs(value));
-    return text[3] != '0' ? 3 : text[2] != '0' ? 2 : 1;
-}
-
 /* Which values have a label: every so many, from one on. */
 typedef struct Labels {
     int first, every;
 } Labels;
 
+/* Digits that are not zero at the end, on average: 1 of 40, 2 of 41 and of 0.25. */
 static double roughness(const double *values, int count, Labels labels) {
     double digits = 0, labelled = 0;
-    for (int i = labels.first; i < count; i += labels.every, labelled++) digits += digits_of(values[i]);
+    for (int i = labels.first; i < count; i += labels.every, labelled++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.2e", fabs(values[i]));
+        digits += text[3] != '0' ? 3 : text[2] != '0' ? 2 : 1;
+    }
     return digits / labelled;
 }
 

@@ -16,14 +16,6 @@ static const double linear_ratio = 20;
 
 enum { SCAN_POINTS = 13, SCAN_QUICK_POINTS = 5, MAP_POINTS = 10, MAP_QUICK_POINTS = 4 };
 
-static const SceneParameter *stability_own_find(const SceneParameters *all, const char *name, Error *error) {
-    const SceneParameter *found = scene_parameter(all, name);
-    NameList known = {0};
-    for (int i = 0; i < all->count; i++) name_list_add(&known, all->items[i].name);
-    if (found == NULL) error_unknown(error, "--vary", name, "a parameter of the scene", &known);
-    return found;
-}
-
 static bool is_whole(double value) { return value == floor(value); }
 
 /* What every scene has is checked when the scene is read. */
@@ -75,8 +67,12 @@ static bool read_text(const Scene *scene, const char *text, char name[SCENE_PARA
     const size_t length = strcspn(text, "=");
     snprintf(name, SCENE_PARAMETER_SIZE, "%.*s", (int)length, text);
     const SceneParameters all = scene_parameters(scene);
-    const SceneParameter *parameter = stability_own_find(&all, name, error);
-    if (parameter == NULL) return false;
+    const SceneParameter *parameter = scene_parameter(&all, name);
+    if (parameter == NULL) {
+        NameList known = {0};
+        for (int i = 0; i < all.count; i++) name_list_add(&known, all.items[i].name);
+        return error_unknown(error, "--vary", name, "a parameter of the scene", &known);
+    }
     double from = parameter->from, to = parameter->to, step = 0;
     const char *rest;
     if (text[length] == '=' && !(parse_leading_double(text + length + 1, &from, &rest) && *rest == ':' &&
