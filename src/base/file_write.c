@@ -25,9 +25,9 @@ typedef struct Contents {
 } Contents;
 
 /* A file that gets its name when it is whole. Before, it has none where the file system can do that. Otherwise, and for
-   the moment in which it replaces a file, it has a temporary name, which follows from the one that it shall have, and is
-   locked: what a killed process left is not locked, and the next process that wants the name removes it. Functions set
-   errno when they fail. */
+   the moment in which it replaces a file, it has a temporary name, which follows from the one that it shall have, and
+   is locked: what a killed process left is not locked, and the next process that wants the name removes it. Functions
+   set errno when they fail. */
 typedef struct Temporary {
     int at;              /* the open directory that names are relative to, or AT_FDCWD */
     int file;            /* open for reading and writing; -1: none */
@@ -218,7 +218,8 @@ static bool flush(int file, bool wait) {
     return copy >= 0 && close(copy) == 0;
 }
 
-/* Makes the contents the file `path`, replacing one of that name, or (`replace` false: EEXIST) only if there is none. */
+/* Makes the contents the file `path`, replacing one of that name, or (`replace` false: EEXIST) only if there is
+   none. */
 static bool place(int at, const char *path, const Contents *contents, bool wait, bool replace) {
     Temporary whole = {.at = at, .file = contents->draft};
     bool done = false;

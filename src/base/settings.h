@@ -4,7 +4,8 @@
 
      static const SettingSpec known[] = {{"k", "sweeps", SETTING_INT(Options, sweeps, 1, 100)}, {0}};
      Settings settings;
-     if (settings_parse(&settings, "k=20", known, "--method", &error)) settings_read(&settings, known, &options, &error); */
+     if (settings_parse(&settings, "k=20", known, "--method", &error))
+         settings_read(&settings, known, &options, &error); */
 #pragma once
 #include "base/base.h"
 

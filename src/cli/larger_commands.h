@@ -71,7 +71,6 @@ bool compare_print(const Regression *regression, Error *error); /* false with er
 /* The same as JSON: what results.json of a report has. */
 bool compare_json_pictures(const Regression *regression, Error *error);
 
-
 /* The kinds of network that `twinbox train` trains. To add a kind, define train_NAME (train_launches.c has those that
    learn from launches of scenes), and add one line KIND(NAME) here. */
 

@@ -255,8 +255,8 @@ static void make_rows(const CommandSpec *spec, struct argp_option rows[OPTIONS_M
     }
 }
 
-/* The row of the word's last option, which may be abbreviated if it is long; NULL if the word has an unknown or ambiguous
-   one. *value: behind it, if there is a value. */
+/* The row of the word's last option, which may be abbreviated if it is long; NULL if the word has an unknown or
+   ambiguous one. *value: behind it, if there is a value. */
 static const struct argp_option *find_option(const struct argp_option *rows, const char *word, const char **value) {
     const struct argp_option *found = NULL;
     size_t length = strcspn(word, "=");

@@ -31,7 +31,8 @@ static const ContactSolverKind solver_of_test = {.description = {.name = "of-tes
                                                  .destroy = destroy};
 
 /* In place of methods/registry.c, which is not linked. */
-const MethodKind method_kinds[] = {METHODS(METHOD_KIND_SOLVER, METHOD_KIND_STEPPING) METHOD_KIND_SOLVER(of_test, LIVE){0}};
+const MethodKind method_kinds[] = {METHODS(METHOD_KIND_SOLVER, METHOD_KIND_STEPPING)
+                                       METHOD_KIND_SOLVER(of_test, LIVE){0}};
 
 /* What a command prints; the caller frees it. */
 static char *run_command(bool (*command)(int, char **, Error *), char **argv) {
