@@ -218,8 +218,6 @@ bool stability_unconverged(const CsvTable *table, const char *study, char text[U
 /* What follows from such steps, for captions and pages. */
 extern const char stability_unconverged_words[];
 
-/* The method of the row holds at the value. Only for methods with one row in the study. */
-bool border_holds(const BorderRow *row, double value);
 bool border_same_study(const BorderRow *a, const BorderRow *b);
 
 /* A cell's method as for method_parse(): "engine:k=10". */

@@ -29,12 +29,6 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
     return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
 }
 
-bool border_holds(const BorderRow *row, double value) {
-    if (isnan(row->holds_at)) return false;
-    if (isnan(row->fails_at)) return row->verdict < VERDICTS && verdict_holds((Verdict)row->verdict);
-    return row->fails_at > row->holds_at ? value <= row->holds_at : value >= row->holds_at;
-}
-
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
 const char stability_struck_words[] = "Where a bomb or a moving body strikes, a method holds where it agrees with the "
