@@ -61,11 +61,16 @@ MemoryLimit memory_limit(void) {
     return limit;
 }
 
+/* Threads without work would take processor time waiting. */
+static int threads_for(int count) {
+    const int most = omp_get_max_threads();
+    return count < 1 ? 1 : count < most ? count : most;
+}
+
 bool parallel_for(const ParallelWork *work, int count, const char *what, const Progress *progress, Error *error) {
     atomic_int done = 0, end = count; /* pieces from `end` on are not begun */
-    int failed = count, most = omp_get_max_threads();
-    if (most > count) most = count < 1 ? 1 : count; /* threads without work would take processor time waiting */
-#pragma omp parallel for schedule(dynamic) num_threads(most)
+    int failed = count;
+#pragma omp parallel for schedule(dynamic) num_threads(threads_for(count))
     for (int i = 0; i < count; i++) {
         if (i >= atomic_load(&end)) continue;
         Error failure = {0};

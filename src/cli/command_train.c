@@ -275,8 +275,8 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
     return true;
 }
 
-/* Trains, with the scene of a kind that learns from one; a kind that keeps its state on disk has the name of it, and the
-   command that continues. */
+/* Trains, with the scene of a kind that learns from one; a kind that keeps its state on disk has the name of it, and
+   the command that continues. */
 static bool train(TrainRequest *request, Error *error) {
     const TrainKind *kind = request->kind;
     char state[4096], command[TRAIN_COMMAND_SIZE];

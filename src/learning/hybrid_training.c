@@ -3,9 +3,9 @@
 
    A solved impact that the memory does not answer teaches it a larger ellipsoid, or a new entry. Source: Pope (1997),
    3, and Lu, Pope (2009) for the checks of answers; the linear map is a fit over neighbours instead of a derivative
-   (hybrid_memory.h). A derivative by finite differences would take a converged solve for each direction of the key, most
-   of which no launch takes, and the contacts change their features under small turns. The fit takes none, and is exact
-   along the launches. */
+   (hybrid_memory.h). A derivative by finite differences would take a converged solve for each direction of the key,
+   most of which no launch takes, and the contacts change their features under small turns. The fit takes none, and is
+   exact along the launches. */
 #include "learning/hybrid_training.h"
 
 #include "base/base.h"

@@ -60,8 +60,8 @@ typedef struct LaunchWatch {
     World *past; /* NULL: is made. A caller that observes one launch after the other keeps that of launches_past() */
 } LaunchWatch;
 
-/* Runs the launches on all threads; `steps`, or NULL, receives what was recorded, in the order of launches and steps. The
-   same for any number of threads. */
+/* Runs the launches on all threads; `steps`, or NULL, receives what was recorded, in the order of launches and steps.
+   The same for any number of threads. */
 bool launches_observe(const LaunchWatch *watch, RecordedSteps *steps, const Progress *progress, Error *error);
 
 /* The world of the scene just before the bomb is added. NULL with error set. */

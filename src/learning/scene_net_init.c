@@ -92,7 +92,8 @@ static bool touches_bomb(const SceneNet *network, int slot) {
     return network->slots[slot].a == network->bomb || network->slots[slot].b == network->bomb;
 }
 
-/* The whitened principal components of rows [samples, projection->from]: over the rows, components have mean 0, variance
+/* The whitened principal components of rows [samples, projection->from]: over the rows, components have mean 0,
+   variance
    1 and no correlation, strongest first; those beyond the rank are 0. */
 static bool fit_projection(const float *numbers, int samples, Projection *projection, Error *error) {
     const PrincipalRows rows = {numbers, (size_t)samples, projection->from, 1};

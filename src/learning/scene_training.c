@@ -202,8 +202,8 @@ static bool fit_round(Trainer *trainer, double share, Error *error) {
     return ok;
 }
 
-/* The held-out launches have their own random seed. The launches of all rounds are checked first: those of the last must
-   not be the first to be refused. */
+/* The held-out launches have their own random seed. The launches of all rounds are checked first: those of the last
+   must not be the first to be refused. */
 static bool begin(Trainer *trainer, Error *error) {
     const Scene *scene = trainer->scene;
     const SceneTraining *training = trainer->training;

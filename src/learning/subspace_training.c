@@ -197,8 +197,8 @@ static bool make_net(Trainer *trainer, Error *error) {
     return true;
 }
 
-/* What the net has of the run in which no bomb appears: its poses up to the bomb's frame, and where the bodies rest; the
-   rest of the bomb is the mean of its rows. */
+/* What the net has of the run in which no bomb appears: its poses up to the bomb's frame, and where the bodies rest;
+   the rest of the bomb is the mean of its rows. */
 static void take_rest(const Trainer *trainer, const LaunchRuns *quiet) {
     const Scene *scene = trainer->scene;
     const PoseRows *rows = &trainer->rows;

@@ -47,8 +47,8 @@ typedef struct AdapterRequest {
 
 /* The answer to a step, or to a contact problem. */
 typedef struct AdapterFrame {
-    /* [bodies, ADAPTER_NUMBERS] x, y, angle, vx, vy, omega; or [contacts, 2] normal and tangent impulse, N s: any finite
-       numbers. Valid until the next call. */
+    /* [bodies, ADAPTER_NUMBERS] x, y, angle, vx, vy, omega; or [contacts, 2] normal and tangent impulse, N s: any
+       finite numbers. Valid until the next call. */
     const float *numbers;
     int64_t ns; /* that the program took for it, as it says; 0: unknown */
 } AdapterFrame;

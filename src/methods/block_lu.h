@@ -10,8 +10,8 @@
    Source: Davis, "Direct Methods for Sparse Linear Systems" (2006). Bits depend on the edges and the values, not on
    earlier calls: so the order is not carried from step to step.
 
-   Why not a library: of SuiteSparse, KLU exchanges rows by their values, and UMFPACK and CHOLMOD call a BLAS, whose bits
-   depend on the processor. */
+   Why not a library: of SuiteSparse, KLU exchanges rows by their values, and UMFPACK and CHOLMOD call a BLAS, whose
+   bits depend on the processor. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"

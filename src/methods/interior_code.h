@@ -22,8 +22,8 @@ static inline void push_right_side(const InteriorGroup *g, const BlockPair pairs
     block_push(pairs, g->l + g->rn, g->t + g->rt + g->s * g->rn, x);
 }
 
-/* The targets of the products, and the impulses that are eliminated: D_n, D_t, s, r_n, r_t. One division for all quotients: with the distances u and w
-   of t to its bounds, D_t = u w / (p w + q u). */
+/* The targets of the products, and the impulses that are eliminated: D_n, D_t, s, r_n, r_t. One division for all
+   quotients: with the distances u and w of t to its bounds, D_t = u w / (p w + q u). */
 static inline void linearise(InteriorGroup *g, double target) {
     const Vec4 softest = all4(1 / stiffest), held = g->friction * g->l;
     g->aim_normal = larger4(target * g->mass_normal, softest * g->l * g->l * g->inverse_normal);

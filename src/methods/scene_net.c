@@ -312,8 +312,8 @@ static bool run_sweeps(SceneNetSolver *solver, const ContactProblem *problem, Ro
 }
 
 /* After the warm start. */
-static bool choose_route(SceneNetSolver *solver, const ContactProblem *problem, Route *route,
-                         Fallbacks *fallbacks, Error *error) {
+static bool choose_route(SceneNetSolver *solver, const ContactProblem *problem, Route *route, Fallbacks *fallbacks,
+                         Error *error) {
     const SceneNet *network = solver->network;
     *route = ROUTE_MOMENTUM;
     if (problem->bomb < 0) return true;

@@ -151,7 +151,7 @@ static void start_subspace(SubspaceStepper *method, const Body *bodies, int coun
 
 /* Poses after a step in which the bomb is there. Bodies whose numbers are not finite stay where they are. */
 static Fallbacks predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
-                                const Step *which) {
+                         const Step *which) {
     const SceneSpan *mass = &which->scene->bomb.mass;
     const size_t size = (size_t)problem->body_count * sizeof *bodies;
     float launch[SUBSPACE_LAUNCH];
@@ -162,8 +162,7 @@ static Fallbacks predict(SubspaceStepper *method, const Body *bodies, const Cont
     const SubspaceReport report = subspace_step(&method->subspace, launch);
     subspace_reconstruct(&method->subspace);
     Fallbacks fallbacks = {.not_finite = report.not_finite,
-                                  .beyond_training =
-                                      report.beyond > 0 || mass->value < mass->from || mass->value > mass->to};
+                           .beyond_training = report.beyond > 0 || mass->value < mass->from || mass->value > mass->to};
     const float *numbers = method->subspace.numbers;
     for (int i = 0; i < problem->body_count; i++) {
         if (bodies[i].inv_mass == 0) continue;

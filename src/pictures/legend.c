@@ -68,7 +68,8 @@ static void add(Row *row, Entry entry) {
         caption_method(picture, 0, text, note);
         end_entry(row, text);
         break;
-    case ENTRY_COLOURS: { /* a number stands between the colours of its two decades, of one rectangle per pixel column */
+    case ENTRY_COLOURS: {
+        /* A number stands between the colours of its two decades, of one rectangle per pixel column. */
         const int decades = scales->last_decade - SCALE_FIRST_DECADE, width = (int)rint(LEGEND_DECADE * em),
                   top = row->baseline - em * 3 / 4;
         add_text(row, "distance  0.001 ");

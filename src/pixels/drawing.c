@@ -164,8 +164,8 @@ static const double MAX_TILED = 8000; /* pixels; longer shapes are reduced per t
                                              match */
 static const int MAX_DASHES = 10000;  /* of one segment; a line of 8,192 pixels has fewer */
 
-/* A long slanted line touches few pixels of its bounding box, so it is drawn in disjoint tiles: the whole pixels that it
-   can touch between some columns (flat) or rows. */
+/* A long slanted line touches few pixels of its bounding box, so it is drawn in disjoint tiles: the whole pixels that
+   it can touch between some columns (flat) or rows. */
 static void add_in_tiles(Drawing *drawing, const Shape *line, Point from, Point to, double thickness,
                          const Rect *clip) {
     const bool flat = fabs(to.x - from.x) > fabs(to.y - from.y);

@@ -113,7 +113,8 @@ static void write_start(BitWriter *writer) {
     bits_write(writer, LENGTH_SYMBOLS - 4, 4);
     bits_write(writer, 0, 3 * REPEATS); /* the symbols that repeat lengths come first and are unused */
     for (int i = REPEATS; i < LENGTH_SYMBOLS; i++) bits_write(writer, LENGTH_BITS, 3);
-    /* The code lengths are themselves Huffman-coded, here with four bits each; of distances the third is three bytes. */
+    /* The code lengths are themselves Huffman-coded, here with four bits each; of distances the third is three
+       bytes. */
     for (int i = 0; i < SYMBOLS; i++) bits_write(writer, reversed(code_length(i), LENGTH_BITS), LENGTH_BITS);
     for (int i = 1; i <= DISTANCES; i++) bits_write(writer, reversed(i == DISTANCES, LENGTH_BITS), LENGTH_BITS);
 }

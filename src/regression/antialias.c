@@ -295,9 +295,9 @@ static bool find_sides(const EdgeRows *a, const EdgeRows *b, int x, const uint8_
     return farthest >= 2 * LEAST_CONTRAST;
 }
 
-/* The same as the second part of 2, for a line whose sides differ: in one of the windows of 5 x 5 pixels around the pixel
-   and its neighbours, the sums of b less a are what it takes to move an edge or a line between two sides by half a pixel
-   at most: one side's colour gives way to the other's. */
+/* The same as the second part of 2, for a line whose sides differ: in one of the windows of 5 x 5 pixels around the
+   pixel and its neighbours, the sums of b less a are what it takes to move an edge or a line between two sides by half
+   a pixel at most: one side's colour gives way to the other's. */
 static bool lies_between(const EdgeRows *a, const EdgeRows *b, int x, const Window *p, const Window *q,
                          const uint8_t slacks[CHANNELS]) {
     static const double MOST = 0.5 * 7; /* of the longest edge in a window */

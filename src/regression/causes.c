@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The causes of failed frames: a view, states that differ, a body or another part that changed; each with its frames. */
+/* The causes of failed frames: a view, states that differ, a body or another part that changed; each with its
+   frames. */
 #include "base/base.h"
 #include "regression/naming.h"
 #include "regression/regression.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Counts what differs between two pictures, and finds its regions: connected components in one pass from top to
-   bottom. Of the rows above, only the last differing pixel of each column matters: an earlier one within reach is in the
-   same region. Regions are joined by union-find; those that no column reaches any more are complete, and their nodes are
-   used again. */
+   bottom. Of the rows above, only the last differing pixel of each column matters: an earlier one within reach is in
+   the same region. Regions are joined by union-find; those that no column reaches any more are complete, and their
+   nodes are used again. */
 #include "regression/image_compare.h"
 
 #include "base/base.h"

@@ -94,8 +94,8 @@ typedef struct RowCompare {
     Error error;
 } RowCompare;
 
-/* all_levels[height, width] of zeros gets the levels of rows that differ; NULL: they are not kept. False with `error` of
-   the comparison set if out of memory, then or later. row_compare_free() must follow. */
+/* all_levels[height, width] of zeros gets the levels of rows that differ; NULL: they are not kept. False with `error`
+   of the comparison set if out of memory, then or later. row_compare_free() must follow. */
 bool row_compare_begin(RowCompare *compare, int width, int height, int tolerance, uint8_t *all_levels);
 void row_compare_row(RowCompare *compare, int y, bool differs); /* where it does not, only side 0 is placed */
 bool row_compare_end(RowCompare *compare);

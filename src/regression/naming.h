@@ -61,8 +61,8 @@ typedef struct NamingScene {
 enum { NAMING_PIXELS_MAX = 20000000 }; /* larger pictures get no names */
 
 /* Fills the changes, and the names of the regions, which must be set. levels[height, width], of the view's size: where
-   pixels differ, as image_find_levels() gives them; their values are lost. difference: their bounds. False with error set
-   if out of memory. */
+   pixels differ, as image_find_levels() gives them; their values are lost. difference: their bounds. False with error
+   set if out of memory. */
 bool naming_find(const NamingScene *scene, uint8_t *levels, const ImageDifference *difference, FrameChanges *changes,
                  Error *error);
 
@@ -76,8 +76,8 @@ ChangeText change_words(const Change *change);
 /* The same without amounts, equal for the same cause in several frames: "body 7 moved". */
 ChangeText change_cause(const Change *change);
 
-/* "12 x 9 pixels at (40, 31), 34 of them differ by at most 90: body 7 moved 0.4 px right"; without a name only the first
-   part. */
+/* "12 x 9 pixels at (40, 31), 34 of them differ by at most 90: body 7 moved 0.4 px right"; without a name only the
+   first part. */
 ChangeText region_words(const FrameChanges *changes, int region);
 
 /* What region_words() has after the colon: a change, or "noise along edges" (antialias.h); empty: unknown. */

@@ -144,7 +144,8 @@ static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[
     PngFile *const a = &files[EXPECTED], *const b = &files[ACTUAL];
     RegressionFile *const of_a = &frame->files[EXPECTED], *const of_b = &frame->files[ACTUAL];
     const Tolerance limits = tolerance_of(regression, frame);
-    /* A missing or extra frame is decoded, too, to detect damage. Of others, what is read in pieces has been checked. */
+    /* A missing or extra frame is decoded, too, to detect damage. Of others, what is read in pieces has been
+       checked. */
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         PngFile *from = &files[side];
         int *width = &frame->files[side].width, *height = &frame->files[side].height;
@@ -378,8 +379,8 @@ static bool pair_frames(Regression *regression, Error *error) {
     return true;
 }
 
-/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. Of folders, each rule must
-   match a frame. */
+/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. Of folders, each rule
+   must match a frame. */
 static bool read_rules(Regression *regression, Error *error) {
     const ImageSequence *expected = regression->sequences[EXPECTED];
     char found[PATH_MAX];
@@ -404,8 +405,8 @@ static bool read_rules(Regression *regression, Error *error) {
 
 static bool is_any(const char *name) { return (void)name, true; }
 
-/* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared. Through
-   a link or another spelling of the path, the same folder is a mistake; the same path twice is meant. */
+/* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared.
+   Through a link or another spelling of the path, the same folder is a mistake; the same path twice is meant. */
 static bool check_inputs(const Regression *regression, const char *const paths[SIDES], Error *error) {
     const ImageSequence *a = regression->sequences[EXPECTED], *b = regression->sequences[ACTUAL];
     const bool runs_alone = regression->count == 0 && regression->run_count > 0;

@@ -22,15 +22,15 @@ void regression_free_run(RegressionRun *run);
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              Error *error);
 
-/* *named: whether the changes of a frame, whose size is known, can have names: both folders say what their pictures show.
-   Thread-safe. */
+/* *named: whether the changes of a frame, whose size is known, can have names: both folders say what their pictures
+   show. Thread-safe. */
 bool regression_may_name(Regression *regression, const RegressionFrame *frame, bool *named, Error *error);
 
 /* Sets `changes` to these regions, without names. */
 bool regression_keep_regions(RegressionFrame *frame, const ImageRegions *regions, Error *error);
 
-/* Names of what changed in a frame that fails and has regions: sets `changes` and `other_view`. data: the two PNG files,
-   whose texts are read. levels: of naming_find(). Thread-safe. False with error set if out of memory. */
+/* Names of what changed in a frame that fails and has regions: sets `changes` and `other_view`. data: the two PNG
+   files, whose texts are read. levels: of naming_find(). Thread-safe. False with error set if out of memory. */
 bool regression_name_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              uint8_t *levels, Error *error);
 

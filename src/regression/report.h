@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of a comparison: report.html, a self-contained page; junit.xml for CI; results.json for programs and for
-   approve(). Beside it run-NAME.html, a page that plays both runs (pictures/player.h), for each trajectory that differs.
+   approve(). Beside it run-NAME.html, a page that plays both runs (pictures/player.h), for each trajectory that
+   differs.
 
      regression_report_write(&regression, "out/report", (size_t)REPORT_MEGABYTES << 20, NULL, error); */
 #pragma once

@@ -12,8 +12,8 @@
 enum { HEIGHT = 100 };
 
 /* The largest difference of each frame as a step curve, one unit of width per frame, in an SVG that is stretched to its
-   place; equal steps are joined, and frames without a value leave a gap. Labels are text of the page, so they keep their
-   size on any screen and are never clipped. */
+   place; equal steps are joined, and frames without a value leave a gap. Labels are text of the page, so they keep
+   their size on any screen and are never clipped. */
 static void write_plot(FILE *file, const Regression *regression) {
     enum { MOST = 255 };
     const int count = regression->count;

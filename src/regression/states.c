@@ -60,8 +60,8 @@ static int64_t stored_frame(const Texts *texts) {
     return texts->part[0] == '\0' && frame[0] >= '0' && frame[0] <= '9' ? strtoll(frame, NULL, 10) : -1;
 }
 
-/* *run: the run of this name if the picture shows it: if its state in this frame is one of those that the picture's text
-   names. An overlay has more states than panels, and a difference one more; so any of them will do. Else NULL. */
+/* *run: the run of this name if the picture shows it: if its state in this frame is one of those that the picture's
+   text names. An overlay has more states than panels, and a difference one more; so any of them will do. Else NULL. */
 static bool find_shown_run(ShownFolder *folder, const char *name, int frame, const char *states, const Trajectory **run,
                            Error *error) {
     char hash[20];

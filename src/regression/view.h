@@ -52,8 +52,8 @@ typedef struct ViewText {
 } ViewText;
 ViewText view_difference(const FrameView *expected, const FrameView *actual);
 
-/* What the pictures of a folder show: the view from manifest.json, and the runs that it names, each read when it is first
-   asked for, and kept. */
+/* What the pictures of a folder show: the view from manifest.json, and the runs that it names, each read when it is
+   first asked for, and kept. */
 
 typedef struct ShownFolder {
     char *path;                         /* with its slash; empty for the current folder */

@@ -46,7 +46,7 @@ typedef struct EnergyLog {
     EnergyBalance balance; /* after the last frame, or before the first that is unconverged */
     int unconverged; /* the first step whose solution did not converge, from which on the log bounds nothing; 0: none */
     Fallbacks fallbacks; /* of all steps: how many did not converge, and their largest residual */
-    double liveliest; /* J/kg: the most energy of a body in any frame; potential: above the lowest at the start */
+    double liveliest;    /* J/kg: the most energy of a body in any frame; potential: above the lowest at the start */
     size_t capacity;
 } EnergyLog;
 
@@ -191,9 +191,9 @@ typedef struct VerdictReading {
     /* Since VERDICT_CREEP_FROM falls; NaN if the run is not longer. m: largest distance moved by a body that existed
        then. J: energy gained. */
     double drift, gained;
-    double deepest; /* m: penetration of the deepest contact of all steps */
-    double excess;  /* J: most energy above what the start and added bodies brought; >= 0; NaN if not judged */
-    int steps;      /* set by verdict_run() only */
+    double deepest;      /* m: penetration of the deepest contact of all steps */
+    double excess;       /* J: most energy above what the start and added bodies brought; >= 0; NaN if not judged */
+    int steps;           /* set by verdict_run() only */
     Fallbacks fallbacks; /* of all steps that were observed */
 } VerdictReading;
 

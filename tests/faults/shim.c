@@ -424,11 +424,12 @@ pid_t fork(void) {
     return child;
 }
 
-/* Streams: the functions that twinbox calls, in place of the reads and writes inside them. Nothing that cannot be printed to standard
-   error could be reported either; streams to memory (-1) only allocate. */
+/* Streams: the functions that twinbox calls, in place of the reads and writes inside them. Nothing that cannot be
+   printed to standard error could be reported either; streams to memory (-1) only allocate. */
 static bool is_a_file(FILE *stream) { return stream != NULL && fileno(stream) >= 0 && fileno(stream) != STDERR_FILENO; }
 
-/* A failure also sets the stream's error flag, as in the C library. Other modes are for calls that move bytes themselves. */
+/* A failure also sets the stream's error flag, as in the C library. Other modes are for calls that move bytes
+   themselves. */
 static bool stream_fails(FILE *stream, Call call, const void *caller) {
     if (!is_a_file(stream) || strikes(call, caller) != MODE_FAIL) return false;
     stream->_flags |= 0x20; /* glibc: _IO_ERR_SEEN */

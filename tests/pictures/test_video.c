@@ -106,7 +106,8 @@ static double film_error(const VideoOptions *options) {
     return sqrt(squares / ((double)PIXELS * FRAMES));
 }
 
-/* All frames, and the same bytes again. Of films, players seek from one key frame to the next: at 2.5 Hz, nine frames are
+/* All frames, and the same bytes again. Of films, players seek from one key frame to the next: at 2.5 Hz, nine frames
+   are
    3.6 s; those that know no tags guess the matrix of colours from the size; and their light is as near to that of the
    pictures as 3.0 levels in .mp4 and 2.4 in .webm (with -crf 40 and 46 instead of 16 and 24 they are 20 and 5.8). */
 TEST(each_form_has_all_its_frames_as_they_are) {

@@ -137,7 +137,8 @@ TEST(real_changes_are_detected) {
         for (int k = 0; k < 6; k++) assert_difference(&shapes[i], &plain, &changes[k]);
 }
 
-/* The case of pixelmatch's issue 74: without a ring or line of one pixel, or with a gap in it, the picture is another. */
+/* The case of pixelmatch's issue 74: without a ring or line of one pixel, or with a gap in it, the picture is
+   another. */
 TEST(rings_and_lines_of_one_pixel_are_not_hidden) {
     static const TestShape thin[] = {{RING, 0, 1, 5}, {RING, 0, 1, 17}, {LINE, 0, 1, 18}, {LINE, 31, 1, 18}};
     TestDrawing none = plain;

@@ -26,7 +26,8 @@ static bool write_tables(const char *folder, const char **results, int count, co
     StudyKey key = {0};
     const PiecePlan plan = {.count = count, .describe = describe, .work = work, .context = results};
     Pieces pieces;
-    const bool done = pieces_open(&pieces, folder, &key, &(Shard){0}, error) && pieces_do(&pieces, &plan, NULL, error) &&
+    const bool done = pieces_open(&pieces, folder, &key, &(Shard){0}, error) &&
+                      pieces_do(&pieces, &plan, NULL, error) &&
                       piece_tables_write(&pieces, folder, layouts, 2, groups, group_count, error);
     return pieces_end(&pieces, &(Error){0}) && done;
 }

@@ -42,8 +42,8 @@ static FT_Pos figure_advance(FT_Face face) {
     return widest;
 }
 
-/* Prints the coverage in the levels of the shapes (shaders/shape.frag), as a part of one string: a list of numbers takes
-   a compiler seconds. */
+/* Prints the coverage in the levels of the shapes (shaders/shape.frag), as a part of one string: a list of numbers
+   takes a compiler seconds. */
 static FontGlyph render(FT_Face face, unsigned code, FT_Pos figure) {
     if (code == FIGURE_SPACE_CODE) return (FontGlyph){.code = code, .advance = (short)figure};
     FT_Pos advance = make_atlas_load(face, code);
