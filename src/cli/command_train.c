@@ -294,6 +294,8 @@ static bool train(TrainRequest *request, Error *error) {
     const bool ok =
         (!kind->reads_scene || (scene != NULL && scene_check_strike(scene, error))) && kind->train(request, error);
     scene_destroy(scene);
+    request->scene = NULL;
+    request->state = request->command = NULL;
     return ok;
 }
 
