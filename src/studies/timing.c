@@ -141,10 +141,10 @@ static bool repeat_all(Timing *timing, bool again, const Meter *meter, const Pro
     for (int r = 0; r < repetitions; r++) {
         for (int i = 0; i < timing->count; i++) {
             const Timed *timed = &timing->items[i];
-            bool varies = false;
-            for (int p = 0; p < PROTOCOLS; p++)
+            bool varies = !again; /* there are no costs before the first round */
+            for (int p = 0; again && p < PROTOCOLS; p++)
                 for (int phase = 0; phase < PHASES; phase++) varies |= timing->costs[p][i][phase].varies;
-            if (again && !varies) continue;
+            if (!varies) continue;
             StepLog *closed = &timed->logs[PROTOCOL_CLOSED][r], *frozen = &timed->logs[PROTOCOL_FROZEN][r];
             closed->count = frozen->count = 0;
             if (!run_both(timing, timed, timing->options->launch_count, meter, closed, frozen, error)) return false;

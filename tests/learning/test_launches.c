@@ -118,6 +118,7 @@ TEST(what_cannot_run_is_an_error) {
     error = (Error){0};
     assert_ok(launches_observe(&watch, &steps, NULL, &error), error);
     assert_int_equal(steps.count, 0);
+    recorded_steps_free(&steps);
 }
 
 /* Frames before the bomb have none. */
