@@ -20,7 +20,7 @@ void block_order_free(BlockOrder *order) {
 static bool by_exact_degrees(BlockOrder *order, const BlockNeighbours *graph, int32_t *nodes) {
     const int count = graph->count;
     int degree[EXACT_MAX]; /* -1: eliminated */
-    const size_t size = (size_t)(count * count);
+    const size_t size = (size_t)count * (size_t)count;
     if (!array_reserve((void **)&order->adjacent, &order->adjacent_capacity, size + 1, sizeof *order->adjacent))
         return false;
     memset(order->adjacent, 0, size);

@@ -63,7 +63,7 @@ static uint64_t hash_rows(const Image *image, const bool *changed, uint64_t *row
     const size_t size = (size_t)image->width * 4;
     uint64_t hash = add_number(add_number(FNV1A64_START, (uint64_t)image->width, 4), (uint64_t)image->height, 4);
     for (int y = 0; y < image->height; y++) {
-        const bool kept = changed != NULL && !changed[y];
+        const bool kept = rows != NULL && changed != NULL && !changed[y];
         const uint64_t row = kept ? rows[y] : hash_xxh3(image->pixels + (size_t)y * size, size);
         if (rows != NULL) rows[y] = row;
         hash = add_number(hash, row, 8);

@@ -51,7 +51,7 @@ static bool make_frame(void *context, int i, Error *error) {
     if (frame->pixels == PIXELS_EQUAL || frame->pixels > PIXELS_RESIZED || frame->sizes_alone || batch->left == 0)
         return true;
     Image *images[SIDES] = {NULL, NULL};
-    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+    for (RegressionSide side = EXPECTED; side < SIDES && frame->at[side] != NULL; side++)
         images[side] = image_decode_png(made[side].data, made[side].size, frame->at[side]->path,
                                         regression->options.max_pixels, error);
     Image *const expected = images[EXPECTED], *const actual = images[ACTUAL];

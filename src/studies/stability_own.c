@@ -160,7 +160,7 @@ static bool add_study(StabilityOwn *own, const Scene *scene, const char *path, c
                       Error *error) {
     const int i = own->study_count;
     char *name = own->parameters[i];
-    BorderScan scan;
+    BorderScan scan = {0};
     if (!read_text(scene, text, name, &scan, error)) return false;
     if (i > 0 && strcmp(name, own->parameters[0]) == 0)
         return error_input(error, "--vary", "the parameter '%s' is given twice", name);
