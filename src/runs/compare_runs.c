@@ -4,6 +4,7 @@
 #include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,6 +94,7 @@ static double impulse_distance(const TrajectoryContact *a, const TrajectoryConta
 }
 
 static void add_only(ContactDifference *d, const TrajectoryContact *only, int *count) {
+    assert(only != NULL);
     if (d->only_a + d->only_b == 0) {
         d->only = *only;
         d->only_first_a = count == &d->only_a;

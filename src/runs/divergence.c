@@ -37,8 +37,8 @@ int chaos_body(const Trajectory *run, int diverged, int frame) {
 /* Copies the scene; the caller frees shifted->bodies. Only the position changes: an aimed bomb keeps its velocity. */
 static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *chaos, Error *error) {
     *shifted = *scene;
-    size_t size = (size_t)scene->body_count * sizeof *scene->bodies;
-    shifted->bodies = malloc(size + 1);
+    const size_t size = (size_t)scene->body_count * sizeof *scene->bodies;
+    shifted->bodies = calloc((size_t)scene->body_count + 1, sizeof *scene->bodies);
     if (shifted->bodies == NULL) return error_memory(error, scene->name);
     if (size > 0) memcpy(shifted->bodies, scene->bodies, size);
     shifted->bomb.velocity = scene_bomb_body(scene).velocity;
