@@ -47,7 +47,7 @@ typedef struct MethodDescription {
     bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
     bool external;      /* a program of others, which the text names behind ':'; its time is what it reports */
     bool whole_scenes;  /* it runs scenes from their start, with contacts of its own: no single steps, no impulses */
-    bool needs_network; /* runs only if the setting `network` or the scene names a file */
+    bool needs_network; /* learned: the setting `network` or the scene names its file; hybrid also runs without */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("sain:net=off"); it takes the same
                             settings otherwise. NULL: nothing is learned */
     const char *own_settings; /* those that hold where none are given, "k=10"; NULL: k is the scene's iterations */

@@ -50,7 +50,7 @@ typedef struct Reference {
     } kept[2];          /* interior points to go back to */
     double aim, enough; /* m/s: residuals that end a solve: as soon as reached; once steps get short */
     int most;           /* factorizations that a solve may use */
-    bool persist;       /* goes on where a method would rather leave a step to sweeps */
+    bool persist;       /* goes on, and tries again, where reference_solve_to() gives up */
     bool push_out;      /* contacts have their bias */
     int left;           /* that this attempt may still use */
     double stiffest;    /* a contact resists by at most this times its effective mass */
