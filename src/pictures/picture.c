@@ -128,11 +128,9 @@ static Layout choose_grid(const Picture *picture, const CameraFrame *frame, int 
     if (picture->look.camera != LOOK_FIT) return best;
     double largest = 0;
     for (int columns = 1; columns <= count; columns++) {
-        const int lines = (count + columns - 1) / columns;
-        const int empty = lines * columns - count;
         const Layout layout = layout_make(width, height, count, columns, rows);
         const Rect *panel = &layout.panels[0];
-        if (empty > (count > 3) || width_of(panel) < caption_least_width(picture, false) || height_of(panel) <= 0)
+        if (width_of(panel) < caption_least_width(picture, false) || height_of(panel) <= 0)
             continue;
         const bool whole = width_of(panel) >= caption_least_width(picture, true);
         const double scale = scale_in(&layout, frame), worth = scale / (whole ? GAIN : GAIN_WITH_CUT_NAMES);

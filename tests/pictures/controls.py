@@ -118,6 +118,26 @@ def check_time(checks, browser):
     page.close()
 
 
+def check_cut(checks, browser):
+    """A page of some frames has their times: frame F is at F dt, in words, in the link and on the axis of the plot."""
+    checks.twinbox("page", "engine.npz", "momentum.npz", "--frames", "30:60", "-o", "cut.html")
+    page = browser.open("cut.html")
+    for frame in 0, 12:
+        page.run("player.change({frame: $0})", frame)
+        page.settle()
+        at = (30 + frame) / 60
+        checks.equal(f"time of frame {frame}", page.run("document.getElementById('time').textContent"),
+                     f"t = {at:.3f} s, frame {30 + frame} of {FRAMES}")
+        page.wait(f"Math.abs(new URLSearchParams(location.hash.slice(1)).get('t') - {at}) < 1e-3")
+    width = page.run("document.getElementById('marks').clientWidth")
+    found = page.run("[...document.querySelectorAll('#plot text')].map(each => [Number(each.getAttribute('x')), each.textContent])")
+    times = [(x, float(text[:-2])) for x, text in found if re.fullmatch(r"[\d.]+ s", text)]
+    checks.true("times on the axis", len(times) > 2, found)
+    for x, t in times:
+        checks.near(f"place of {t} s", (x - 44) / width * 30, t * 60 - 30, 0.05)
+    page.close()
+
+
 def check_moments(checks, page, frames):
     """The marks on the time axis and the rows of the list lead to their frames."""
     for part in "marks", "moments":
@@ -322,6 +342,7 @@ def main():
         check_labels(checks, browser)
         check_names(checks, browser)
         check_time(checks, browser)
+        check_cut(checks, browser)
         check_touch(checks, browser)
 
 

@@ -181,7 +181,79 @@ def check_framing(checks, browser):
             except ScriptError:
                 found = page.run("player.data.framing")
             checks.equal(f"{scene}: the view with {given}", found, wanted)
+            with open("run.html", encoding="utf-8") as file:
+                checks.equal(f"{scene}: the impact with {given}", page.run("player.data.impact"),
+                             int(re.search(r'"impact": (-?\d+)', file.read())[1]))
         page.close()
+
+
+DRIVEN = """gravity: [0, -10]
+dt: 1/60
+iterations: $sweeps
+frames: 60
+parameters: {sweeps: {value: 10, from: 1, to: 100, whole: on}, side: {value: 3, from: -5, to: 5, unit: m}, load: {value: 20, from: 1, to: 90}}
+bodies:
+  - {static: true, size: [100, 20], position: [0, -10]}
+  - {mass: 1, size: [1, 1], position: [0, 0.5]}
+bomb: {frame: 20, x: $side, y: 10, size: [1, 1], mass: $load, velocity: {times_position: -1.5}}
+"""
+FIELDS = """Object.fromEntries([...document.querySelectorAll('#settings input:not([type=range])')].map(each =>
+  [each.ariaLabel.split(",")[0].replace(" ", "_"), Number(each.value)]))"""
+
+
+def check_driven(checks, browser):
+    """Where a parameter drives a number that every scene has, its field has what the run has, and a drag begins there."""
+    with open("driven.yaml", "w", encoding="utf-8") as file:
+        file.write(DRIVEN)
+    checks.twinbox("page", "--live", "driven.yaml", "--method", "engine", "-o", "driven.html")
+    page = browser.open("driven.html")
+    page.wait(ENDED)
+    for name, driven, value in ("sweeps", "iterations", 50), ("side", "bomb_x", -2), ("load", "bomb_mass", 7):
+        page.run("player.choose($0, $1)", name, value)
+        page.wait(ENDED)
+        fields = page.run(FIELDS)
+        checks.equal(f"{driven} as {name} has it", [fields[name], fields[driven]], [value, value])
+    page.run("player.change({frame: 22})")
+    page.wait(FRAMED)
+    page.settle()
+    x, y = page.run(BOMB)
+    page.mouse("mouseMoved", x, y)
+    page.mouse("mousePressed", x, y, button="left", clickCount=1)
+    page.mouse("mouseMoved", x + 4, y, button="left", buttons=1)
+    page.mouse("mouseReleased", x + 4, y, button="left", clickCount=1)
+    page.wait(ENDED)
+    checks.near("bomb_x after a drag of 4 pixels", page.run(FIELDS)["bomb_x"], -2, 0.4)
+    page.run("player.choose('bomb_x', 3)")  # the file's, but not what it has now without this choice
+    page.wait(ENDED)
+    checks.near("the bomb begins where its field says", page.run("player.runs[0].x[20 * 3 + 2]"), 3, 1e-6)
+    page.close()
+
+
+def check_approach(checks, browser):
+    """A question shows the way of a bomb that is not there yet: pixels of its colour."""
+    page = browser.open("driven.html", "stage", width=1920, height=1080)
+    page.wait(ENDED)
+    red = """(() => {
+      player.draw();
+      const stage = document.getElementById("stage"), all = stage.getContext("2d").getImageData(0, 0, stage.width, stage.height).data;
+      let count = 0;
+      for (let i = 0; i < all.length; i += 4) count += all[i] > 120 && all[i + 1] < all[i] / 2 && all[i + 2] < all[i] / 2;
+      return count;
+    })()"""
+    checks.equal("no bomb in frame 0", page.run(red), 0)
+    page.run("location.hash = '#stage&predict=1'")
+    becomes(checks, page, "a link asks", "document.body.classList.contains('asked')", True)
+    page.settle()
+    page.wait(ENDED)
+    page.settle()
+    checks.true("the bomb's way before a prediction", page.run(red) > 50, page.run(red))
+    checks.true("the question grows with the stage",
+                page.run("parseFloat(getComputedStyle(document.getElementById('question')).fontSize)") > 20)
+    page.press("1")
+    page.run("player.change({frame: 0, playing: false})")
+    page.settle()
+    checks.equal("answered: no way", page.run(red), 0)
+    page.close()
 
 
 def check_prediction(checks, browser):
@@ -344,6 +416,8 @@ def main():
         check_framing(checks, browser)
         check_access(checks, browser)
         check_keyboard(checks, browser)
+        check_driven(checks, browser)
+        check_approach(checks, browser)
         check_prediction(checks, browser)
         check_colours(checks, browser)
         check_rubbish(checks, browser)

@@ -36,8 +36,8 @@ function body_colours(run, body) {
 const place = ({x, y}) => ({x: here.left + eye.left + eye.scale * x, y: here.top + eye.top - eye.scale * y});
 
 /* Calls use(w, h), in pixels, with the centre of a body at (0, 0) and its axes along the canvas's; not if it does not exist. */
-function with_body(run, body, use) {
-  const at = pose(run, now, body), {x, y} = place(at), [w, h] = runs[run].size[body];
+function with_body(run, body, use, moment = now) {
+  const at = pose(run, moment, body), {x, y} = place(at), [w, h] = runs[run].size[body];
   const c = cos(at.angle) * base.a, s = sin(at.angle) * base.a;
   if (!(hypot(x, y) < MAX_COORDINATE)) return;
   pen.setTransform(c, -s, s, c, base.a * x + base.e, base.d * y + base.f);

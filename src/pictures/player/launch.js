@@ -5,7 +5,8 @@ const inputs = new Map(); /* of the scene's settings, by name */
 let held = null, asked = false, chosen_run = null; /* the run that was chosen as the one that stands */
 
 const parameter = name => setup.scene?.parameters.find(each => each.name === name);
-const value_of = name => chosen.get(name) ?? parameter(name)?.value;
+/* What a setting is, or will be with the next launch: chosen, or what the scene that is shown has. A parameter may drive it. */
+const value_of = name => chosen.get(name) ?? live_runs()[0]?.values?.[name] ?? parameter(name)?.value;
 const label_of = name => name === "dt" ? "time step" : name.replaceAll("_", " ");
 const setting_text = ({name}, value) => name === "dt" ? fraction(value) : String(six_digits(value));
 /* "1/60" or a number. */
@@ -16,21 +17,24 @@ function rounded({name, whole}, value) {
   return whole ? round(value) : name === "dt" ? number_in(fraction(value)) : six_digits(value);
 }
 
-/* Out of its range, a setting of the scene takes the end. */
+/* Out of its range, a setting of the scene takes the end. One that has its first value is not chosen, unless a parameter of the
+   file may have given it another. */
 function choose(name, value) {
   const each = parameter(name);
   if (!each || !Number.isFinite(value)) return;
   const bounded = rounded(each, min(max(value, each.from), each.to));
-  if (bounded === rounded(each, each.value)) chosen.delete(name); else chosen.set(name, bounded);
+  const driven = [...chosen.keys()].some(key => key !== name && !parameter(key)?.common);
+  if (!driven && bounded === rounded(each, each.value)) chosen.delete(name); else chosen.set(name, bounded);
   link_problem = "";
   show_settings();
   launch();
 }
 
-function show_settings() {
+/* Except where somebody types. */
+function show_settings(typed) {
   for (const [name, [range, number]] of inputs) {
     range.value = value_of(name);
-    number.value = setting_text(parameter(name), value_of(name));
+    if (number !== typed) number.value = setting_text(parameter(name), value_of(name));
   }
 }
 

@@ -75,7 +75,7 @@ function choose_grid(count) {
   let best = usual, most = scale_in(usual);
   for (let columns = 1; columns <= count; columns++) {
     const grid = grid_of(count, columns), worth = scale_in(grid) / (grid.width >= wide ? GAIN : GAIN_WITH_CUT_NAMES);
-    if (grid.rows * columns - count <= (count > 3) && worth > most) [most, best] = [worth, grid];
+    if (worth > most) [most, best] = [worth, grid];
   }
   return best;
 }

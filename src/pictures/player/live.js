@@ -164,6 +164,7 @@ function show_arrived() {
     describe_run(run);
   }
   swapped = performance.now();
+  show_settings(document.activeElement);
   take_stock();
 }
 

@@ -127,6 +127,21 @@ function draw_pointer(run) {
   runs[run].arrow = edge;
 }
 
+/* Before a prediction: where the bomb appears, as outline, and a dashed line to where it strikes. */
+function draw_approach(run) {
+  const {bomb, live, contacts} = runs[run], impact = live ? impact_of(runs[run]) : data.impact, last = known(runs[run]);
+  const line = max(GHOST_OUTLINE * lay.side, MIN_GHOST_OUTLINE), way = [];
+  let frame = 0;
+  while (bomb >= 0 && frame <= last && !exists(run, frame, bomb)) frame++;
+  if (bomb < 0 || frame > last) return;
+  with_body(run, bomb, (w, h) => stroke_box(w, h, line, look.bomb.fill), frame);
+  for (const end = impact >= 0 ? min(impact, last) : contacts ? last : frame; frame <= end; frame++)
+    way.push(place(pose(run, frame, bomb)));
+  pen.setLineDash([4 * line, 3 * line]);
+  draw_lines(line, look.bomb.fill, [way]);
+  pen.setLineDash([]);
+}
+
 /* An impulse is that on body b; body a receives the opposite. */
 function draw_marks(run) {
   const {bodies, fixed} = runs[run], stored = floor(now);

@@ -36,6 +36,7 @@ function draw_panel(columns, rows) {
   draw_bodies(false);
   outlines.forEach(draw_outlines);
   draw_pointer(run);
+  if (asked) draw_approach(run);
   all.forEach(draw_marks);
   draw_labels();
   draw_pinned();

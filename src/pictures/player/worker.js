@@ -74,7 +74,8 @@ function panel_worker() {
   async function simulate(launch) {
     const {set, method, until, contacts} = launch, run = must("live_begin", scene, set, method, contacts);
     try {
-      const end = live.live_frames(run) - 1, {dt, steps, iterations, scene_hash} = json("live_describe", scene, set);
+      const end = live.live_frames(run) - 1, {parameters, dt, steps, iterations, scene_hash} = json("live_describe", scene, set);
+      const values = Object.fromEntries(parameters.map(({name, value}) => [name, value]));
       for (let next = 0, frame = 0, sent = performance.now();;) {
         for (const since = performance.now(); frame < end && performance.now() - since < SLICE;) {
           const before = frame;
@@ -83,7 +84,7 @@ function panel_worker() {
         }
         const ended = frame === end || text(live.live_failure(run)) !== "";
         if (ended || (frame >= until && performance.now() - sent > (next === 0 ? FIRST : SHARE))) {
-          send(run, launch, {dt, steps, iterations, scene_hash}, next, frame, ended);
+          send(run, launch, {values, dt, steps, iterations, scene_hash}, next, frame, ended);
           [next, sent] = [frame + 1, performance.now()];
         }
         if (ended || (wanted && next > until)) return;
