@@ -19,8 +19,8 @@
 #include "pixels/png.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
-#include "runs/verdict.h"
 #include "studies/contenders.h"
+#include "studies/converged.h"
 
 #define OWN(Type) __attribute__((cleanup(own_##Type))) Type
 #define OWNED_POINTER(Type, destroy) \

@@ -32,8 +32,8 @@ typedef struct Options {
     bool json;
 } Options;
 
-static const char *const verdicts[] = {"any",   "sound",     "holds", "settles", "stands",   "moves",      "creeps",
-                                       "falls", "collapses", "sinks", "tunnels", "explodes", "non-finite", NULL};
+static const char *const verdicts[] = {"any",   "sound",     "holds", "settles", "stands",  "moves",    "too short",
+                                       "falls", "collapses", "hangs", "sinks",   "tunnels", "explodes", "non-finite", NULL};
 
 static const Option option_table[] = {
     {"--output", 'o', "FILE.png",
@@ -43,9 +43,9 @@ static const Option option_table[] = {
     {.help = "Runs (.npz):"},
     OPTIONS_JUDGE(Options, judge),
     {"--verdict", 0, "WORD",
-     "Fail with exit status 1 unless the verdict is this: sound (nothing sinks, tunnels or explodes; it may fall), "
-     "holds (settles, stands, moves or creeps), settles, stands, moves, creeps, falls, collapses, sinks, tunnels, "
-     "explodes, non-finite (default: any)",
+     "Fail with exit status 1 unless the verdict is this: sound (nothing hangs, sinks, tunnels or explodes; it may "
+     "fall), holds (settles, stands or moves), settles, stands, moves, too short, falls, collapses, hangs, sinks, "
+     "tunnels, explodes, non-finite (default: any)",
      OPTION_ENUM(Options, verdict, verdicts)},
     {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, max_overlap, 0, 1e6)},
     {"--max-drift", 0, "M", "Fail if a body moves further after the time that the verdict names, m",
@@ -327,7 +327,7 @@ static bool check_limits(CheckedRun *checked, Error *error) {
     if (!isnan(options->max_drift) && isnan(reading->drift))
         return error_input(error, options->scene, "lasts %.3g s: --max-drift needs a run of more than %.3g s",
                            (checked->run->frames - 1) * (double)checked->run->dt,
-                           simulate_verdict_falls(&checked->judged.verdict, VERDICT_CREEP_FROM));
+                           verdict_watch_units(&checked->judged.verdict.watch, VERDICT_DRIFT_UNITS));
     if (!isnan(options->max_gain) && isnan(reading->excess))
         return error_input(error, options->scene,
                            "has a bomb, or bodies that start with a speed: --max-gain needs --scene");

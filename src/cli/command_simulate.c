@@ -130,9 +130,9 @@ static const CommandSpec spec = {
             "Example: twinbox simulate stack -o engine.npz\n"
             "         twinbox simulate stack --method momentum:k=20 -o momentum.npz\n"
             "         twinbox simulate stack --bomb-x 2.5 -o struck.npz --hash struck.csv\n"
-            "The verdict tells how the run ended: settles, moves, creeps, falls, sinks, tunnels, explodes, non-finite, "
-            "adapter "
-            "failed; where a bomb or another body strikes: stands, falls or collapses, and how many boxes fell.\n"
+            "The verdict tells how the run ended: settles, moves or falls; where a bomb or another body strikes, stands, "
+            "falls or collapses; how many boxes fell, and since when they rest. Or what is wrong with its physics: "
+            "hangs, sinks, tunnels, explodes, non-finite; or adapter failed.\n"
             "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_scene(Scene *scene, const Options *options, Error *error) {

@@ -117,7 +117,7 @@ static bool print_rest(const char *folder, Error *error) {
     for (int i = 0; i < table.count;) {
         if (i == 0 || !same_study(&rows[i], &rows[i - 1]))
             printf("%s: the last %s that holds, drift and energy after %d falls\n", rows[i].study, rows[i].parameter,
-                   VERDICT_CREEP_FROM);
+                   VERDICT_DRIFT_UNITS);
         i = print_method_at_rest(rows, table.count, i);
     }
     csv_table_free(&table);
@@ -222,7 +222,7 @@ static const CommandSpec spec = {
     .help =
         "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, "
         "...): every border between holding and failing, and how it fails there. Over two parameters: maps. A run "
-        "holds if it settles, moves or creeps; where a bomb or a moving body strikes, if as many boxes fall as in the "
+        "holds if it settles or moves; where a bomb or a moving body strikes, if as many boxes fall as in the "
         "converged run: none, fewer than half, or more. Takes up to twenty minutes on two cores. An interrupted run "
         "continues where it stopped.\n"
         "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "

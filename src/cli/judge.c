@@ -48,7 +48,7 @@ void judged_run_print(const JudgedRun *judged, const JudgeOptions *options) {
     printf("    verdict: %s\n    deepest overlap: %.3g m\n", judged->words, reading->deepest);
     if (!isnan(reading->drift))
         printf("    drift after the first %.3g s: %.3g m\n",
-               simulate_verdict_falls(&judged->verdict, VERDICT_CREEP_FROM), reading->drift);
+               verdict_watch_units(&judged->verdict.watch, VERDICT_DRIFT_UNITS), reading->drift);
     if (isnan(reading->excess))
         printf("    energy gained: unknown without masses\n");
     else
@@ -65,22 +65,17 @@ void judged_run_free(JudgedRun *judged) {
 
 /* What the value is. */
 static const char *quantity(const VerdictReading *reading) {
-    static const char *const quantities[VERDICTS] = {
-        [VERDICT_SETTLES] = "speed of the fastest body",
-        [VERDICT_STANDS] = "distance moved",
-        [VERDICT_CREEPS] = "distance in 10 falls",
-        [VERDICT_COLLAPSES] = "bodies that fell",
-        [VERDICT_SINKS] = "penetration",
-        [VERDICT_TUNNELS] = "speed",
-        [VERDICT_EXPLODES] = "energy gained",
-        [VERDICT_NON_FINITE] = "highest speed before",
-        [VERDICT_ADAPTER_FAILED] = "highest speed before",
-    };
-    if (reading->verdict == VERDICT_MOVES)
-        return strcmp(reading->unit, "s") == 0 ? "time in the air" : "speed of the fastest body";
-    if (reading->verdict == VERDICT_FALLS)
-        return reading->struck ? "bodies that fell" : strcmp(reading->unit, "deg") == 0 ? "rotation" : "descent";
-    return quantities[reading->verdict];
+    switch (reading->verdict) {
+    case VERDICT_FALLS:
+    case VERDICT_COLLAPSES: return "bodies that fell";
+    case VERDICT_HANGS: return "time in the air";
+    case VERDICT_SINKS: return "penetration";
+    case VERDICT_TUNNELS: return "speed";
+    case VERDICT_EXPLODES: return strcmp(reading->unit, "J") == 0 ? "energy gained" : "speed of a body that bursts away";
+    case VERDICT_NON_FINITE:
+    case VERDICT_ADAPTER_FAILED: return "highest speed before";
+    default: return "speed of the fastest body at the end";
+    }
 }
 
 void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key) {
@@ -106,23 +101,20 @@ void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, cons
     json_put_number(json, "value", reading->value);
     json_put_text(json, "unit", reading->unit);
     if (reading->reason[0] != '\0') json_put_text(json, "reason", reading->reason);
-    json_put_text(json, "falls_judged",
-                  watch->run.stands       ? "to the end"
-                  : watch->run.until_bomb ? "until the bomb touches"
-                                          : "no");
-    /* What became of the bodies that started at rest. */
-    json_put_int(json, "bodies", count->stood);
+    json_put_int(json, "bodies", count->bodies);
     json_begin_array(json, "fallen", JSON_ONE_LINE);
     for (int i = 0; i < watch->body_count; i++)
-        if (watch->bodies[i].stands && watch->bodies[i].fell > 0) json_put_int(json, NULL, i);
+        if (verdict_watch_fell(watch, i)) json_put_int(json, NULL, i);
     json_end(json);
     json_put_int(json, "left", count->left);
     json_put_int(json, "moved", count->moved);
     json_put_number(json, "farthest", count->farthest);
-    json_put_bool(json, "at_rest", !reading->moving);
+    if (!json_put_absent(json, "at_rest", reading->too_short)) json_put_bool(json, "at_rest", !reading->moving);
+    if (!json_put_absent(json, "rest_since", reading->moving))
+        json_put_number(json, "rest_since", reading->since * (double)verdict->scene->dt);
     json_put_number(json, "kinetic", watch->kinetic);
     json_put_number(json, "energy", watch->energy);
-    json_put_number(json, "available", watch->own.available);
+    json_put_number(json, "available", watch->available - watch->least);
     json_put_number(json, "drift", reading->drift);
     json_put_number(json, "gained", reading->gained);
     json_put_number(json, "deepest", reading->deepest);

@@ -52,8 +52,8 @@ set(module_sources ${module_methods}
     engine/box engine/broad_phase engine/contact_problem engine/world
     live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
     nets/gns_net nets/kernels nets/kernels_scalar nets/net_file nets/network nets/scene_net_layers nets/subspace_net
-    runs/contact_finder runs/framing runs/launch_check runs/record runs/simulate runs/trajectory runs/verdict runs/verdict_checks
-    runs/verdict_energy runs/verdict_passes runs/verdict_words
+    runs/contact_finder runs/framing runs/launch_check runs/record runs/simulate runs/trajectory runs/verdict runs/verdict_sound
+    runs/verdict_words
     scenes/parameters scenes/scene scenes/scene_read scenes/scene_world)
 # Where most of the time is spent; the rest is made small.
 set(module_fast

@@ -121,7 +121,7 @@ static int badness(const Trajectory *run) {
     for (int verdict = VERDICT_SETTLES; verdict < VERDICTS; verdict++) {
         const char *name = verdict_name((Verdict)verdict);
         const char after = strncmp(run->verdict, name, strlen(name)) == 0 ? run->verdict[strlen(name)] : 'x';
-        if (after == '\0' || after == ' ' || after == ':') return verdict;
+        if (after == '\0' || after == ' ' || after == ';') return verdict;
     }
     return -1;
 }

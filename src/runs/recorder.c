@@ -63,7 +63,7 @@ Recorder *recorder_create_to(const Scene *scene, const Method *method, const Rec
     Recorder *recorder = create_parts(scene, method, 2, fit < 1 ? 1 : fit > all ? all : fit, error);
     if (recorder == NULL) return NULL;
     for (int i = 0; i < 2; i++) {
-        recorder->parts[i]->no_contacts |= no_contacts;
+        recorder->parts[i]->no_contacts |= no_contacts || count == 0; /* nobody would read them */
         trajectory_restart_contacts(recorder->parts[i]);
     }
     bool ok = true;

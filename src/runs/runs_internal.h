@@ -179,34 +179,3 @@ typedef struct CsvImport {
     int ended;                    /* a body that is not finite in frame `end` */
     Trajectory *run;
 } CsvImport;
-
-/* The checks of a watch for one step. They run before the watch stores the step's positions as the last ones. */
-
-/* Stores the verdict if it is worse than the worst so far. Returns whether it is. */
-bool verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit);
-
-/* False if a body's state is NaN or infinite. */
-bool check_finite(VerdictWatch *watch, const VerdictStep *step);
-void check_bursts(VerdictWatch *watch, const VerdictStep *step); /* after new bodies are added */
-void check_energy(VerdictWatch *watch, const VerdictStep *step);
-
-/* False if memory is short. */
-bool check_passes(VerdictWatch *watch, const VerdictStep *step, Error *error);
-void pass_finder_free(PassFinder *passes);
-
-void check_depth(VerdictWatch *watch, const VerdictStep *step);
-void check_falls(VerdictWatch *watch, const VerdictStep *step);
-void check_creep(VerdictWatch *watch, const VerdictStep *step);
-void check_calm(VerdictWatch *watch, const VerdictStep *step);
-
-/* m */
-double smaller_side(const Body *body);
-
-/* m: of the bodies of a contact. */
-double smaller_size(const VerdictStep *step, const ContactPoint *contact);
-
-/* m: height of the centre along the direction opposite to gravity; 0 without gravity. */
-double body_height(const Body *body, Vec2 gravity);
-
-/* Falls (VERDICT_FALL_SIZES) rounded to whole steps; at least one. */
-int falls_in_steps(const VerdictWatch *watch, double falls);

@@ -1,200 +1,393 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Watches a run and decides how it ended. */
+/* Watches a run: places, rest, what carries what, what fell. */
 #include "runs/verdict.h"
 
 #include "base/base.h"
-#include "base/hash.h"
 #include "engine/engine.h"
-#include "methods/methods.h"
-#include "runs/contact_finder.h"
 #include "runs/runs.h"
-#include "runs/runs_internal.h"
-#include "scenes/scenes.h"
+#include "runs/verdict_internal.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* A body moves within its place by this share of its size: a pixel of a box that is drawn with 50. */
+static const double place_share = 0.02;
+static const double rest_units = 0.5; /* a hop of a size up and down takes as long */
+/* Half a side lower, a box has lost its layer. At 30 degrees a square's centre has risen by nine tenths of what turns it
+   over. */
+static const double fall_share = 0.5, fall_turn = 30 * M_PI / 180;
+static const double moved_share = 0.1;   /* of a size: seen at a glance */
+static const double carrier_reach = 0.5; /* of a side; a gap beyond that is a drop */
+static const double struck_reach = 0.05; /* of a side: for what lies in its place when the bomb strikes */
+static const double slow_share = 0.25;   /* of the speed of a fall by a body's size: it lies in its place */
+static const double start_share = 0.005; /* of a size in a unit: the body starts with a speed */
+static const double start_poses = 0.5;   /* the same of differences of poses, which have the first step's impulses */
+static const double unit_sizes = 5;      /* a box of 1 m: one second */
+
 const char *const verdict_words[VERDICTS + 2] = {
-    "settles",      "agrees",        "stands", "moves",   "creeps",   "undecided",  "falls",          "collapses",
-    "too few fall", "too many fall", "sinks",  "tunnels", "explodes", "non-finite", "adapter failed", "not applicable"};
+    "settles", "agrees",    "stands",       "moves",          "too short",     "undecided",
+    "falls",   "collapses", "too few fall", "too many fall",  "hangs",         "sinks",
+    "tunnels", "explodes",  "non-finite",   "adapter failed", "not applicable"};
 
 const char *verdict_name(Verdict verdict) { return verdict_words[verdict]; }
 
-bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
+bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_MOVES; }
 
-bool verdict_sound(Verdict verdict) { return verdict < VERDICT_SINKS; }
+bool verdict_sound(Verdict verdict) { return verdict < VERDICT_HANGS; }
+
+double verdict_size(const Body *body) { return sqrt((double)body->size.x * (double)body->size.y); }
 
 void verdict_watch_free(VerdictWatch *watch) {
     free(watch->bodies);
-    free(watch->statics);
+    free(watch->order);
+    free(watch->deep);
     contact_finder_free(&watch->finder);
-    pass_finder_free(&watch->passes);
     *watch = (VerdictWatch){0};
 }
 
-static void store_last(VerdictWatch *watch, const Body *bodies) {
-    for (int i = 0; i < watch->body_count; i++) {
-        watch->bodies[i].last = bodies[i].position;
-        watch->bodies[i].last_angle = bodies[i].angle;
-    }
-}
-
-static bool add_static(VerdictWatch *watch, const Body *body, int index, Error *error) {
-    if (!array_reserve((void **)&watch->statics, &watch->static_capacity, (size_t)watch->static_count + 1,
-                       sizeof *watch->statics))
-        return error_memory(error, "verdict");
-    watch->statics[watch->static_count++] = (WatchedStatic){index, cos((double)body->angle), sin((double)body->angle)};
-    return true;
-}
-
-/* Of the first dynamic bodies. */
-static void set_fall(VerdictWatch *watch, const Body *bodies, int count) {
-    const double dt = (double)watch->run.dt;
-    double sum = 0;
-    int moving = 0;
-    for (int i = 0; i < count; i++) {
-        if (bodies[i].inv_mass == 0) continue;
-        sum += verdict_size(&bodies[i]);
+bool verdict_is_struck(const Scene *scene) {
+    int moving = 0, starting = 0;
+    for (int i = 0; i < scene->body_count; i++) {
+        const BodyDef *body = &scene->bodies[i];
+        if (body->fixed) continue;
         moving++;
+        starting += body->velocity.x != 0 || body->velocity.y != 0;
     }
-    if (watch->fall > 0 || moving == 0) return;
-    const double way = 2 * VERDICT_FALL_SIZES * sum / moving, pull = vec2_distance(watch->run.gravity, vec2(0, 0));
-    const double steps = pull > 0 ? fmin(sqrt(way / pull) / dt, SCENE_MAX_FRAMES) : VERDICT_CALM_FRAMES;
-    watch->fall = steps > 1 ? (int)lround(steps) : 1;
-    watch->pull = pull > 0 ? pull : way / (steps * dt * steps * dt);
+    return scene_has_launch(scene) || (starting > 0 && starting < moving);
 }
 
-/* A body of the scene starts at rest unless it has a speed; one that is not in it is the bomb. */
-static bool starts_still(const Scene *scene, int i) {
-    const BodyDef *body = &scene->bodies[i];
-    return i < scene->body_count && body->velocity.x == 0 && body->velocity.y == 0 && body->angular_velocity == 0;
+VerdictRun verdict_run_of(const Scene *scene, const Method *method) {
+    VerdictRun run = {.gravity = scene->gravity,
+                      .dt = scene->dt,
+                      .bomb = scene_has_launch(scene) ? scene->body_count : -1,
+                      .finds_contacts = method->kind->description->whole_scenes};
+    const char *text = run.finds_contacts ? settings_get(&method->settings, "skin") : NULL;
+    if (text != NULL && !parse_float(text, &run.skin)) run.skin = 0;
+    return run;
 }
 
-/* What energy can come from, and the smallest side. */
-static void add_source(VerdictWatch *watch, const Body *body) {
-    watch->smallest = fmin(watch->smallest, smaller_side(body));
-    watch->largest = fmax(watch->largest, verdict_size(body));
-    watch->highest = fmax(watch->highest, body_height(body, watch->run.gravity));
-    watch->liveliest = fmax(watch->liveliest, body_energy(body, vec2(0, 0)) * body->inv_mass);
+/* m: how far the box reaches along gravity. */
+static double reach_along(const VerdictWatch *watch, const WatchedBody *body, const Pose *pose) {
+    const double c = cos(pose->angle), s = sin(pose->angle);
+    return (fabs(c * watch->up_x + s * watch->up_y) * (double)body->box.x +
+            fabs(c * watch->up_y - s * watch->up_x) * (double)body->box.y) /
+           2;
 }
 
-static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
-    if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies))
+static Vec2 moved_down(const VerdictWatch *watch, Vec2 from, double way) {
+    return vec2_sub(from, vec2((float)(watch->up_x * way), (float)(watch->up_y * way)));
+}
+
+static void set_unit(VerdictWatch *watch) {
+    watch->unit = watch->pull > 0      ? sqrt(2 * unit_sizes * watch->mean / watch->pull)
+                  : watch->fastest > 0 ? unit_sizes * watch->mean / watch->fastest
+                                       : 0;
+}
+
+/* Adds bodies. What is added later brings energy, which the frame that follows counts; the bomb, once it strikes. */
+static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int frame, Error *error) {
+    if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies) ||
+        !array_reserve((void **)&watch->order, &watch->order_capacity, (size_t)count, sizeof *watch->order))
         return error_memory(error, "verdict");
-    while (watch->static_count > 0 && watch->statics[watch->static_count - 1].body >= count) watch->static_count--;
-    set_fall(watch, bodies, count);
     for (int i = watch->body_count; i < count; i++) {
-        const bool dynamic = bodies[i].inv_mass != 0;
-        const double lowest =
-            body_height(&bodies[i], watch->run.gravity) - vec2_distance(bodies[i].size, vec2(0, 0)) / 2;
-        watch->bodies[i] =
-            (WatchedBody){.size = verdict_size(&bodies[i]),
-                          .outside = bodies[i].position,
-                          .last = bodies[i].position,
-                          .stood = bodies[i].position,
-                          .stood_angle = bodies[i].angle,
-                          .last_angle = bodies[i].angle,
-                          .below = -1,
-                          .stands = dynamic && (watch->run.struck == NULL || starts_still(watch->run.struck, i))};
-        if (dynamic) add_source(watch, &bodies[i]);
-        if (dynamic) continue;
-        watch->floor = fmin(watch->floor, lowest);
-        if (!add_static(watch, &bodies[i], i, error)) return false;
+        const Body *from = &bodies[i];
+        WatchedBody *body = &watch->bodies[i];
+        const double x = from->position.x, y = from->position.y, w = from->size.x, h = from->size.y;
+        const Pose pose = {x, y, from->angle};
+        *body = (WatchedBody){.box = from->size,
+                              .size = sqrt(w * h),
+                              .side = fmin(w, h),
+                              .corner = sqrt(w * w + h * h) / 2,
+                              .last = pose,
+                              .before = pose,
+                              .prior = pose,
+                              .place = pose,
+                              .reference = pose,
+                              .since = frame,
+                              .stays = {INT_MAX, INT_MAX},
+                              .carrier = -1,
+                              .held = frame,
+                              .is_static = from->inv_mass == 0,
+                              .is_bomb = i == watch->run.bomb};
+        const double up = height_of(watch, &pose);
+        if (body->is_static) {
+            watch->floor = fmin(watch->floor, up - reach_along(watch, body, &pose));
+            continue;
+        }
+        watch->smallest = fmin(watch->smallest, body->side);
+        if (frame == 0) watch->lowest = fmin(watch->lowest, up);
     }
+    for (int i = watch->body_count; i < count; i++)
+        if (bodies[i].inv_mass != 0) energy_add_body(watch, &bodies[i], &watch->bodies[i]);
     watch->body_count = count;
     return true;
 }
 
-static bool starts_at_rest(const Scene *scene) {
-    for (int i = 0; i < scene->body_count; i++)
-        if (!starts_still(scene, i)) return false;
-    return true;
+/* By how much body i must move down until it touches j; INFINITY: farther than `reach`. */
+static double way_down(const VerdictWatch *watch, int i, const Box *of_i, const Box *of_j, double reach) {
+    enum { STEPS = 10, HALVINGS = 20 };
+    const double near = 0.01 * watch->bodies[i].side;
+    Box box = *of_i;
+    double low = 0, high = INFINITY;
+    for (int k = 0; k <= STEPS && isinf(high); k++) {
+        const double down = reach * k / STEPS;
+        box.position = moved_down(watch, of_i->position, down);
+        if (-overlap_depth(&box, of_j) <= near)
+            high = down;
+        else
+            low = down;
+    }
+    for (int k = 0; k < HALVINGS && high > 0 && isfinite(high); k++) {
+        const double middle = (low + high) / 2;
+        box.position = moved_down(watch, of_i->position, middle);
+        *(-overlap_depth(&box, of_j) <= 0 ? &high : &low) = middle;
+    }
+    return high;
 }
 
-/* The scene if it has a bomb or bodies that move at the start, and dynamic ones that do not; else NULL. */
-static const Scene *verdict_struck(const Scene *scene) {
-    if (!scene_has_launch(scene) && starts_at_rest(scene)) return NULL;
-    for (int i = 0; i < scene->body_count; i++)
-        if (!scene->bodies[i].fixed && starts_still(scene, i)) return scene;
-    return NULL;
+/* Gives a body its carrier, behind it in the order. */
+static void give_carrier(VerdictWatch *watch, int i, int carrier, double gap) {
+    WatchedBody *body = &watch->bodies[i];
+    const WatchedBody *below = &watch->bodies[carrier];
+    body->carrier = carrier;
+    body->gap = gap;
+    body->gaps = gap + (below->is_static ? 0 : below->gaps);
+    body->reference = body->last;
+    body->carrier_up = height_of(watch, &below->last);
+    watch->order[watch->carried++] = i;
 }
 
-void verdict_run_set_engine(VerdictRun *run, const Method *method) {
-    run->other_engine = method->kind->description->whole_scenes;
-    const char *text = run->other_engine ? settings_get(&method->settings, "skin") : NULL;
-    run->finds_contacts = run->other_engine;
-    if (text != NULL && !parse_float(text, &run->skin)) run->skin = 0;
+typedef struct Below {
+    int body, on; /* on: what it would touch first; -1: nothing */
+    double gap;   /* m: until then */
+    double up;    /* m: height of `on`, -INFINITY for a static body, which comes first; then of the body */
+} Below;
+
+static int by_height(const void *a, const void *b) {
+    const Below *one = a, *other = b;
+    return one->up != other->up ? (one->up > other->up ? 1 : -1) : one->body - other->body;
 }
 
-VerdictRun verdict_run_of(const Scene *scene) {
-    const bool rests = starts_at_rest(scene), bomb = scene_has_launch(scene);
-    return (VerdictRun){.gravity = scene->gravity,
-                        .dt = scene->dt,
-                        .frames = scene->frames,
-                        .stands = rests && !bomb,
-                        .until_bomb = rests && bomb,
-                        .struck = verdict_struck(scene)};
+/* Whether i needs what j could give: a carrier. */
+static bool may_carry(const VerdictWatch *watch, int j, int i) {
+    const WatchedBody *body = &watch->bodies[i];
+    return !body->is_static && !body->is_bomb && body->carrier < 0 && !watch->bodies[j].is_bomb &&
+           way_between(&body->last, &body->before) <
+               slow_share * sqrt(2 * watch->pull * body->size) * (double)watch->run.dt;
 }
 
-/* The contacts of the next step. Another engine may let bodies rest a little apart: they carry each other within a
-   share of the smallest side. */
-static bool find_contacts(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
-    const float near = 0.005f, smallest = isfinite(watch->smallest) ? (float)watch->smallest : 0;
-    const float skin = watch->run.skin + (watch->run.other_engine ? near * smallest : 0);
-    return !watch->run.finds_contacts || contact_finder_find(&watch->finder, bodies, count, skin, error);
+/* Of the bodies without a carrier, those that are slow get one: what they touch first below them; or else what holds
+   them from the side. Poses are the last ones. */
+static bool find_carriers(VerdictWatch *watch, double share, Error *error) {
+    const size_t count = (size_t)watch->body_count;
+    SortAndSweep sweep = {0};
+    PairList pairs = {0};
+    Box *boxes = malloc((count + 1) * sizeof *boxes);
+    Bounds *bounds = malloc((count + 1) * sizeof *bounds);
+    bool *fixed = malloc(count + 1);
+    Below *below = malloc((count + 1) * sizeof *below);
+    bool ok = boxes != NULL && bounds != NULL && fixed != NULL && below != NULL;
+    for (size_t i = 0; ok && i < count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        boxes[i] = box_of(body, &body->last);
+        bounds[i] = bounds_of_box(&boxes[i]);
+        const Vec2 reach = moved_down(watch, vec2(0, 0), share * body->side);
+        const float margin = (float)(touch_share * body->side);
+        bounds[i].low = vec2_add(bounds[i].low, vec2(fminf(reach.x, 0) - margin, fminf(reach.y, 0) - margin));
+        bounds[i].high = vec2_add(bounds[i].high, vec2(fmaxf(reach.x, 0) + margin, fmaxf(reach.y, 0) + margin));
+        fixed[i] = body->is_static;
+        below[i] = (Below){.body = (int)i, .on = -1, .gap = INFINITY};
+    }
+    ok = ok && sort_and_sweep_find(&sweep, &pairs, bounds, fixed, (int)count);
+    for (size_t k = 0; ok && k < 2 * pairs.count; k++) {
+        const BodyPair pair = pairs.pairs[k / 2];
+        const int i = k % 2 == 0 ? pair.a : pair.b, j = k % 2 == 0 ? pair.b : pair.a;
+        const WatchedBody *body = &watch->bodies[i], *other = &watch->bodies[j];
+        const double up = other->is_static ? -INFINITY : height_of(watch, &other->last);
+        if (!may_carry(watch, j, i) || up >= height_of(watch, &body->last)) continue;
+        const double gap = way_down(watch, i, &boxes[i], &boxes[j], share * body->side);
+        const double alike = 0.1 * body->side; /* gaps that differ by less are equal */
+        if (isinf(gap) || gap > below[i].gap + alike) continue;
+        if (below[i].on < 0 || gap < below[i].gap - alike || up < below[i].up) below[i] = (Below){i, j, gap, up};
+    }
+    for (size_t i = 0; ok && i < count; i++) below[i].up = height_of(watch, &watch->bodies[i].last);
+    if (ok) qsort(below, count, sizeof *below, by_height);
+    for (size_t k = 0; ok && k < count; k++) /* upwards */
+        if (below[k].on >= 0 && (watch->bodies[below[k].on].is_static || watch->bodies[below[k].on].carrier >= 0))
+            give_carrier(watch, below[k].body, below[k].on, below[k].gap);
+    bool more = ok;
+    for (int pass = 0; more; pass++) { /* sideways; to and fro, so that a row that is listed from either end is quick */
+        more = false;
+        for (size_t n = 0; n < 2 * pairs.count; n++) {
+            const size_t k = pass % 2 == 0 ? n : 2 * pairs.count - 1 - n;
+            const BodyPair pair = pairs.pairs[k / 2];
+            const int i = k % 2 == 0 ? pair.a : pair.b, j = k % 2 == 0 ? pair.b : pair.a;
+            const WatchedBody *other = &watch->bodies[j];
+            if (!may_carry(watch, j, i) || (!other->is_static && other->carrier < 0)) continue;
+            const double depth = overlap_depth(&boxes[i], &boxes[j]), side = fmin(watch->bodies[i].side, other->side);
+            if (depth < -touch_share * side || depth > fall_share * side) continue;
+            give_carrier(watch, i, j, 0);
+            more = true;
+        }
+    }
+    free(below);
+    free(fixed);
+    free(bounds);
+    free(boxes);
+    free(pairs.pairs);
+    const bool too_many = sweep.too_many;
+    sort_and_sweep_free(&sweep);
+    if (too_many) return error_input(error, "verdict", "more than %d pairs of bodies may touch", BROAD_PHASE_MAX_PAIRS);
+    return ok || error_memory(error, "verdict");
 }
 
 bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
-    if (run->converged != NULL && run->converged->frames < run->frames)
-        return error_input(error, "verdict", "the converged run has only %d of %d frames", run->converged->frames,
-                           run->frames);
+    const VerdictWatch old = *watch;
+    const double x = run->gravity.x, y = run->gravity.y, pull = sqrt(x * x + y * y);
     *watch = (VerdictWatch){.run = *run,
-                            .worst = {.other = -1},
+                            .worst = {.body = -1, .other = -1, .unit = "m/s"},
+                            .pull = pull,
+                            .up_x = pull > 0 ? -x / pull : 0,
+                            .up_y = pull > 0 ? -y / pull : 1,
                             .smallest = INFINITY,
                             .floor = INFINITY,
-                            .highest = -INFINITY,
-                            .bodies = watch->bodies,
-                            .capacity = watch->capacity,
-                            .statics = watch->statics,
-                            .finder = watch->finder,
-                            .passes = watch->passes,
-                            .static_capacity = watch->static_capacity};
-    watch->passes.deep_count = 0;
-    energy_balance_begin(&watch->own, run->gravity, bodies, count);
-    watch->kept = watch->brought = watch->own.energy;
-    return add_bodies(watch, bodies, count, error) && find_contacts(watch, bodies, count, error);
+                            .lowest = INFINITY,
+                            .kept = INFINITY,
+                            .met = -1,
+                            .bodies = old.bodies,
+                            .order = old.order,
+                            .deep = old.deep,
+                            .finder = old.finder,
+                            .capacity = old.capacity,
+                            .order_capacity = old.order_capacity,
+                            .deep_capacity = old.deep_capacity};
+    double sizes = 0;
+    int moving = 0, starting = 0;
+    for (int i = 0; i < count; i++) {
+        if (bodies[i].inv_mass == 0 || i == run->bomb) continue;
+        sizes += verdict_size(&bodies[i]);
+        moving++;
+        watch->fastest = larger(watch->fastest, vec2_distance(bodies[i].velocity, vec2(0, 0)));
+    }
+    watch->mean = moving > 0 ? sizes / moving : 1;
+    set_unit(watch);
+    if (!add_bodies(watch, bodies, count, 0, error)) return false;
+    const double slowest = (run->poses_only ? start_poses : start_share) * watch->mean / larger(watch->unit, 1e-9);
+    for (int i = 0; i < count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        body->starts = !body->is_static && !body->is_bomb && vec2_distance(bodies[i].velocity, vec2(0, 0)) > slowest;
+        starting += body->starts;
+    }
+    watch->struck = run->bomb >= 0 || (starting > 0 && starting < moving);
+    if (pull > 0 && !find_carriers(watch, carrier_reach, error)) return false;
+    return !run->finds_contacts || contact_finder_find(&watch->finder, bodies, count, run->skin, error);
 }
 
-static void store_rested(VerdictWatch *watch) {
-    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].rested = watch->bodies[i].last;
-    watch->rested_count = watch->body_count;
-    watch->rested = watch->energy;
+/* Whether a body is lower than half its side below its reference, or has turned, or left the scene. Bodies come behind
+   what carries them. */
+static void judge_falls(VerdictWatch *watch) {
+    for (int k = 0; k < watch->carried; k++) {
+        const int i = watch->order[k];
+        if (i >= watch->body_count) continue;
+        WatchedBody *body = &watch->bodies[i];
+        const WatchedBody *below = &watch->bodies[body->carrier];
+        const double drop = height_of(watch, &body->reference) - height_of(watch, &body->last);
+        const double limit = fall_share * body->side;
+        bool fell = fabs(turn_between(body->last.angle, body->reference.angle)) > fall_turn;
+        if (!fell && drop > limit + body->gaps) {
+            const double sag = below->is_static ? 0 : body->carrier_up - height_of(watch, &below->last);
+            fell = drop - sag > limit + body->gap || below->fell > 0;
+        }
+        body->fell = !fell ? 0 : body->fell > 0 ? body->fell : watch->frame;
+    }
+    for (int i = 0; watch->pull > 0 && isfinite(watch->floor) && i < watch->body_count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        const double up = height_of(watch, &body->last);
+        body->left = !body->is_static && up < watch->floor && up + reach_along(watch, body, &body->last) < watch->floor;
+        if (body->left && body->fell == 0) body->fell = watch->frame;
+        if (!body->left && body->carrier < 0) body->fell = 0;
+    }
+}
+
+/* Whether the bomb may have touched a dynamic body in this step: afterwards their gap is no wider than they moved. */
+static bool strikes(const VerdictWatch *watch, const VerdictStep *step) {
+    const int bomb = watch->run.bomb;
+    const Box box = box_make(step->bodies[bomb].position, step->bodies[bomb].size, step->bodies[bomb].angle);
+    const WatchedBody *striker = &watch->bodies[bomb];
+    for (int i = 0; i < watch->body_count && i < step->body_count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        const Body *now = &step->bodies[i], *bomb_now = &step->bodies[bomb];
+        if (body->is_static || i == bomb) continue;
+        const double x = (double)now->position.x - body->last.x - ((double)bomb_now->position.x - striker->last.x),
+                     y = (double)now->position.y - body->last.y - ((double)bomb_now->position.y - striker->last.y);
+        const double way = sqrt(x * x + y * y) + fabs(turn_between(now->angle, body->last.angle)) * body->corner +
+                           fabs(turn_between(bomb_now->angle, striker->last.angle)) * striker->corner;
+        const double gap = way + touch_share * fmin(body->side, striker->side) + 2 * (double)watch->run.skin;
+        if (vec2_distance(now->position, bomb_now->position) > body->corner + striker->corner + gap) continue;
+        const Box other = box_make(now->position, now->size, now->angle);
+        if (-overlap_depth(&box, &other) < gap) return true;
+    }
+    return false;
 }
 
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *error) {
-    const ContactSet *found = &watch->finder.set;
-    const VerdictStep judged = {.frame = given->frame,
-                                .body_count = given->body_count,
-                                .contact_count = found->contact_count,
-                                .bomb = given->bomb,
-                                .bodies = given->bodies,
-                                .contacts = found->contacts},
-                      *step = watch->run.finds_contacts ? &judged : given;
+    const VerdictRun *run = &watch->run;
+    VerdictStep step = *given;
+    if (run->finds_contacts) {
+        step.contacts = watch->finder.set.contacts;
+        step.contact_count = watch->finder.set.contact_count;
+    }
     if (watch->worst.verdict >= VERDICT_NON_FINITE) return true;
-    watch->frame = step->frame;
-    if (!check_finite(watch, step)) return true;
-    check_energy(watch, step);
-    if (!add_bodies(watch, step->bodies, step->body_count, error)) return false;
-    check_bursts(watch, step);
-    if (!check_passes(watch, step, error)) return false;
-    check_depth(watch, step);
-    check_falls(watch, step);
-    check_creep(watch, step);
-    check_calm(watch, step);
-    store_last(watch, step->bodies);
-    if (step->frame == falls_in_steps(watch, VERDICT_CREEP_FROM)) store_rested(watch);
-    return find_contacts(watch, step->bodies, step->body_count, error);
+    watch->frame = step.frame;
+    if (!check_finite(watch, &step)) return true;
+    while (watch->body_count > step.body_count) /* what is removed takes its energy along */
+        if (watch->bodies[--watch->body_count].counted) watch->brought -= watch->bodies[watch->body_count].energy;
+    const int had = watch->body_count;
+    if (!add_bodies(watch, step.bodies, step.body_count, step.frame, error)) return false;
+    if (watch->met < 0 && run->bomb >= 0 && run->bomb < had && strikes(watch, &step)) {
+        /* The bomb brings its energy, and what fell into its place before is judged from there on. */
+        watch->met = step.frame - 1;
+        energy_count(watch, &watch->bodies[run->bomb]);
+        if (watch->pull > 0 && !find_carriers(watch, struck_reach, error)) return false;
+    }
+    double farthest = 0; /* m: what a corner has moved in this step */
+    for (int i = 0; i < step.body_count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        if (body->is_static) body->held = step.frame;
+        if (body->is_static) continue;
+        const Body *now = &step.bodies[i];
+        const Pose pose = {now->position.x, now->position.y, now->angle};
+        const double x = pose.x - body->place.x, y = pose.y - body->place.y;
+        const double free = place_share * body->size - fabs(turn_between(pose.angle, body->place.angle)) * body->corner;
+        if (free < 0 || x * x + y * y > free * free) {
+            body->stays[0] = body->stays[1];
+            body->stays[1] = step.frame - body->since;
+            body->since = step.frame;
+            body->place = pose;
+        }
+        const double turn = fabs(turn_between(pose.angle, body->last.angle));
+        farthest = larger(farthest, way_between(&pose, &body->last) + turn * body->corner);
+        body->prior = body->before;
+        body->before = body->last;
+        body->last = pose;
+    }
+    watch->fastest = larger(watch->fastest, farthest / (double)run->dt);
+    set_unit(watch);
+    if (!check_depth(watch, &step, error) ||
+        (farthest > pass_share / 2 * watch->smallest && !check_passes(watch, error)))
+        return false;
+    check_energy(watch, &step);
+    judge_falls(watch);
+    if (step.frame % steps_of(watch, hang_units / HANG_CHECKS) == 0 && !check_hanging(watch, step.bodies, error))
+        return false;
+    if (watch->rested_frame == 0 && step.frame == steps_of(watch, VERDICT_DRIFT_UNITS)) {
+        watch->rested_frame = step.frame;
+        watch->rested = watch->energy;
+        for (int i = 0; i < watch->body_count; i++) watch->bodies[i].rested = watch->bodies[i].last;
+    }
+    return !run->finds_contacts || contact_finder_find(&watch->finder, step.bodies, step.body_count, run->skin, error);
 }
 
 bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error) {
@@ -202,146 +395,108 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
     const VerdictStep step = {.frame = frame,
                               .body_count = world_body_count(world),
                               .contact_count = problem->contact_count,
-                              .bomb = problem->bomb,
                               .bodies = world_bodies(world),
                               .contacts = problem->contacts};
     fallbacks_add(&((VerdictWatch *)watch)->fallbacks, &world_solution(world)->fallbacks);
     return verdict_watch_step(watch, &step, error);
 }
 
-/* Without the place, which is that of the verdict. */
-static void copy_reason(char reason[VERDICT_REASON_SIZE], const char *text) {
-    const char *place = NULL;
-    for (const char *at = strstr(text, ", in step "); at != NULL; at = strstr(at + 1, ", in step ")) place = at;
-    const size_t length = place != NULL ? (size_t)(place - text) : strlen(text);
-    char whole[sizeof((Error *)NULL)->message];
-    snprintf(whole, sizeof whole, "%.*s", (int)length, text);
-    snprintf(reason, VERDICT_REASON_SIZE, "%.*s", (int)utf8_cut(whole, VERDICT_REASON_SIZE - 1), whole);
-}
-
 void verdict_watch_failed(VerdictWatch *watch, int frame, const Error *failure) {
     static const char before[] = "adapter failed: ";
-    const bool adapter = failure->failure == FAILURE_ADAPTER;
     if (watch->worst.verdict >= VERDICT_NON_FINITE) return;
     watch->frame = frame;
-    verdict_note(watch, adapter ? VERDICT_ADAPTER_FAILED : VERDICT_NON_FINITE, -1, watch->speed, "m/s");
-    const char *why = strstr(failure->message, before);
-    if (adapter) copy_reason(watch->worst.reason, why != NULL ? why + strlen(before) : failure->message);
+    if (failure->failure != FAILURE_ADAPTER) {
+        verdict_note(watch, VERDICT_NON_FINITE, -1, watch->speed, "m/s");
+        return;
+    }
+    verdict_note(watch, VERDICT_ADAPTER_FAILED, -1, watch->speed, "m/s");
+    /* Without the place, which is that of the verdict. */
+    const char *text = strstr(failure->message, before), *place = NULL;
+    text = text != NULL ? text + strlen(before) : failure->message;
+    for (const char *at = strstr(text, ", in step "); at != NULL; at = strstr(at + 1, ", in step ")) place = at;
+    char whole[sizeof failure->message];
+    snprintf(whole, sizeof whole, "%.*s", (int)(place != NULL ? (size_t)(place - text) : strlen(text)), text);
+    snprintf(watch->worst.reason, VERDICT_REASON_SIZE, "%.*s", (int)utf8_cut(whole, VERDICT_REASON_SIZE - 1), whole);
+}
+
+double verdict_watch_units(const VerdictWatch *watch, double units) {
+    return steps_of(watch, units) * (double)watch->run.dt;
 }
 
 bool verdict_watch_is_final(const VerdictWatch *watch) { return watch->worst.verdict >= VERDICT_EXPLODES; }
 
-/* m: how far a body is beside where it stood. */
-static double moved_by(const VerdictWatch *watch, const WatchedBody *body) {
-    const Vec2 way = vec2_sub(body->last, body->stood), gravity = watch->run.gravity;
-    const double pull = vec2_distance(gravity, vec2(0, 0));
-    return pull > 0 ? fabs((double)way.x * gravity.y - (double)way.y * gravity.x) / pull
-                    : vec2_distance(way, vec2(0, 0));
-}
-
-static VerdictCount count_bodies(const VerdictWatch *watch) {
-    VerdictCount count = {.body = -1};
-    const bool gravity = vec2_dot(watch->run.gravity, watch->run.gravity) > 0;
-    for (int i = 0; i < watch->body_count; i++) {
-        const WatchedBody *body = &watch->bodies[i];
-        if (!body->stands || (gravity && !body->landed)) continue;
-        count.stood++;
-        count.fell += body->fell > 0;
-        count.left += body->left;
-        if (body->fell > 0 && (count.body < 0 || body->fell < count.first)) count.first = body->fell, count.body = i;
-        const double way = body->landed && body->fell == 0 ? moved_by(watch, body) : 0;
-        if (way <= VERDICT_MOVED_SHARE * body->size) continue;
-        count.moved++;
-        count.farthest = fmax(count.farthest, way);
-    }
-    return count;
-}
-
-/* What stands of a struck scene. */
-static void read_struck(const VerdictCount *count, VerdictReading *reading) {
-    reading->struck = true;
-    if (count->fell == 0) {
-        reading->verdict = VERDICT_STANDS;
-        reading->body = -1;
-        reading->value = count->farthest;
-        reading->unit = "m";
-        return;
-    }
-    reading->verdict = 2 * count->fell < count->stood ? VERDICT_FALLS : VERDICT_COLLAPSES;
-    reading->frame = count->first;
-    reading->body = count->body;
-    reading->value = count->fell;
-    reading->unit = "boxes";
-}
-
-static VerdictReading read_verdict(const VerdictWatch *watch) {
-    const bool calm = watch->calm >= falls_in_steps(watch, VERDICT_CALM_FALLS);
-    VerdictReading reading = watch->worst;
-    if (reading.verdict < VERDICT_CREEPS) {
-        const int which = calm ? 0 : 1;
-        const bool hangs = !calm && watch->restless[1] >= 0 && watch->unrest[1] == 0;
-        reading = (VerdictReading){.verdict = calm ? VERDICT_SETTLES : VERDICT_MOVES,
-                                   .frame = watch->frame - watch->calm + (calm ? 1 : 0),
-                                   .body = calm ? -1 : watch->restless[1],
-                                   .value = hangs ? watch->bodies[watch->restless[1]].air * (double)watch->run.dt
-                                                  : watch->unrest[which],
-                                   .unit = hangs ? "s" : "m/s",
-                                   .other = -1};
-    }
-    reading.moving = !calm;
-    reading.count = count_bodies(watch);
-    if (watch->run.struck != NULL && reading.count.stood > 0 && reading.verdict < VERDICT_UNDECIDED)
-        read_struck(&reading.count, &reading);
-    return reading;
+bool verdict_watch_fell(const VerdictWatch *watch, int i) {
+    const WatchedBody *body = &watch->bodies[i];
+    return i < watch->body_count && !body->is_static && !body->is_bomb && body->fell > 0;
 }
 
 VerdictReading verdict_watch_end(const VerdictWatch *watch) {
-    VerdictReading reading = read_verdict(watch);
-    reading.drift = reading.gained = NAN;
-    reading.deepest = watch->deepest;
-    reading.fallbacks = watch->fallbacks;
-    reading.excess = watch->run.no_energy ? NAN : watch->excess;
-    if (watch->rested_count == 0 || watch->frame == falls_in_steps(watch, VERDICT_CREEP_FROM)) return reading;
-    reading.drift = 0;
-    reading.gained = watch->energy - watch->rested;
-    for (int i = 0; i < watch->rested_count && i < watch->body_count; i++)
-        reading.drift = fmax(reading.drift, vec2_distance(watch->bodies[i].rested, watch->bodies[i].last));
-    return reading;
-}
-
-/* A body has no padding: eleven floats. */
-static uint64_t hash_bodies(const Body *bodies, int count) {
-    return count > 0 ? hash_fnv1a64(FNV1A64_START, bodies, (size_t)count * sizeof *bodies) : FNV1A64_START;
-}
-
-/* A method that fails is a valid result. */
-static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const Step *step, Error *error) {
-    Error failure = {0};
-    if (simulate_step(stepper, world, step, &failure)) return verdict_watch_observe(watch, step->frame, world, error);
-    if (failure.failure == FAILURE_NONE) return *error = failure, false;
-    fallbacks_add(&watch->fallbacks, &world_solution(world)->fallbacks);
-    verdict_watch_failed(watch, step->frame, &failure);
-    return true;
-}
-
-bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
-                 Error *error) {
-    VerdictWatch watch = {0};
-    VerdictRun judged = *run;
-    verdict_run_set_engine(&judged, method);
-    World *world = scene_world(scene, error);
-    Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
-    bool ok =
-        stepper != NULL && verdict_watch_begin(&watch, &judged, world_bodies(world), world_body_count(world), error);
-    for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++)
-        ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);
-    if (ok) {
-        *reading = verdict_watch_end(&watch);
-        reading->state = hash_bodies(world_bodies(world), world_body_count(world));
-        reading->steps = watch.frame;
+    VerdictReading reading = watch->worst;
+    VerdictCount count = {.body = -1};
+    const int least = steps_of(watch, rest_units);
+    int dropped = 0, staying = 0, starting = 0, last = -1;
+    bool still = true, moved = false;
+    for (int i = 0; i < watch->body_count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        if (body->is_static || body->is_bomb) continue;
+        count.bodies++;
+        dropped += body->carrier < 0;
+        starting += body->starts;
+        count.fell += body->fell > 0;
+        count.left += body->left;
+        if (body->fell > 0 && (count.body < 0 || body->fell < count.first)) count.first = body->fell, count.body = i;
+        const double x = body->last.x - body->reference.x, y = body->last.y - body->reference.y;
+        const double beside = x * watch->up_y - y * watch->up_x, above = larger(0, x * watch->up_x + y * watch->up_y);
+        const double way = sqrt(beside * beside + above * above);
+        if (body->fell == 0 && body->carrier >= 0 && way > moved_share * body->size) {
+            count.moved++;
+            count.farthest = larger(count.farthest, way);
+        }
+        if (body->left) continue;
+        const int stay = watch->frame - body->since,
+                  shorter = body->stays[0] < body->stays[1] ? body->stays[0] : body->stays[1];
+        const bool known = body->stays[0] != INT_MAX && body->stays[1] != INT_MAX;
+        staying++;
+        moved |= body->since > 0;
+        still &= stay >= least && (!known || stay > 2 * shorter);
+        if (last < 0 || body->since > watch->bodies[last].since) last = i;
     }
-    verdict_watch_free(&watch);
-    stepper_destroy(stepper);
-    world_destroy(world);
-    return ok;
+    reading.count = count;
+    reading.struck = watch->struck;
+    reading.too_short = watch->frame < least && !moved && staying > 0;
+    reading.moving = !still;
+    reading.since = last >= 0 ? watch->bodies[last].since : 0;
+    reading.fallbacks = watch->fallbacks;
+    reading.deepest = watch->deepest;
+    reading.excess = energy_is_judged(watch) ? larger(watch->excess, 0) : NAN;
+    reading.drift = reading.gained = NAN;
+    if (watch->rested_frame > 0 && watch->frame > watch->rested_frame) {
+        reading.drift = 0;
+        reading.gained = watch->energy - watch->rested;
+        for (int i = 0; i < watch->body_count; i++)
+            reading.drift = larger(reading.drift, way_between(&watch->bodies[i].rested, &watch->bodies[i].last));
+    }
+    if (reading.verdict >= VERDICT_HANGS) return reading;
+    reading.body = -1;
+    reading.value = watch->speed;
+    reading.unit = "m/s";
+    if (count.fell > 0) {
+        const bool by_itself = watch->run.bomb >= 0 && starting == 0 && (watch->met < 0 || count.first <= watch->met);
+        reading.verdict =
+            by_itself || !watch->struck || 2 * count.fell < count.bodies - dropped ? VERDICT_FALLS : VERDICT_COLLAPSES;
+        reading.frame = count.first;
+        reading.body = count.body;
+        reading.value = count.fell;
+        reading.unit = "boxes";
+    } else if (watch->struck && dropped < count.bodies) {
+        reading.verdict = VERDICT_STANDS;
+        reading.frame = still && reading.since > watch->met ? reading.since
+                        : still && watch->met > 0           ? watch->met
+                                                            : watch->frame;
+    } else {
+        reading.verdict = reading.too_short ? VERDICT_TOO_SHORT : still ? VERDICT_SETTLES : VERDICT_MOVES;
+        reading.frame = still && !reading.too_short ? reading.since : watch->frame;
+        if (!still) reading.body = last;
+    }
+    return reading;
 }

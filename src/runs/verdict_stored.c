@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The verdict on a stored run. Files have neither masses nor gravity, and perhaps no contacts and velocities: the first
-   come from a scene or are assumed, the others are found again. */
+/* The verdict on a stored run. A file has no gravity, and perhaps no masses, contacts and velocities: the first two come
+   from a scene or are assumed, the others are found again. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "runs/trajectory.h"
@@ -22,35 +22,34 @@ static bool count_bodies(const Trajectory *run, int frame, int *count, Error *er
     return true;
 }
 
-/* If a run does not state velocities: those that lead to the frame, as semi-implicit Euler moves bodies by them; in the
-   first frame of a body, those that lead to the next. */
-static void set_velocity(const Trajectory *run, int frame, int i, Body *body) {
+/* The velocity that leads from one frame to the next, as semi-implicit Euler moves bodies by it. */
+static void set_difference(const Trajectory *run, int from, int i, Body *body) {
+    const size_t before = trajectory_at(run, from, i), after = trajectory_at(run, from + 1, i);
     const float rate = 1 / run->dt, turn = 6.2831853f; /* some engines keep angles within one */
-    const bool known = frame > 0 && trajectory_has(run, frame - 1, i);
-    const int from = known ? frame - 1 : frame, to = from + 1;
-    const size_t now = trajectory_at(run, frame, i), before = trajectory_at(run, from, i),
-                 after = trajectory_at(run, to, i);
+    body->velocity = vec2_scale(rate, vec2_sub(run->position[after], run->position[before]));
+    body->angular_velocity = rate * remainderf(run->angle[after] - run->angle[before], turn);
+}
+
+/* Of a run without velocities, those that lead to the frame, or from it, whichever are slower: what pushes an overlap
+   apart lasts a step. */
+static void set_body(const Trajectory *run, int frame, int i, Body *body) {
+    const size_t now = trajectory_at(run, frame, i);
+    body->position = run->position[now];
+    body->angle = run->angle[now];
     body->velocity = run->velocity[now];
     body->angular_velocity = run->angular_velocity[now];
     if (!run->no_velocities) return;
-    const bool moves = to < run->frames && trajectory_has(run, to, i);
-    body->velocity = moves ? vec2_scale(rate, vec2_sub(run->position[after], run->position[before])) : vec2(0, 0);
-    body->angular_velocity = moves ? rate * remainderf(run->angle[after] - run->angle[before], turn) : 0;
-}
-
-static void set_body(const Trajectory *run, int frame, int i, Body *body) {
-    body->position = run->position[trajectory_at(run, frame, i)];
-    body->angle = run->angle[trajectory_at(run, frame, i)];
-    set_velocity(run, frame, i, body);
-}
-
-/* Without velocities, those of the first step tell: gravity's share, and what pushes an overlap or a skin apart. */
-static bool starts_at_rest(const Trajectory *run, int i, Vec2 gravity) {
-    Body body;
-    const double pull = vec2_distance(gravity, vec2(0, 0)), push = 0.5 /* m/s */;
-    set_body(run, 0, i, &body);
-    const double speed = vec2_distance(body.velocity, vec2(0, 0));
-    return run->no_velocities ? speed <= pull * (double)run->dt + push : speed == 0 && body.angular_velocity == 0;
+    Body to = *body, from = *body;
+    const bool has_to = frame > 0 && trajectory_has(run, frame - 1, i),
+               has_from = frame + 1 < run->frames && trajectory_has(run, frame + 1, i);
+    if (has_to) set_difference(run, frame - 1, i, &to);
+    if (has_from) set_difference(run, frame, i, &from);
+    if (!has_to) to = from;
+    if (!has_from) from = to;
+    const bool slower = vec2_dot(from.velocity, from.velocity) < vec2_dot(to.velocity, to.velocity);
+    body->velocity = slower ? from.velocity : to.velocity;
+    body->angular_velocity =
+        fabsf(from.angular_velocity) < fabsf(to.angular_velocity) ? from.angular_velocity : to.angular_velocity;
 }
 
 Scene *trajectory_scene(const Trajectory *run, Error *error) {
@@ -66,16 +65,13 @@ Scene *trajectory_scene(const Trajectory *run, Error *error) {
     scene->bomb.present = run->bomb >= 0;
     for (int i = 0; i < run->bodies; i++) {
         const Vec2 size = run->size[i];
-        const float mass = VERDICT_DENSITY * size.x * size.y;
+        const float mass = trajectory_has_masses(run) ? run->mass[i] : VERDICT_DENSITY * size.x * size.y;
         if (i == run->bomb && i == run->bodies - 1 && !run->fixed[i]) {
             scene->bomb.size = size;
             scene->bomb.mass.value = mass;
             break;
         }
-        BodyDef *def = &scene->bodies[scene->body_count++];
-        *def = (BodyDef){.size = size, .fixed = run->fixed[i], .mass = mass};
-        if (trajectory_has(run, 0, i) && !run->fixed[i] && !starts_at_rest(run, i, scene->gravity))
-            def->velocity = vec2(1, 0);
+        scene->bodies[scene->body_count++] = (BodyDef){.size = size, .fixed = run->fixed[i], .mass = mass};
     }
     return scene;
 }
@@ -95,37 +91,34 @@ static bool verdict_stored_fits(const Scene *scene, const Trajectory *run, const
 }
 
 /* A frame as a step: its bodies get the poses of the run. */
-static bool watch_frame(VerdictWatch *watch, const VerdictRun *judged, const Trajectory *run, int frame, int bomb,
-                        Body *bodies, Error *error) {
+static bool watch_frame(VerdictWatch *watch, const VerdictRun *judged, const Trajectory *run, int frame, Body *bodies,
+                        Error *error) {
     VerdictStep step = {.frame = frame, .bodies = bodies};
     if (!count_bodies(run, frame, &step.body_count, error)) return false;
     for (int i = 0; i < step.body_count; i++) set_body(run, frame, i, &bodies[i]);
-    step.bomb = bomb < step.body_count ? bomb : -1;
     return frame > 0 ? verdict_watch_step(watch, &step, error)
                      : verdict_watch_begin(watch, judged, bodies, step.body_count, error);
-}
-
-static bool is_of_other_engine(const Trajectory *run) {
-    const MethodDescription *method = method_describe(run->method);
-    return method == NULL || method->whole_scenes;
 }
 
 static bool verdict_stored_judge(SimulateVerdict *verdict, const Trajectory *run, const RunScene *by,
                                  const World *world, Error *error) {
     const Scene *scene = by->scene;
-    VerdictRun judged = verdict_run_of(scene);
-    judged.skin = by->skin;
-    judged.other_engine = is_of_other_engine(run);
-    judged.no_energy = by->assumed && !judged.stands;
-    judged.finds_contacts = true;
-    const int bomb = !scene->bomb.present ? -1 : run->bomb >= 0 ? run->bomb : scene->body_count;
+    const VerdictRun judged = {.gravity = scene->gravity,
+                               .dt = scene->dt,
+                               .bomb = !scene->bomb.present ? -1
+                                       : run->bomb >= 0     ? run->bomb
+                                                            : scene->body_count,
+                               .skin = by->skin,
+                               .masses_unknown = by->assumed && !trajectory_has_masses(run),
+                               .finds_contacts = true,
+                               .poses_only = run->no_velocities};
     const size_t size = (size_t)run->bodies * sizeof(Body);
     Body *bodies = malloc(size + 1);
     if (bodies == NULL) return error_memory(error, run->scene);
     if (size > 0) memcpy(bodies, world_bodies(world), size);
     bool ok = true;
     for (int frame = 0; ok && frame < run->frames; frame++)
-        ok = watch_frame(&verdict->watch, &judged, run, frame, bomb, bodies, error);
+        ok = watch_frame(&verdict->watch, &judged, run, frame, bodies, error);
     free(bodies);
     return ok;
 }

@@ -337,7 +337,7 @@ static void draw_cell(const Borders *borders, int study, int method, double y) {
     for (int i = 0; i < cell.count; i++) {
         spans[i] = placed(&cell.spans[i], left, width);
         fill(borders->sketch, spans[i].from, spans[i].to, y,
-             spans[i].holds ? verdict_looks[VERDICT_CREEPS].fill : verdict_looks[spans[i].look].fill);
+             spans[i].holds ? verdict_looks[VERDICT_MOVES].fill : verdict_looks[spans[i].look].fill);
     }
     const int numbered = number_border(borders->sketch, &cell, spans, y);
     for (int i = 0; i < cell.count; i++)
@@ -363,7 +363,7 @@ static void draw_heading(const Borders *borders, bool struck, double y) {
     const Pen rule = pen_line(0x909090, 0.8, NULL);
     const double top = y + heading_height / 2 - 0.6;
     sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
-    fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_CREEPS].fill);
+    fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_MOVES].fill);
     plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
               struck ? "as many boxes fall as with the reference" : "holds");
 }
@@ -379,7 +379,7 @@ static void draw_legend(const Borders *borders, double foot, int rows) {
     for (int sample = !borders->few; sample <= borders->rigid; sample++, next++) {
         const Point at = {edge + legend_item * (next % place.columns), place.top - LEGEND_ROW * (next / place.columns)};
         if (sample == 0)
-            fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_CREEPS].fill);
+            fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_MOVES].fill);
         else
             sketch_line(borders->sketch, (Point){at.x + 1.4, at.y - 1.5}, (Point){at.x + 1.4, at.y + 1.5}, &rigid_pen);
         plot_text(borders->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS,

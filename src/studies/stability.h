@@ -11,6 +11,7 @@
 #include "methods/methods.h"
 #include "runs/pieces.h"
 #include "runs/verdict.h"
+#include "studies/converged.h"
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
@@ -39,13 +40,13 @@ typedef struct StabilityStudy {
     const char *parameter;
     BorderScan scan;
     SceneSetting fixed;    /* another parameter that is set; name "": none */
-    bool stands;           /* as in VerdictRun */
+    bool stands;           /* judged by its own verdict, also if it is struck */
     bool iterations;       /* scans the scene's iterations: only for methods that use them */
     bool unshifted;        /* without seeds: a tiny shift has no effect, as it is rounded away or nothing comes near */
     bool rests;            /* also records drift and energy of every run */
     bool quick;            /* part of a quick run */
     double weight;         /* s for all methods on two cores, approximately */
-    const char *file;      /* path of another scene instead; `stands` then follows from each scene (verdict_run_of) */
+    const char *file;      /* path of another scene instead; `stands` is then false */
     double (*rigid)(void); /* the value up to which rigid boxes hold, in closed form; NULL: unknown */
 } StabilityStudy;
 
@@ -308,10 +309,9 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
 /* The study's scene, in this folder, with a value of its parameter. The caller frees it. */
 Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error);
 
-/* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by
-   the table of studies, or follows from the scene if it is a file. */
-VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
-                                 const EnergyLog *converged);
+/* Whether the study compares what stands with the converged run: the scene is struck (runs/verdict.h), and its table
+   does not say that it stands. */
+bool stability_is_struck(const StabilityPlace *place, const Scene *scene, bool stands);
 
 /* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those
    that are shifted by a micrometre. */
@@ -325,7 +325,7 @@ typedef struct Convergence {
    (runs/verdict.h). It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre
    differ in that, and where the converged run is not sound or has a step that did not converge. Of a scene that is not
    struck it is VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
-bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error);
+bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *convergence, Error *error);
 
 /* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is
    not sound, or falls before it is struck, stays as it is. The reference's verdict is what its own run does, so that a
@@ -371,10 +371,8 @@ typedef struct ConvergedRuns {
     ConvergedRun **runs; /* [count] */
 } ConvergedRuns;
 
-/* The run of the scene at the value by the method "reference", and its truth, judged as `judged`, without a converged
-   run. NULL with error set if it fails. */
-const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
-                                       Error *error);
+/* The run of the scene at the value by the method "reference", and its truth. NULL with error set if it fails. */
+const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, bool struck, Error *error);
 
 /* The same, if it was computed before; else NULL. */
 const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value);

@@ -36,16 +36,8 @@ Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, do
     return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
 }
 
-VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
-                                 const EnergyLog *converged) {
-    VerdictRun run = verdict_run_of(scene);
-    if (place->file == NULL) {
-        run.stands = stands;
-        run.until_bomb = false;
-        if (stands) run.struck = NULL;
-    }
-    run.converged = converged;
-    return run;
+bool stability_is_struck(const StabilityPlace *place, const Scene *scene, bool stands) {
+    return verdict_is_struck(scene) && (place->file != NULL || !stands);
 }
 
 /* The x of the first body that moves. */
@@ -99,12 +91,12 @@ Convergence convergence_of(const EnergyLog *log) {
 }
 
 /* The scene is the same afterwards. */
-bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error) {
+bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *convergence, Error *error) {
     Method reference;
     float *x = first_x(scene);
     const bool warm = scene->warm_starting;
     *truth = VERDICT_SETTLES;
-    if (judged->struck == NULL) return true;
+    if (!struck) return true;
     if (!method_parse(&reference, "reference", error)) return false;
     const float place = *x;
     bool ok = true;
@@ -112,7 +104,8 @@ bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Con
     for (int seed = 0; ok && seed < BORDER_SEEDS; seed++) {
         VerdictReading reading;
         stability_shift(scene, seed);
-        ok = verdict_run(&reading, scene, &reference, judged, error);
+        const VerdictRun judged = verdict_run_of(scene, &reference);
+        ok = verdict_run(&reading, scene, &reference, &judged, error);
         *x = place;
         if (ok && seed == 0) *truth = reading.verdict;
         const bool known = verdict_sound(reading.verdict) && reading.fallbacks.not_converged == 0;
@@ -142,8 +135,7 @@ const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value)
     return run;
 }
 
-const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
-                                       Error *error) {
+const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, bool struck, Error *error) {
     const ConvergedRun *known = converged_runs_find(runs, value);
     if (known != NULL) return known;
     ConvergedRun *run = calloc(1, sizeof *run);
@@ -151,7 +143,7 @@ const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double
     run->value = value;
     bool ok = converged_run_once(&run->log, scene, error);
     if (ok) run->convergence = convergence_of(&run->log);
-    ok = ok && stability_truth(scene, judged, &run->truth, &run->convergence, error);
+    ok = ok && stability_truth(scene, struck, &run->truth, &run->convergence, error);
     bool room = true;
 #pragma omp critical(converged_runs)
     if (ok) {
@@ -221,12 +213,13 @@ static bool judge_cell(void *piece, int i, Error *error) {
         scene_at(context->grid, context->x[cell % context->x_count], context->y[cell / context->x_count], error);
     bool ok = scene != NULL && converged_run_once(&converged, scene, error);
     if (ok) {
-        const VerdictRun judged = stability_verdict_run(&place, scene, map->stands, &converged);
         run->converged[i] = convergence_of(&converged);
-        ok = stability_truth(scene, &judged, &truth, &run->converged[i], error);
+        ok = stability_truth(scene, stability_is_struck(&place, scene, map->stands), &truth, &run->converged[i], error);
         for (int m = 0; ok && m < context->method_count; m++) {
             const Method *method = &context->methods[m]->method;
             VerdictReading *reading = &run->readings[i * context->method_count + m];
+            VerdictRun judged = verdict_run_of(scene, method);
+            judged.converged = &converged;
             ok =
                 verdict_run(reading, scene, method, &judged, error) && run_counter_add(&run->counter, map->name, error);
             if (ok) reading->verdict = stability_compare(reading, truth, method);
@@ -282,7 +275,7 @@ bool stability_grid_begin(GridContext *context, const StabilityGrid *grid, Error
     if (context->methods == NULL) return error_memory(error, grid->map->name);
     /* The panel of the reference shows the truth of a struck scene. */
     const StabilityPlace place = place_of(grid);
-    const bool struck = stability_verdict_run(&place, context->typical, grid->map->stands, NULL).struck != NULL;
+    const bool struck = stability_is_struck(&place, context->typical, grid->map->stands);
     for (int i = 0; i < grid->methods->count; i++) {
         const Contender *contender = &grid->methods->items[i];
         const Method *method = &contender->method;

@@ -149,7 +149,8 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_AGREES] = {"agrees", 0xDDEBE0, 0x4F7D5E, METHOD_SQUARE, false, 0.35},
     [VERDICT_STANDS] = {"stands", 0xE6F1F9, 0x4E7A96, METHOD_DIAMOND, false, 0.35},
     [VERDICT_MOVES] = {"moves", 0xCBE2F1, 0x2F6C94, METHOD_CIRCLE, true, 0.8},
-    [VERDICT_CREEPS] = {"creeps", 0xA3CBE5, 0x14486B, METHOD_CIRCLE, false, 0.8},
+    [VERDICT_TOO_SHORT] = {"too short", 0xF2F0E6, 0x6E6850, METHOD_PENTAGON, false, 0.8},
+    [VERDICT_HANGS] = {"hangs", 0xD9773C, 0x3D2000, METHOD_CIRCLE, false, 0.8},
     [VERDICT_UNDECIDED] = {"undecided", 0xF2F0E6, 0x6E6850, METHOD_PENTAGON, true, 0.8},
     [VERDICT_FALLS] = {"falls", 0xEE9A2E, 0x3D2000, METHOD_INVERTED_TRIANGLE, false, 0.9},
     [VERDICT_COLLAPSES] = {"collapses", 0xDF7F20, 0x3D2000, METHOD_TRIANGLE, false, 0.9},
@@ -436,7 +437,7 @@ static void write_caption(const MapPanels *map, bool converged, PlotPage *page) 
     text_add(
         page->caption, sizeof page->caption,
         "Where each method fails: map %s. Across: %s; up: %s. Each cell is one run and its worst verdict; darker is "
-        "worse. Settling, moving and creeping count as holding; the black line separates them from failing. All "
+        "worse. Settling and moving count as holding; the black line separates them from failing. All "
         "cells have the same size, whatever their values.",
         map->first->map, x, y);
     bool struck = false;

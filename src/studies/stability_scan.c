@@ -54,8 +54,9 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     const StabilityPlace place = place_of(scan);
     Scene *scene = stability_study_scene(scan->study, scan->scenes, value, error);
     if (scene == NULL) return false;
-    VerdictRun judged = stability_verdict_run(&place, scene, scan->study->stands, NULL);
-    const ConvergedRun *run = converged_runs_get(converged, scene, value, &judged, error);
+    const bool struck = stability_is_struck(&place, scene, scan->study->stands);
+    const ConvergedRun *run = converged_runs_get(converged, scene, value, struck, error);
+    VerdictRun judged = verdict_run_of(scene, method);
     stability_shift(scene, seed);
     if (method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
     if (run != NULL) judged.converged = &run->log;

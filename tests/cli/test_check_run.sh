@@ -29,13 +29,23 @@ run 1 check stands.npz --json --max-drift 0
 says '"passed": false'
 says '"drift '
 
-# With a bomb, masses decide: without the scene, nothing is said of energy. Of a short run nothing is said of drift.
+# With a bomb, masses decide: those of the file; without them, nothing is said of energy. Of a short run nothing is said
+# of drift.
 run 0 simulate "$scenes/stack.yaml" --frames 100 -o struck.npz
 words=$(grep verdict: out)
 run 0 check struck.npz --scene "$scenes/stack.yaml"
 says "$words"
 run 0 check struck.npz
+says "$words"
+/usr/bin/python3 -c "
+import numpy
+run = dict(numpy.load('struck.npz'))
+del run['mass']
+numpy.savez('massless.npz', **run)"
+run 0 check massless.npz
 says "energy gained: unknown without masses"
+run 0 check massless.npz --scene "$scenes/stack.yaml"
+says "$words"
 
 # An engine that keeps boxes 15 mm apart: the same run explodes without its skin, one that really explodes does with it.
 /usr/bin/python3 - <<'PYTHON'
@@ -54,7 +64,7 @@ PYTHON
 run 0 import skin.csv -o skin.npz
 says "    verdict: explodes at "
 run 0 import skin.csv -o skin.npz --skin 0.0075
-says "    verdict: settles at "
+says "    verdict: settles; "
 run 0 check skin.npz --skin 0.0075 --verdict settles
 run 1 check skin.npz --verdict settles
 run 0 import bursts.csv -o bursts.npz --skin 0.0075

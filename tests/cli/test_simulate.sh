@@ -56,7 +56,7 @@ printed=$(sed -n 's/^    verdict: //p' out)
 import numpy, sys
 run = numpy.load('judged.npz', allow_pickle=False)
 assert str(run['verdict']) == sys.argv[1] != '', (str(run['verdict']), sys.argv[1])
-assert 0 < run['verdict_frame'] < len(run['position'])" "$printed" || fail "the verdict in the run"
+assert 0 <= run['verdict_frame'] < len(run['position'])" "$printed" || fail "the verdict in the run"
 run 0 simulate "$scenes/single.yaml" --frames 12 --bomb-frame 5 -o late.npz
 /usr/bin/python3 -c "
 import numpy

@@ -6,7 +6,7 @@
 #include "reference_worlds.h"
 #include "sanitized.h"
 
-#include "runs/verdict.h"
+#include "studies/converged.h"
 
 typedef struct Converged {
     Reference reference;

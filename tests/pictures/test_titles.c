@@ -86,7 +86,7 @@ TEST_WITH(an_end_card_compares_with_what_held, make, destroy) {
         {{"engine", "pair-net"}, {"", ""}, 0},
         {{"pair-net", "engine"}, {"explodes at 0.3 s (body 7)", "stands"}, 1},
         {{"engine", "pair-net"}, {"stands", "explodes at 0.3 s (body 7)"}, 0},
-        {{"engine", "interior"}, {"falls: 1 of 2 boxes fell", "falls: 2 of 2 boxes fell"}, 0},
+        {{"engine", "interior"}, {"falls; 1 of 2 fell", "falls; 2 of 2 fell"}, 0},
         {{"pair-net", "engine"}, {"explodes at 0.3 s (body 7)", ""}, 0},
         {{"engine", "reference"}, {"stands", "falls"}, 1},
     };

@@ -19,7 +19,7 @@ static bool evaluate(void *context, double value, int seed, Verdict *verdict, Er
     Made *made = context;
     made->calls++;
     if (made->how == VERDICTS) return error_input(error, "made", "refused");
-    *verdict = value > 5 ? VERDICT_CREEPS : VERDICT_SETTLES;
+    *verdict = value > 5 ? VERDICT_MOVES : VERDICT_SETTLES;
     for (int i = 0; i < made->intervals; i++)
         if (value >= made->from[i] && value <= made->to[i]) *verdict = made->how;
     if (made->failing_seed >= 0 && value >= made->undecided_from && value <= made->undecided_to)
@@ -100,8 +100,8 @@ TEST(a_hole_beside_a_border_is_found) {
 TEST(without_a_border_there_is_one_side) {
     Made holds = {.failing_seed = -1, .how = VERDICT_FALLS};
     Made fails = {.from = {0}, .to = {99}, .intervals = 1, .failing_seed = -1, .how = VERDICT_TUNNELS};
-    expect_borders(&heights, &holds, {40, NAN, VERDICT_CREEPS});
-    expect_borders(&backwards, &holds, {2, NAN, VERDICT_CREEPS});
+    expect_borders(&heights, &holds, {40, NAN, VERDICT_MOVES});
+    expect_borders(&backwards, &holds, {2, NAN, VERDICT_MOVES});
     expect_borders(&heights, &fails, {NAN, 2, VERDICT_TUNNELS});
     expect_borders(&backwards, &fails, {NAN, 40, VERDICT_TUNNELS});
     assert_int_equal(holds.calls, 2 * 10);

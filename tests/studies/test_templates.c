@@ -3,7 +3,7 @@
 #include "made.h"
 #include "sanitized.h"
 
-#include "runs/verdict.h"
+#include "studies/converged.h"
 
 #include <dirent.h>
 
@@ -22,12 +22,11 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
     scene->frames = STEPS;
     const Method reference = method_named("reference");
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
-    VerdictRun run = verdict_run_of(scene);
-    assert_true(run.stands);
-    run.converged = &converged;
     for (int i = 0; i < 3; i++) {
         VerdictReading reading;
         const Method method = method_named(methods[i]);
+        VerdictRun run = verdict_run_of(scene, &method);
+        run.converged = &converged;
         assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
         if (!verdict_holds(reading.verdict))
             fail_msg("%s%s: %s %s at body %d, frame %d", path,
@@ -79,7 +78,7 @@ TEST(the_pile_comes_to_rest) {
         const Method method = method_named(methods[i / 5]);
         scene->bomb.present = false;
         scene->frames = scene->bomb.frame;
-        const VerdictRun run = verdict_run_of(scene);
+        const VerdictRun run = verdict_run_of(scene, &method);
         assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
         if (reading.verdict != VERDICT_SETTLES)
             fail_msg("%s with tilt %g and friction %g: %s, body %d", methods[i / 5], values[i % 5][0], values[i % 5][1],
@@ -98,7 +97,7 @@ TEST(the_arch_needs_its_iterations) {
     scene->iterations = 10;
     assert_true(method_parse(&reference, "reference", &error) && method_parse(&engine, "engine", &error));
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
-    VerdictRun run = verdict_run_of(scene);
+    VerdictRun run = verdict_run_of(scene, &engine);
     run.converged = &converged;
     assert_ok(verdict_run(&reading, scene, &engine, &run, &error), error);
     assert_string_equal(verdict_name(reading.verdict), "falls");

@@ -7,7 +7,7 @@ const VISIBLE = 0.1; /* of a box: what a hall sees of the distance between two p
 const sentence = (start, parts) => parts.length > 0 ? start + parts.join("; ") + ". " : "";
 const away = frame => `at ${time_text(frame)}`;
 
-/* Without figures: "collapses: 8 of 10 boxes fell". */
+/* Without figures: "collapses; 8 of 10 fell". */
 const outcome = run => (short_verdict(run) || (runs[run].live ? "still runs" : "")).split(", first at")[0];
 
 /* Whether a live page has all states of a run. The verdict is there from the beginning. */

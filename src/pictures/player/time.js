@@ -28,9 +28,9 @@ function tick(now) {
 }
 
 const shape = (d, run) => drawing(path(d, `fill:var(--fill${run});stroke:var(--line${run})`));
-/* The verdict without figures behind what happened: "collapses: 8 of 10 boxes fell, first at 1.2 s", "stands; 1 of 10 moved by
-   0.3 m". Empty before the run has ended. */
-const short_verdict = run => cut(runs[run].ended.split(/ \(|; (?!\d+ of )/)[0], 100);
+/* The verdict without figures behind what happened: "collapses; 8 of 10 fell, first at 1.2 s", "stands; 1 moved by up to 0.3
+   m". Empty before the run has ended. */
+const short_verdict = run => cut(runs[run].ended.split(/ \(|; (?!\d+ (of|moved) )/)[0], 100);
 
 /* Events of one frame are one moment. */
 function add_event(form, run, at, words) {

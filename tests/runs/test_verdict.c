@@ -1,0 +1,408 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The definitions of the verdict (runs/verdict.h), each from both sides, on runs whose poses are made here: a ground,
+   boxes of 1 m and 1 kg in a gravity of 10 m/s^2, steps of 1/60 s. A unit is then one second. */
+#include "testing.h"
+
+#include "runs/verdict.h"
+
+enum { SECOND = 60, HALF = SECOND / 2 };
+
+typedef struct Trial {
+    int frame, count;
+    Body bodies[8];
+    VerdictRun run;
+    VerdictWatch watch;
+} Trial;
+
+static Trial trial_on_ground(void) {
+    return (Trial){.count = 1,
+                   .bodies = {{.position = {0, -10}, .size = {100, 20}}},
+                   .run = {.gravity = {0, -10}, .dt = 1.0f / SECOND, .bomb = -1, .finds_contacts = true}};
+}
+
+static Body *add_box(Trial *trial, float x, float y) {
+    trial->bodies[trial->count] = (Body){.position = {x, y}, .size = {1, 1}, .inv_mass = 1, .inv_inertia = 6};
+    return &trial->bodies[trial->count++];
+}
+
+/* A box at rest on the ground; it overlaps it by a millimetre. */
+static Trial box_on_ground(void) {
+    Trial trial = trial_on_ground();
+    add_box(&trial, 0, 0.499f);
+    return trial;
+}
+
+/* So many boxes on one another. */
+static Trial stack_of(int count) {
+    Trial trial = trial_on_ground();
+    for (int i = 0; i < count; i++) add_box(&trial, 0, 0.499f + 0.999f * (float)i);
+    return trial;
+}
+
+/* Steps up to a frame, in which the bodies are where they are now; the first call begins the watch. */
+static void go(Trial *trial, int frame) {
+    Error error = {0};
+    if (trial->watch.capacity == 0)
+        assert_ok(verdict_watch_begin(&trial->watch, &trial->run, trial->bodies, trial->count, &error), error);
+    while (trial->frame < frame) {
+        const VerdictStep step = {.frame = ++trial->frame, .body_count = trial->count, .bodies = trial->bodies};
+        assert_ok(verdict_watch_step(&trial->watch, &step, &error), error);
+    }
+}
+
+static VerdictReading end(Trial *trial) {
+    const VerdictReading reading = verdict_watch_end(&trial->watch);
+    verdict_watch_free(&trial->watch);
+    return reading;
+}
+
+#define assert_verdict(reading, expected)                                                                      \
+    do {                                                                                                       \
+        const VerdictReading reading_ = (reading);                                                             \
+        if (reading_.verdict != (expected))                                                                    \
+            fail_msg("%s (body %d, frame %d, %g %s), not %s", verdict_name(reading_.verdict), reading_.body,   \
+                     reading_.frame, reading_.value, reading_.unit, verdict_name(expected));                   \
+    } while (0)
+
+TEST(what_never_moves_rests_throughout) {
+    Trial trial = box_on_ground();
+    go(&trial, SECOND);
+    const VerdictReading reading = end(&trial);
+    assert_verdict(reading, VERDICT_SETTLES);
+    assert_true(!reading.moving && !reading.struck && reading.since == 0 && reading.count.bodies == 1);
+}
+
+TEST(half_a_unit_tells_whether_it_rests) {
+    for (int frames = HALF - 1; frames <= HALF; frames++) {
+        Trial trial = box_on_ground();
+        go(&trial, frames);
+        const VerdictReading reading = end(&trial);
+        assert_verdict(reading, frames < HALF ? VERDICT_TOO_SHORT : VERDICT_SETTLES);
+        assert_true(reading.too_short == (frames < HALF));
+        assert_true(verdict_sound(reading.verdict) && verdict_holds(reading.verdict) == (frames == HALF));
+    }
+}
+
+/* The run in which the box has moved or turned at this frame. A corner is 0.707 m from the centre. */
+static VerdictReading moved_once(float way, float turn, int frame, int last) {
+    Trial trial = box_on_ground();
+    go(&trial, frame - 1);
+    trial.bodies[1].position.x += way;
+    trial.bodies[1].angle += turn;
+    go(&trial, last);
+    return end(&trial);
+}
+
+TEST(a_place_is_two_percent_of_a_size_wide) {
+    assert_int_equal(moved_once(0.0199f, 0, 60, 300).since, 0);
+    assert_int_equal(moved_once(0.0201f, 0, 60, 300).since, 60);
+    assert_int_equal(moved_once(0, 0.0282f, 60, 300).since, 0);
+    assert_int_equal(moved_once(0, 0.0284f, 60, 300).since, 60);
+    assert_int_equal(moved_once(0, (float)(2 * M_PI), 60, 300).since, 0); /* some engines keep angles within a turn */
+}
+
+TEST(what_took_its_place_half_a_unit_ago_rests) {
+    assert_verdict(moved_once(0.1f, 0, 60, 60 + HALF), VERDICT_SETTLES);
+    const VerdictReading reading = moved_once(0.1f, 0, 60, 59 + HALF);
+    assert_verdict(reading, VERDICT_MOVES);
+    assert_true(reading.body == 1 && reading.frame == 59 + HALF && reading.moving && !reading.too_short);
+}
+
+/* At 22 mm/s it takes a new place every 55 frames; at 5 mm/s, every 240. */
+TEST(gliding_evenly_never_rests) {
+    for (int i = 0; i < 2; i++) {
+        Trial trial = box_on_ground();
+        for (int frame = 1; frame <= 1200; frame++) {
+            trial.bodies[1].position.x = (i == 0 ? 0.022f : 0.005f) * (float)frame / SECOND;
+            go(&trial, frame);
+        }
+        assert_verdict(end(&trial), VERDICT_MOVES);
+    }
+}
+
+TEST(a_body_has_fallen_when_it_is_half_a_side_lower_or_has_turned_by_30_degrees) {
+    static const struct {
+        float lower, degrees;
+        bool fell;
+    } cases[] = {{0.49f, 0, false}, {0.51f, 0, true}, {0, 29, false}, {0, 31, true}, {0, -31, true}, {0, 359, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Trial trial = trial_on_ground();
+        trial.bodies[0].position.y -= 0.2f; /* a gap below the box, which closes: no fall */
+        add_box(&trial, 0, 0.5f);
+        go(&trial, 10);
+        trial.bodies[1].position.y -= 0.2f + cases[i].lower;
+        trial.bodies[0].position.y -= cases[i].lower; /* out of the way */
+        trial.bodies[1].angle += cases[i].degrees * (float)(M_PI / 180);
+        go(&trial, 200);
+        const VerdictReading reading = end(&trial);
+        assert_int_equal(reading.count.fell, cases[i].fell);
+        if (cases[i].fell) assert_true(reading.count.first == 11 && reading.count.body == 1 && reading.frame == 11);
+    }
+}
+
+/* Each of five boxes sinks by 0.15 m into the one below: the top is 0.75 m lower. */
+TEST(sag_is_no_fall) {
+    Trial trial = stack_of(5);
+    go(&trial, 10);
+    for (int i = 1; i <= 5; i++) trial.bodies[i].position.y -= 0.15f * (float)i;
+    go(&trial, 100);
+    const VerdictReading reading = end(&trial);
+    assert_int_equal(reading.count.fell, 0);
+    assert_near(reading.deepest, 0.151, 1e-5);
+}
+
+/* Two boxes beside a stack: what stands on a box that fell has fallen, what stands on another has not. */
+TEST(what_stands_on_a_fallen_body_fell_with_it) {
+    Trial trial = stack_of(3);
+    add_box(&trial, 10, 0.499f);
+    go(&trial, 10);
+    trial.bodies[0].position.y -= 0.9f;
+    for (int i = 1; i <= 3; i++) trial.bodies[i].position.y -= 0.9f;
+    go(&trial, 100);
+    assert_int_equal(end(&trial).count.fell, 3);
+}
+
+TEST(what_is_below_all_static_bodies_has_left) {
+    for (int i = 0; i < 2; i++) {
+        Trial trial = stack_of(2);
+        add_box(&trial, 55, 20); /* nothing carries it */
+        go(&trial, 10);
+        trial.bodies[3].position.y = i == 0 ? -20.49f : -20.51f; /* the ground's lower face is at -20 */
+        go(&trial, 100);
+        const VerdictReading reading = end(&trial);
+        assert_int_equal(reading.count.left, i);
+        assert_int_equal(reading.count.fell, i);
+        assert_int_equal(reading.count.bodies, 3);
+    }
+}
+
+TEST(moved_is_a_tenth_of_a_size_beside) {
+    for (int i = 0; i < 2; i++) {
+        const float way = i == 0 ? 0.099f : 0.101f;
+        const VerdictReading reading = moved_once(way, 0, 10, 100);
+        assert_int_equal(reading.count.moved, i);
+        assert_near(reading.count.farthest, i == 0 ? 0 : way, 1e-6);
+    }
+}
+
+/* Of four boxes on the ground, which some leave in the frame after the bomb has touched one. */
+static VerdictReading struck(int falling, bool touched) {
+    Trial trial = trial_on_ground();
+    for (int i = 0; i < 4; i++) add_box(&trial, 3 * (float)i, 0.499f);
+    trial.run.bomb = 5;
+    go(&trial, 10);
+    add_box(&trial, touched ? -0.99f : -20, 0.499f);
+    go(&trial, 11);
+    for (int i = 1; i <= falling; i++) trial.bodies[i].angle = 1.5f;
+    go(&trial, 100);
+    return end(&trial);
+}
+
+TEST(all_dynamic_bodies_but_the_bomb_count) {
+    static const Verdict expected[] = {VERDICT_STANDS, VERDICT_FALLS, VERDICT_COLLAPSES, VERDICT_COLLAPSES};
+    for (int k = 0; k < 4; k++) {
+        const VerdictReading reading = struck(k, true);
+        assert_verdict(reading, expected[k]);
+        assert_true(reading.struck && reading.count.bodies == 4 && reading.count.fell == k);
+    }
+    assert_verdict(struck(3, false), VERDICT_FALLS); /* by themselves */
+}
+
+TEST(some_that_start_with_a_speed_strike) {
+    for (int starting = 0; starting <= 2; starting++) {
+        Trial trial = trial_on_ground();
+        add_box(&trial, 0, 0.499f)->velocity.x = starting > 0 ? 1 : 0;
+        add_box(&trial, 5, 0.499f)->velocity.x = starting > 1 ? 1 : 0;
+        go(&trial, 100);
+        assert_int_equal(end(&trial).struck, starting == 1);
+    }
+}
+
+TEST(deeper_than_a_quarter_for_half_a_unit_sinks) {
+    static const struct {
+        float depth;
+        int frames;
+        bool sinks;
+    } cases[] = {{0.26f, HALF, false}, {0.26f, HALF + 2, true}, {0.24f, 100, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Trial trial = box_on_ground();
+        go(&trial, 10);
+        trial.bodies[1].position.y = 0.5f - cases[i].depth;
+        go(&trial, 10 + cases[i].frames);
+        trial.bodies[1].position.y = 0.499f;
+        go(&trial, 200);
+        const VerdictReading reading = end(&trial);
+        assert_verdict(reading, cases[i].sinks ? VERDICT_SINKS : VERDICT_SETTLES);
+        assert_near(reading.deepest, cases[i].depth, 1e-5);
+    }
+}
+
+/* A box goes through a resting one: in steps of 0.3 m in which it is in it, and in one leap; or it stays outside. */
+TEST(what_is_on_the_other_side_has_tunnelled) {
+    static const struct {
+        float from, step, height;
+        bool tunnels;
+    } cases[] = {{-2, 0.3f, 0, true}, {-2, 4, 0, true}, {-2, 4, 3, false}, {-3, 1.5f, 0, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Trial trial = box_on_ground();
+        trial.run.gravity.y = 0;
+        Body *moving = add_box(&trial, cases[i].from, 0.499f + cases[i].height);
+        moving->velocity.x = 1;
+        const bool stops = i == 3;
+        for (int frame = 1; frame < 30; frame++) {
+            go(&trial, frame);
+            if (!stops || frame == 1) moving->position.x += cases[i].step;
+        }
+        const VerdictReading reading = end(&trial);
+        assert_int_equal(reading.verdict == VERDICT_TUNNELS, cases[i].tunnels);
+        if (cases[i].tunnels) assert_true(reading.body + reading.other == 3);
+    }
+}
+
+TEST(what_touches_nothing_falls_or_hangs) {
+    for (int i = 0; i < 3; i++) {
+        Trial trial = box_on_ground();
+        Body *box = add_box(&trial, 5, i == 2 ? 0.52f : 8); /* or lies 2 cm above the ground: it touches */
+        for (int frame = 1; frame <= 70; frame++) {
+            const float t = (float)frame / SECOND;
+            if (i == 1) box->position.y = 8 - 5 * t * t, box->velocity.y = -10 * t;
+            go(&trial, frame);
+        }
+        const VerdictReading reading = end(&trial);
+        assert_int_equal(reading.verdict == VERDICT_HANGS, i == 0);
+        if (i == 0) assert_true(reading.body == 2 && reading.frame <= SECOND);
+    }
+}
+
+/* Two boxes, of which the upper one has 10 m to fall: 100 J are available, 1% is 1 J. */
+static VerdictReading with_energy(double joules, int frame, int bomb, double share) {
+    Trial trial = box_on_ground();
+    add_box(&trial, 5, 10.499f)->inv_mass = 1;
+    trial.bodies[3] = (Body){.position = {5, 5}, .size = {1, 9.95f}}; /* what carries it */
+    trial.count = 4;
+    trial.run.bomb = bomb;
+    go(&trial, frame - 1);
+    const float speed = (float)sqrt(2 * joules * share);
+    trial.bodies[2].velocity.x = speed;
+    trial.bodies[1].velocity.x = (float)sqrt(2 * joules * (1 - share));
+    go(&trial, frame + 10);
+    return end(&trial);
+}
+
+TEST(a_percent_of_what_is_available_may_be_gained) {
+    assert_verdict(with_energy(0.99, 10, -1, 1), VERDICT_TOO_SHORT);
+    const VerdictReading reading = with_energy(1.01, 10, -1, 1);
+    assert_verdict(reading, VERDICT_EXPLODES);
+    assert_true(reading.frame == 10 && reading.body == 2);
+    assert_near(reading.value, 1.01, 1e-5);
+    assert_near(reading.excess, 1.01, 1e-5);
+    assert_string_equal(reading.unit, "J");
+}
+
+TEST(energy_that_a_run_has_lost_it_may_not_regain) {
+    for (int i = 0; i < 2; i++) {
+        Trial trial = box_on_ground();
+        Body *box = add_box(&trial, 5, 0.499f);
+        box->velocity.x = 10; /* 50 J, lost within the first unit */
+        go(&trial, 10);
+        box->velocity.x = 0;
+        go(&trial, 3 * SECOND);
+        box->velocity.x = (float)sqrt(2 * (i == 0 ? 4.99 : 5.01)); /* 5% of 50 J that it had and 50 J that it lost */
+        go(&trial, 3 * SECOND + 10);
+        assert_int_equal(end(&trial).verdict == VERDICT_EXPLODES, i);
+    }
+}
+
+/* What a converged run has within a unit is no gain. */
+TEST(a_converged_run_bounds_energy) {
+    double energy[301];
+    for (int i = 0; i < 301; i++) energy[i] = i == 100 ? 20 : 10; /* J */
+    const EnergyLog log = {.frames = 300, .energy = energy, .liveliest = 1000};
+    static const struct {
+        int frame;
+        bool explodes;
+    } cases[] = {{39, true}, {41, false}, {159, false}, {162, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Trial trial = box_on_ground(); /* 4.99 J */
+        trial.run.converged = &log;
+        go(&trial, cases[i].frame - 1);
+        trial.bodies[1].velocity.x = 5; /* 12.5 J more */
+        go(&trial, cases[i].frame);
+        assert_int_equal(end(&trial).verdict == VERDICT_EXPLODES, cases[i].explodes);
+    }
+}
+
+TEST(five_times_the_liveliest_bursts_away) {
+    for (int i = 0; i < 2; i++) {
+        Trial trial = trial_on_ground();
+        trial.bodies[0].position.y = -1000;
+        trial.run.gravity.y = 0;
+        trial.run.masses_unknown = false;
+        Body *heavy = add_box(&trial, 0, 0), *light = add_box(&trial, 3, 0);
+        heavy->inv_mass = 1e-3f, heavy->inv_inertia = 6e-3f;
+        heavy->velocity.x = 1; /* 0.5 J/kg */
+        go(&trial, 5);
+        light->velocity.x = (float)sqrt(2 * 0.5 * (i == 0 ? 4.99 : 5.01));
+        heavy->velocity.x = 0.9f;
+        go(&trial, 6);
+        const VerdictReading reading = end(&trial);
+        assert_int_equal(reading.verdict == VERDICT_EXPLODES, i);
+        if (i == 1) assert_true(reading.body == 2 && strcmp(reading.unit, "m/s") == 0);
+    }
+}
+
+TEST(a_bomb_brings_its_energy_when_it_strikes) {
+    for (int i = 0; i < 2; i++) {
+        Trial trial = box_on_ground();
+        trial.run.bomb = 2;
+        go(&trial, 5);
+        add_box(&trial, i == 0 ? -0.99f : -20, 0.499f)->velocity.x = 10; /* 50 J */
+        go(&trial, 6);
+        trial.bodies[2].velocity.x = 0;
+        trial.bodies[1].velocity.x = 9; /* 40.5 J, of the bomb's or of nothing */
+        go(&trial, 10);
+        assert_int_equal(end(&trial).verdict == VERDICT_EXPLODES, i);
+    }
+}
+
+TEST(a_state_that_is_not_finite_ends_the_run) {
+    Trial trial = box_on_ground();
+    trial.bodies[1].velocity.x = 3;
+    go(&trial, 5);
+    trial.bodies[1].angle = NAN;
+    go(&trial, 8);
+    assert_true(verdict_watch_is_final(&trial.watch));
+    const VerdictReading reading = end(&trial);
+    assert_verdict(reading, VERDICT_NON_FINITE);
+    assert_true(reading.frame == 6 && reading.body == 1);
+    assert_near(reading.value, 3, 1e-6);
+}
+
+TEST(drift_and_gain_begin_after_ten_units) {
+    Trial trial = box_on_ground();
+    go(&trial, 599);
+    trial.bodies[1].position.x = 3;
+    go(&trial, 600);
+    trial.bodies[1].position.x = 3.25f;
+    trial.bodies[1].velocity.x = 0.1f;
+    go(&trial, 700);
+    const VerdictReading reading = end(&trial);
+    assert_near(reading.drift, 0.25, 1e-6);
+    assert_near(reading.gained, 0.005, 1e-6);
+    trial = box_on_ground();
+    go(&trial, 600);
+    assert_true(isnan(end(&trial).drift));
+}
+
+TEST(the_reason_of_an_adapter_is_kept) {
+    Trial trial = box_on_ground();
+    go(&trial, 5);
+    error_failure(&error, FAILURE_ADAPTER, "stack", "adapter failed: no answer, in step 6");
+    verdict_watch_failed(&trial.watch, 6, &error);
+    const VerdictReading reading = end(&trial);
+    assert_verdict(reading, VERDICT_ADAPTER_FAILED);
+    assert_string_equal(reading.reason, "no answer");
+    assert_int_equal(reading.frame, 6);
+}
+
+RUN_TESTS(NULL, NULL)
