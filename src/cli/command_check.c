@@ -330,7 +330,7 @@ static bool check_limits(CheckedRun *checked, Error *error) {
                            verdict_watch_units(&checked->judged.verdict.watch, VERDICT_DRIFT_UNITS));
     if (!isnan(options->max_gain) && isnan(reading->excess))
         return error_input(error, options->scene,
-                           "has a bomb, or bodies that start with a speed: --max-gain needs --scene");
+                           "has no masses, and bodies are struck: --max-gain needs --scene");
     const bool right = options->verdict == 0          ? true
                        : strcmp(wanted, "sound") == 0 ? verdict_sound(verdict)
                        : strcmp(wanted, "holds") == 0 ? verdict_holds(verdict)

@@ -53,9 +53,11 @@ void judged_run_print(const JudgedRun *judged, const JudgeOptions *options) {
         printf("    energy gained: unknown without masses\n");
     else
         printf("    energy gained: %.3g J above what start and bomb brought\n", reading->excess);
-    if (options->scene == NULL)
+    if (judged->verdict.watch.run.masses_unknown)
         note_print("assumed: bodies of %g kg/m2 and a gravity of %g m/s2; with --scene SCENE they are the scene's",
                    (double)VERDICT_DENSITY, (double)VERDICT_GRAVITY);
+    else if (options->scene == NULL)
+        note_print("assumed: a gravity of %g m/s2; with --scene SCENE it is the scene's", (double)VERDICT_GRAVITY);
 }
 
 void judged_run_free(JudgedRun *judged) {

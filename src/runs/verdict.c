@@ -55,7 +55,7 @@ bool verdict_is_struck(const Scene *scene) {
         moving++;
         starting += body->velocity.x != 0 || body->velocity.y != 0;
     }
-    return scene_has_launch(scene) || (starting > 0 && starting < moving);
+    return (scene_has_launch(scene) && moving > 0) || (starting > 0 && starting < moving);
 }
 
 VerdictRun verdict_run_of(const Scene *scene, const Method *method) {
@@ -280,7 +280,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
         body->starts = !body->is_static && !body->is_bomb && vec2_distance(bodies[i].velocity, vec2(0, 0)) > slowest;
         starting += body->starts;
     }
-    watch->struck = run->bomb >= 0 || (starting > 0 && starting < moving);
+    watch->struck = (run->bomb >= 0 && moving > 0) || (starting > 0 && starting < moving);
     if (pull > 0 && !find_carriers(watch, carrier_reach, error)) return false;
     return !run->finds_contacts || contact_finder_find(&watch->finder, bodies, count, run->skin, error);
 }

@@ -100,7 +100,7 @@ typedef struct VerdictReading {
     const char *unit; /* "J", "m", "m/s", "s", "boxes" */
     int other;        /* tunnels: the body that was passed through; else -1 */
     VerdictCount count;
-    bool struck; /* the scene has a bomb, or some of its bodies start with a speed, but not all */
+    bool struck; /* as verdict_is_struck() */
     bool moving; /* at the end, a body is not at rest; also if the run is too short to tell */
     bool too_short;
     int since;                        /* the frame since which the run rests, if it does */
@@ -143,7 +143,7 @@ typedef struct VerdictRun {
     const EnergyLog *converged;
 } VerdictRun;
 
-/* The scene has a bomb, or some of its bodies start with a speed, but not all. */
+/* The scene has a bomb that can strike a dynamic body, or some of its bodies start with a speed, but not all. */
 bool verdict_is_struck(const Scene *scene);
 
 /* Of a scene that the method runs. */

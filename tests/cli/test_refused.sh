@@ -15,6 +15,8 @@ run 0 simulate "$scenes/single.yaml" --frames 3 -o single.npz
 run 0 simulate "$scenes/stack.yaml" --frames 20 --dt 1/120 -o slow.npz
 run 0 solve "$scenes/stack.yaml" --frame 41 -o impact.npz
 run 0 export engine.npz -o poses.csv
+cut -d, -f1-5 poses.csv >light.csv
+run 0 import light.csv -o light.npz
 run 0 simulate "$scenes/stack.yaml" --frames 2 -o rows.csv
 run 0 dataset "$scenes/single.yaml" -o pairs.npz --bomb-x=-2:2:1
 run 0 dataset "$scenes/single.yaml" -o context.npz --bomb-x=-2:2:1 --context
