@@ -328,7 +328,7 @@ typedef struct Convergence {
 bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *convergence, Error *error);
 
 /* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is
-   not sound, or falls before it is struck, stays as it is. The reference's verdict is what its own run does, so that a
+   not sound stays so. The reference's verdict is what its own run does, so that a
    study shows the truth, or undecided if a step of it did not converge. */
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
 

@@ -120,7 +120,7 @@ bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *con
 
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method) {
     const bool is_truth = method->kind->description->role == METHOD_REFERENCE;
-    if (truth == VERDICT_SETTLES || !reading->struck) return reading->verdict;
+    if (truth == VERDICT_SETTLES || !verdict_sound(reading->verdict)) return reading->verdict;
     if (is_truth) return reading->fallbacks.not_converged > 0 ? VERDICT_UNDECIDED : reading->verdict;
     if (truth == VERDICT_UNDECIDED) return VERDICT_UNDECIDED;
     if (reading->verdict == truth) return VERDICT_AGREES;
