@@ -20,7 +20,7 @@
      start by 2% of a side, energy is judged from one unit on.
    - sinks: two bodies are deeper in each other than a quarter of the smaller side for half a unit.
    - tunnels: between two frames, bodies are deeper in each other than in either by half a side; or a pair that was
-     deeper than a quarter of a side is apart again on the other side.
+     deeper than that is apart again on the other side.
    - hangs: a body that no chain of contacts joins to a static one keeps its height for half a unit.
 
    Rest. A body has a place: the pose from which its corners have since moved by no more than 2% of its size; when it

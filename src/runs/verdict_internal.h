@@ -39,6 +39,7 @@ struct DeepPair {
     int a, b, since, seen;
     Pose entry_a, entry_b;
     double turn_a[2], turn_b[2];
+    double deepest; /* m */
 };
 
 static const double touch_share = 0.03; /* of the smaller side: bodies with a smaller gap touch */

@@ -184,10 +184,11 @@ bool check_depth(VerdictWatch *watch, const VerdictStep *step, Error *error) {
                                .since = step->frame,
                                .entry_a = a->prior,
                                .entry_b = b->prior,
-                               .turn_a = {INFINITY, -INFINITY},
-                               .turn_b = {INFINITY, -INFINITY}};
+                               .turn_a = {a->prior.angle, a->prior.angle},
+                               .turn_b = {b->prior.angle, b->prior.angle}};
         }
         pair->seen = step->frame;
+        pair->deepest = larger(pair->deepest, depth);
         const int longest = steps_of(watch, deep_units);
         if (step->frame - pair->since > (longest > 4 ? longest : 4))
             verdict_note(watch, VERDICT_SINKS, b->is_static ? pair->a : pair->b, depth, "m");
@@ -202,7 +203,7 @@ bool check_depth(VerdictWatch *watch, const VerdictStep *step, Error *error) {
         pair->turn_b[0] = fmin(pair->turn_b[0], of_b), pair->turn_b[1] = larger(pair->turn_b[1], of_b);
         if (pair->seen == step->frame) {
             watch->deep[kept++] = *pair;
-        } else if (pair->since > 1) {
+        } else if (pair->since > 1 && pair->deepest > pass_share * fmin(a->side, b->side)) {
             const Pose ab[2][2] = {{pair->entry_a, pair->entry_b}, {a->before, b->before}},
                        ba[2][2] = {{pair->entry_b, pair->entry_a}, {b->before, a->before}};
             const double most = M_PI / 3; /* what turned farther has other sides */
