@@ -10,7 +10,7 @@ TEST(borders_are_drawn_as_in_the_table) {
                  BORDERS "height,engine,k=10,height,boxes,10,11,falls\nheight,momentum,,height,boxes,15,16,falls\n"
                          "height,momentum,,height,boxes,20,19,sinks\nheight,nncg,,height,boxes,40,,settles\n"
                          "height,pair-net,,height,boxes,,2,explodes\nheight,scene-net,,height,boxes,,,not applicable\n"
-                         "time_step,engine,k=10,rate,Hz,60,50,falls\ntime_step,nncg,,rate,Hz,20,,creeps\n"
+                         "time_step,engine,k=10,rate,Hz,60,50,falls\ntime_step,nncg,,rate,Hz,20,,moves\n"
                          "time_step,scene-net,,rate,Hz,60,50,falls\n");
     draw();
     check_svg("svg = read('borders')\n"

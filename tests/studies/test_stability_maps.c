@@ -8,7 +8,7 @@
 
 /* One cell of each verdict, and one sample in the legend. */
 TEST(each_verdict_has_its_tile) {
-    char *maps = make_map(1, 8, 2);
+    char *maps = make_map(1, 17, 1);
     start_afresh(maps, BORDERS ONE_BORDER);
     free(maps);
     draw();
@@ -25,7 +25,7 @@ TEST(each_verdict_has_its_tile) {
    Missing and not applicable cells have no edges. */
 TEST(the_border_separates_holding_from_failing) {
     start_afresh(MAPS "m,engine,,a,,1,b,,1,settles,,,,\nm,engine,,a,,2,b,,1,moves,,,,\nm,engine,,a,,3,b,,1,falls,,,,\n"
-                      "m,engine,,a,,1,b,,2,creeps,,,,\nm,engine,,a,,3,b,,2,sinks,,,,\n"
+                      "m,engine,,a,,1,b,,2,moves,,,,\nm,engine,,a,,3,b,,2,sinks,,,,\n"
                       "m,engine,,a,,1,b,,5,explodes,,,,\nm,engine,,a,,2,b,,5,not applicable,,,,\n",
                  BORDERS ONE_BORDER);
     draw();
@@ -39,7 +39,7 @@ TEST(the_border_separates_holding_from_failing) {
 
 /* The legend has the verdicts of the panels that stay, too. */
 TEST(panels_without_a_border_are_left_out_and_named) {
-    start_afresh(MAPS CELLS("engine,k=4", "settles", "falls") CELLS("interior,", "settles", "creeps")
+    start_afresh(MAPS CELLS("engine,k=4", "settles", "falls") CELLS("interior,", "settles", "stands")
                      CELLS("momentum,", "moves", "falls") CELLS("pair-net,", "explodes", "falls")
                          CELLS("pair-net,net=off", "explodes", "not applicable")
                              CELLS("scene-net,", "not applicable", "not applicable"),
@@ -48,7 +48,7 @@ TEST(panels_without_a_border_are_left_out_and_named) {
     check_svg("found, words = texts(read('map-m')), caption('map-m')\n"
               "for text in ('engine:k=4', 'momentum', 'settles', 'moves', 'falls'):\n"
               "    expect(found.count(text), 1, text)\n"
-              "for text in ('interior', 'pair-net', 'scene-net', 'creeps', 'explodes', 'not applicable'):\n"
+              "for text in ('interior', 'pair-net', 'scene-net', 'stands', 'explodes', 'not applicable'):\n"
               "    expect(found.count(text), 0, text)\n"
               "for text in ('Left out, as holding everywhere: interior.', 'Left out, as not applicable: scene-net.',\n"
               "             'Left out, as failing everywhere: pair-net, pair-net:net=off.'):\n"
