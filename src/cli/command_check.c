@@ -32,8 +32,9 @@ typedef struct Options {
     bool json;
 } Options;
 
-static const char *const verdicts[] = {"any",   "sound",     "holds", "settles", "stands",  "moves",    "too short",
-                                       "falls", "collapses", "hangs", "sinks",   "tunnels", "explodes", "non-finite", NULL};
+static const char *const verdicts[] = {"any",   "sound",     "holds",    "settles",    "stands",
+                                       "moves", "too short", "falls",    "collapses",  "hangs",
+                                       "sinks", "tunnels",   "explodes", "non-finite", NULL};
 
 static const Option option_table[] = {
     {"--output", 'o', "FILE.png",
@@ -329,8 +330,7 @@ static bool check_limits(CheckedRun *checked, Error *error) {
                            (checked->run->frames - 1) * (double)checked->run->dt,
                            verdict_watch_units(&checked->judged.verdict.watch, VERDICT_DRIFT_UNITS));
     if (!isnan(options->max_gain) && isnan(reading->excess))
-        return error_input(error, options->scene,
-                           "has no masses, and bodies are struck: --max-gain needs --scene");
+        return error_input(error, options->scene, "has no masses, and bodies are struck: --max-gain needs --scene");
     const bool right = options->verdict == 0          ? true
                        : strcmp(wanted, "sound") == 0 ? verdict_sound(verdict)
                        : strcmp(wanted, "holds") == 0 ? verdict_holds(verdict)

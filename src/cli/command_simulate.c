@@ -126,14 +126,15 @@ static const CommandSpec spec = {
     .options = option_table,
     .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
     .inputs = {1, 1, "scene"},
-    .help = "Run a scene with one method and store the trajectory.\v"
-            "Example: twinbox simulate stack -o engine.npz\n"
-            "         twinbox simulate stack --method momentum:k=20 -o momentum.npz\n"
-            "         twinbox simulate stack --bomb-x 2.5 -o struck.npz --hash struck.csv\n"
-            "The verdict tells how the run ended: settles, moves or falls; where a bomb or another body strikes, stands, "
-            "falls or collapses; how many boxes fell, and since when they rest. Or what is wrong with its physics: "
-            "hangs, sinks, tunnels, explodes, non-finite; or adapter failed.\n"
-            "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
+    .help =
+        "Run a scene with one method and store the trajectory.\v"
+        "Example: twinbox simulate stack -o engine.npz\n"
+        "         twinbox simulate stack --method momentum:k=20 -o momentum.npz\n"
+        "         twinbox simulate stack --bomb-x 2.5 -o struck.npz --hash struck.csv\n"
+        "The verdict tells how the run ended: settles, moves or falls; where a bomb or another body strikes, "
+        "stands, falls or collapses; how many boxes fell, and since when they rest. Or what is wrong with its physics: "
+        "hangs, sinks, tunnels, explodes, non-finite; or adapter failed.\n"
+        "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_scene(Scene *scene, const Options *options, Error *error) {
     const bool launched = !isnan(options->bomb_x) || options->bomb_frame >= 0;

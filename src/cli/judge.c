@@ -73,7 +73,8 @@ static const char *quantity(const VerdictReading *reading) {
     case VERDICT_HANGS: return "time in the air";
     case VERDICT_SINKS: return "penetration";
     case VERDICT_TUNNELS: return "speed";
-    case VERDICT_EXPLODES: return strcmp(reading->unit, "J") == 0 ? "energy gained" : "speed of a body that bursts away";
+    case VERDICT_EXPLODES:
+        return strcmp(reading->unit, "J") == 0 ? "energy gained" : "speed of a body that bursts away";
     case VERDICT_NON_FINITE:
     case VERDICT_ADAPTER_FAILED: return "highest speed before";
     default: return "speed of the fastest body at the end";

@@ -15,8 +15,8 @@
 /* A body moves within its place by this share of its size: a pixel of a box that is drawn with 50. */
 static const double place_share = 0.02;
 static const double rest_units = 0.5; /* a hop of a size up and down takes as long */
-/* Half a side lower, a box has lost its layer. At 30 degrees a square's centre has risen by nine tenths of what turns it
-   over. */
+/* Half a side lower, a box has lost its layer. At 30 degrees a square's centre has risen by nine tenths of what turns
+   it over. */
 static const double fall_share = 0.5, fall_turn = 30 * M_PI / 180;
 static const double moved_share = 0.1;   /* of a size: seen at a glance */
 static const double carrier_reach = 0.5; /* of a side; a gap beyond that is a drop */
@@ -184,10 +184,10 @@ static bool find_carriers(VerdictWatch *watch, double share, Error *error) {
     const size_t count = (size_t)watch->body_count;
     SortAndSweep sweep = {0};
     PairList pairs = {0};
-    Box *boxes = malloc((count + 1) * sizeof *boxes);
+    Box *boxes = calloc(count + 1, sizeof *boxes);
     Bounds *bounds = malloc((count + 1) * sizeof *bounds);
     bool *fixed = malloc(count + 1);
-    Below *below = malloc((count + 1) * sizeof *below);
+    Below *below = calloc(count + 1, sizeof *below);
     bool ok = boxes != NULL && bounds != NULL && fixed != NULL && below != NULL;
     for (size_t i = 0; ok && i < count; i++) {
         const WatchedBody *body = &watch->bodies[i];

@@ -109,8 +109,8 @@ typedef struct VerdictReading {
     int steps;                        /* set by verdict_run() only */
     /* After ten units; NaN in a shorter run. m: the largest distance moved by a body since; J: energy gained since. */
     double drift, gained;
-    double deepest;             /* m: penetration of the deepest contact of all steps */
-    double excess;              /* J: most energy above what bodies brought; >= 0; NaN if not judged */
+    double deepest;      /* m: penetration of the deepest contact of all steps */
+    double excess;       /* J: most energy above what bodies brought; >= 0; NaN if not judged */
     Fallbacks fallbacks; /* of all steps that were observed */
 } VerdictReading;
 
@@ -120,7 +120,7 @@ typedef struct EnergyLog {
     int frames;
     double *energy;  /* [frames + 1] J: of all dynamic bodies */
     int unconverged; /* the first step whose solution did not converge, from which on the log bounds nothing; 0: none */
-    double liveliest;           /* J/kg: the most energy of a body in any frame, above the lowest at the start */
+    double liveliest;    /* J/kg: the most energy of a body in any frame, above the lowest at the start */
     Fallbacks fallbacks; /* of all steps */
     Vec2 gravity;
     double lowest; /* m: height of a body at the start */

@@ -72,8 +72,8 @@ void energy_count(VerdictWatch *watch, WatchedBody *body) {
 /* J: most energy of the converged run within a unit of this frame; -INFINITY: it says nothing of the frame. */
 static double converged_energy(const VerdictWatch *watch) {
     const EnergyLog *log = watch->run.converged;
-    const int end = log == NULL ? 0 : log->unconverged > 0 ? log->unconverged : log->frames + 1;
-    const int unit = steps_of(watch, 1);
+    if (log == NULL) return -INFINITY;
+    const int end = log->unconverged > 0 ? log->unconverged : log->frames + 1, unit = steps_of(watch, 1);
     double most = -INFINITY;
     if (watch->frame >= end) return most;
     for (int i = watch->frame > unit ? watch->frame - unit : 0; i < end && i <= watch->frame + unit; i++)

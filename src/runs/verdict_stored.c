@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The verdict on a stored run. A file has no gravity, and perhaps no masses, contacts and velocities: the first two come
-   from a scene or are assumed, the others are found again. */
+/* The verdict on a stored run. A file has no gravity, and perhaps no masses, contacts and velocities: the first two
+   come from a scene or are assumed, the others are found again. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "runs/trajectory.h"

@@ -79,9 +79,12 @@ static void forget_velocities(Trajectory *run, Scene *scene) {
     run->no_velocities = true;
 }
 
-static const Law laws[] = {{"lengths and times", enlarge, false}, {"masses", make_heavier, false},
-                           {"mirrored", mirror, false},           {"turned", turn, false},
-                           {"wrapped angles", wrap, false},       {"every second frame", thin, true},
+static const Law laws[] = {{"lengths and times", enlarge, false},
+                           {"masses", make_heavier, false},
+                           {"mirrored", mirror, false},
+                           {"turned", turn, false},
+                           {"wrapped angles", wrap, false},
+                           {"every second frame", thin, true},
                            {"no velocities", forget_velocities, true}};
 enum { LAWS = sizeof laws / sizeof *laws };
 
