@@ -62,7 +62,7 @@ bool command_approve(int argc, char **argv, Error *error) {
     if (approval.already > 0) printf(", %d already accepted", approval.already);
     if (approval.kept > 0) printf(", %d kept without an actual file", approval.kept);
     if (approval.not_selected > 0) printf(", %d not selected", approval.not_selected);
-    if (approval.not_shown > 0) printf(", %d not shown: compare again with a larger --report-size", approval.not_shown);
+    if (approval.not_shown > 0) printf(", %d not shown: report.html says why", approval.not_shown);
     printf("\n");
     return approval.not_shown == 0;
 }

@@ -59,7 +59,7 @@ static const Option option_table[] = {
      OPTION_FLAG(CompareOptions, flat)},
     {"--strict", 0, NULL,
      "Fail for pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, orientation, "
-     "resolution, ...), which are reported otherwise",
+     "resolution, ...), and for pictures that are no PNG files, which are reported otherwise",
      OPTION_FLAG(CompareOptions, strict)},
     {"--report", 0, "DIR",
      "Folder for report.html, junit.xml, results.json, and run-NAME.html for each run that differs; of two runs, "
@@ -206,7 +206,8 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
 
 bool command_compare(int argc, char **argv, Error *error) {
     CompareOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
-    bool same = read_options(&options, argc, argv, error);
+    bool same =
+        read_options(&options, argc, argv, error) && (options.report == NULL || report_begin(options.report, error));
     same =
         same && (is_trajectory(options.paths[0]) ? compare_runs(&options, error) : compare_pictures(&options, error));
     mask_free(&options.mask);

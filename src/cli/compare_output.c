@@ -64,13 +64,13 @@ static bool print_difference(const Regression *regression, Error *error) {
     for (int i = 0; i < regression->cause_count && regression->causes[i].of_view; i++)
         printf("%s\n", cause_words(&regression->causes[i]).text);
     for (int i = 0; i < 2 * SIDES; i++) print_alone(regression, i % SIDES == 0 ? EXPECTED : ACTUAL, i >= SIDES);
-    /* Pictures that cannot be read, but for the first, which is the error that ends the command. */
-    for (int i = 0, count = 0; i < regression->count && count < UNREAD; i++)
-        if (regression->frames[i].pixels == PIXELS_UNREAD && count++ > 0)
-            printf("not comparable: %s\n", regression->frames[i].read_error);
+    /* Files that cannot be read, but for the first, which is the error that ends the command. */
+    for (int i = 0, count = 0; i < regression->count + regression->run_count && count < UNREAD; i++)
+        if (regression_unread(regression, i) != NULL && count++ > 0)
+            printf("not comparable: %s\n", regression_unread(regression, i));
     for (int i = 0; i < regression->count; i++) {
         const RegressionFrame *frame = &regression->frames[i];
-        if (frame->alone || (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED)) continue;
+        if (frame->alone || !frame_failed(frame) || frame->pixels >= PIXELS_MISSING) continue;
         printf("first difference: %s: %s\n", frame_name(frame), frame_words(frame).text);
         print_regions(frame->changes);
         break;
@@ -87,7 +87,8 @@ static bool print_difference(const Regression *regression, Error *error) {
     if (more > 0) printf("and %d more cause%s\n", more, plural(more));
 
     const int *by = regression->by_verdict, alone = regression->runs_alone[EXPECTED] + regression->runs_alone[ACTUAL];
-    const int runs = regression->run_count - alone, run_failed = regression->run_failed - alone;
+    const int unread = alone + regression->runs_unread, runs = regression->run_count - unread,
+              run_failed = regression->run_failed - unread;
     const int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA] - by[PIXELS_UNREAD];
     const int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
     if (different > 0)

@@ -228,7 +228,6 @@ bool compare_runs_report(RunComparison *c, const char *folder, Error *error) {
                                    .write_page = write_page,
                                    .write_json = write_results};
     size_t bytes;
-    if (!file_make_directory(folder, error)) return false;
     /* A page that plays both: none of equal runs, and of those without a common moment. Contacts that were found again
        have no impulses to show. */
     for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;

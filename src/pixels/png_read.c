@@ -146,7 +146,6 @@ typedef struct Decoder {
     const char *path;
     const uint8_t *data;
     size_t size, position;
-    int64_t max_pixels;
     Image *image;
     uint8_t *row;      /* 16-bit samples; any row of pixels that are not kept */
     bool checked;      /* the pixels are not kept */
@@ -200,27 +199,6 @@ static void set_strict_limits(Decoder *decoder) {
     png_set_user_limits(decoder->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
 }
 
-/* What libpng does not check of the header and the chunks before the pixels. */
-static void check_start(Decoder *decoder) {
-    const int width = (int)png_get_image_width(decoder->png, decoder->info),
-              height = (int)png_get_image_height(decoder->png, decoder->info);
-    if (!png_check_pixels(width, height, decoder->max_pixels, decoder->path, decoder->error))
-        png_longjmp(decoder->png, 1);
-    /* libpng would read only the first picture of an animation and miss differences in the others. Chunk lengths are
-       valid here, as libpng has checked everything up to the pixels. */
-    PngChunk chunk;
-    for (size_t at = PNG_SIGNATURE, next = at; png_chunk_next(decoder->data, decoder->position, &next, &chunk);
-         at = next)
-        if (png_chunk_is(&chunk, "acTL")) {
-            error_input(decoder->error, decoder->path,
-                        "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
-            png_longjmp(decoder->png, 1);
-        }
-    /* Before memory is allocated for pixels that the file cannot hold: deflate shrinks to no less than 1 / 1032. */
-    if ((double)png_get_rowbytes(decoder->png, decoder->info) * height > 1032.0 * (double)decoder->size)
-        png_error(decoder->png, "too few bytes for its pixels");
-}
-
 static bool is_palette(const Decoder *decoder) {
     return png_get_color_type(decoder->png, decoder->info) == PNG_COLOR_TYPE_PALETTE;
 }
@@ -271,12 +249,11 @@ static void expand_palette(Decoder *decoder) {
 static bool check_stream(const Decoder *decoder) {
     uint8_t scratch[1 << 14];
     z_stream z = {0};
-    Header header;
+    Header header = {0};
     PngChunk chunk;
     size_t at = PNG_SIGNATURE;
-    if (!png_chunk_next(decoder->data, decoder->size, &at, &chunk) || !read_header(&chunk, &header) ||
-        inflateInit(&z) != Z_OK)
-        return error_memory(decoder->error, decoder->path);
+    (void)(png_chunk_next(decoder->data, decoder->size, &at, &chunk) && read_header(&chunk, &header)); /* it has */
+    if (inflateInit(&z) != Z_OK) return error_memory(decoder->error, decoder->path);
     const double size = filtered_size(&header);
     int status = Z_OK;
     bool ok = true;
@@ -309,7 +286,6 @@ static bool decode_all(Decoder *decoder) {
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_set_chunk_malloc_max(png, 0);
     png_read_info(png, decoder->info);
-    check_start(decoder);
     if (is_palette(decoder)) /* libpng gives indices, as it would take one beyond the palette for black */
         png_set_packing(png);
     else {
@@ -344,12 +320,17 @@ static bool decode_all(Decoder *decoder) {
     return check_stream(decoder);
 }
 
-/* checked: the pixels are not kept, and there is no image. */
+/* checked: the pixels are not kept, and there is no image. The chunks are judged by png_check() alone: libpng skips some
+   that are damage, and reads only the first picture of an animation. */
 static bool decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, bool checked, Image **image,
                    Error *error) {
     Decoder decoder;
+    int width, height;
+    *image = NULL;
+    if (png_size(data, size, &width, &height) && !png_check_pixels(width, height, max_pixels, path, error))
+        return false;
+    if (!png_check(data, size, path, &width, &height, error)) return false;
     bool ok = open_decoder(&decoder, data, size, path, error);
-    decoder.max_pixels = max_pixels;
     decoder.checked = checked;
     ok = ok && decode_all(&decoder);
     close_decoder(&decoder);

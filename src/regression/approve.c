@@ -137,7 +137,7 @@ static bool is_name_below(const char *name) {
     char before = '/';
     for (const char *c = name; *c != '\0'; before = *c++)
         if (before == '/' && (*c == '/' || *c == '.')) return false;
-    return name_is_text(name) && ending != NULL && (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
+    return ending != NULL && (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
 }
 
 /* A string of 1 to `max` bytes, valid as long as the value; otherwise NULL with error set. */
@@ -157,14 +157,15 @@ static bool read_flag(const JsonReader *json, const json_t *item, const char *ke
 }
 
 /* null, or name, size and hash. */
-static bool read_file(const JsonReader *json, const json_t *item, const char *key, ApprovalFile *file, Error *error) {
+static bool read_file(const JsonReader *json, const json_t *item, const char *key, bool shown, ApprovalFile *file,
+                      Error *error) {
     const json_t *value = json_object_get(item, key);
     *file = (ApprovalFile){.name = NULL};
     if (value == NULL || json_is_null(value)) return true;
     if (!json_is_object(value)) return json_read_error(json, error, "'%s' must be null or a file", key);
     const char *name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
     if (name == NULL) return false;
-    if (!is_name_below(name))
+    if (!name_is_text(name) || (shown && !is_name_below(name))) /* what is not shown is not approved, whatever it is */
         return json_read_error(json, error, "a name must end with .png or .npz and lie below the folder");
     const char *digits = json_string_value(json_object_get(value, "xxh3"));
     if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
@@ -193,8 +194,8 @@ static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Er
                   (json_is_object(value) || json_read_error(json, error, "a frame or trajectory must be an object")) &&
                   read_flag(json, value, "failed", &item.failed, error) &&
                   read_flag(json, value, "shown", &item.shown, error) &&
-                  read_file(json, value, "expected", &item.expected, error) &&
-                  read_file(json, value, "actual", &item.actual, error);
+                  read_file(json, value, "expected", item.shown, &item.expected, error) &&
+                  read_file(json, value, "actual", item.shown, &item.actual, error);
         ok = ok && (item.expected.name != NULL || item.actual.name != NULL ||
                     json_read_error(json, error, "an expected or an actual file is required"));
         if (ok && item.failed && array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) {

@@ -42,7 +42,7 @@ static void add(Regression *regression, int frame, const char *what, double most
 static void add_causes(Regression *regression, int frame) {
     const RegressionFrame *at = &regression->frames[frame];
     const FrameChanges *changes = at->changes;
-    if (at->pixels >= PIXELS_MISSING) return;
+    if (at->pixels >= PIXELS_MISSING || !frame_failed(at)) return;
     if (at->pixels == PIXELS_RESIZED && !at->alone) add(regression, frame, "sizes differ", 0, false);
     if ((at->pixels == PIXELS_DIFFER || at->pixels == PIXELS_RESIZED) && at->other_view) {
         ShownFolder *folders[SIDES];

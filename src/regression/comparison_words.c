@@ -102,10 +102,12 @@ ChangeText region_words(const FrameChanges *changes, int region) {
 }
 
 bool run_failed(const RegressionRun *run) {
-    return run->alone[EXPECTED] || run->alone[ACTUAL] || !(run->difference.equal || run->within);
+    return run->read_error != NULL || run->alone[EXPECTED] || run->alone[ACTUAL] ||
+           !(run->difference.equal || run->within);
 }
 
 const char *run_verdict(const RegressionRun *run) {
+    if (run->read_error != NULL) return "not comparable";
     if (run->alone[EXPECTED]) return "missing";
     if (run->alone[ACTUAL]) return "extra";
     return run->difference.equal ? "equal" : run->within ? "within tolerance" : "physics changed";
@@ -129,9 +131,9 @@ const char *frame_verdict(const RegressionFrame *frame) {
     case PIXELS_EQUAL:
     case PIXELS_WITHIN: break;
     }
-    if (frame->states == STATES_DIFFER) return "physics changed";
+    if (frame->states_failed) return "physics changed";
     if (frame->metadata_failed) return "metadata changed";
-    return frame->pixels == PIXELS_EQUAL ? "equal" : "within tolerance";
+    return frame->pixels == PIXELS_EQUAL && frame->states != STATES_DIFFER ? "equal" : "within tolerance";
 }
 
 /* What differs, where that has a name: the largest region's change; or what all of it looks like. */
@@ -214,6 +216,8 @@ RegressionText cause_words(const RegressionCause *cause) {
 RegressionText run_words(const RegressionRun *run) {
     RegressionText words = {""};
     const TrajectoryDifference *d = &run->difference;
+    if (run->read_error != NULL) JOIN(&words, "", "%s", run->read_error);
+    if (run->read_error != NULL) return words;
     if (d->equal) {
         JOIN(&words, "", "%s",
              run->alone[EXPECTED] ? "only in the expected folder"
@@ -239,7 +243,8 @@ static void add_count(RegressionText *text, int count, const char *one, const ch
 
 RegressionText regression_verdict(const Regression *regression) {
     RegressionText verdict = {""};
-    const int *alone = regression->runs_alone, runs_changed = regression->run_failed - alone[EXPECTED] - alone[ACTUAL];
+    const int *alone = regression->runs_alone, unread = regression->runs_unread,
+              runs_changed = regression->run_failed - alone[EXPECTED] - alone[ACTUAL] - unread;
     bool physics = regression->physics > 0 || regression->elsewhere > 0 || runs_changed > 0;
     bool renderer = regression->renderer > 0;
     if (physics || renderer)
@@ -256,6 +261,7 @@ RegressionText regression_verdict(const Regression *regression) {
     add_count(&verdict, regression->by_verdict[PIXELS_UNREAD], "frame", "frames", "not comparable");
     add_count(&verdict, alone[EXPECTED], "trajectory", "trajectories", "missing");
     add_count(&verdict, alone[ACTUAL], "trajectory", "trajectories", "extra");
+    add_count(&verdict, unread, "trajectory", "trajectories", "not comparable");
     if (verdict.text[0] == '\0') JOIN(&verdict, "", "equal");
     return verdict;
 }
@@ -313,6 +319,11 @@ RegressionText regression_notes(const Regression *regression) {
         if (sequence->skipped > 0)
             JOIN(&notes, "\n", "not compared: %d picture%s in subfolders of %.*s (--no-recursive)", sequence->skipped,
                  plural(sequence->skipped), (int)utf8_cut(sequence->folder, NAME), sequence->folder);
+        if (sequence->others > 0)
+            JOIN(&notes, "\n", "not compared: %d picture%s in %.*s that %s no PNG file%s: %s%s (--strict fails)",
+                 sequence->others, plural(sequence->others), (int)utf8_cut(sequence->folder, NAME), sequence->folder,
+                 sequence->others == 1 ? "is" : "are", plural(sequence->others), sequence->other_names,
+                 sequence->others > 3 ? ", ..." : "");
     }
     return notes;
 }

@@ -161,7 +161,7 @@ static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[
     if (frame->pixels != PIXELS_EQUAL) return true;
 
     /* What the files tell without their pixels. */
-    if (!regression_judge_states(regression, frame, (uint8_t *const[]){a->data, b->data}, error)) return false;
+    if (!regression_judge_states(regression, frame, (uint8_t *const[]){a->data, b->data}, &limits, error)) return false;
     frame->difference = (ImageDifference){.first_x = -1, .first_y = -1};
     const bool same = png_files_are_same(files);
     const Mask *mask = regression->options.mask;
@@ -272,18 +272,26 @@ static bool compare_frame(void *context, int i, Error *error) {
 }
 
 bool regression_was_read(const Regression *regression, Error *error) {
-    int first = -1, count = 0;
-    for (int i = regression->count - 1; i >= 0; i--)
-        if (regression->frames[i].read_error != NULL) first = i, count++;
-    if (first < 0) return true;
+    int count = 0;
+    const char *why = NULL;
+    for (int i = regression->count + regression->run_count - 1; i >= 0; i--) {
+        const char *unread = regression_unread(regression, i);
+        if (unread != NULL) why = unread, count++;
+    }
+    if (why == NULL) return true;
     error->kind = ERROR_INPUT;
-    snprintf(error->message, sizeof error->message, "%s", regression->frames[first].read_error);
-    if (count > 1) error_add(error, "\n(further frames that cannot be compared: %d)", count - 1);
+    snprintf(error->message, sizeof error->message, "%s", why);
+    if (count > 1) error_add(error, "\n(further files that cannot be compared: %d)", count - 1);
     return false;
 }
 
+const char *regression_unread(const Regression *regression, int i) {
+    return i < regression->count ? regression->frames[i].read_error
+                                 : regression->runs[i - regression->count].read_error;
+}
+
 bool frame_failed(const RegressionFrame *frame) {
-    return frame->pixels >= PIXELS_DIFFER || frame->states == STATES_DIFFER || frame->metadata_failed;
+    return frame->pixels >= PIXELS_DIFFER || frame->states_failed || frame->metadata_failed;
 }
 
 double frame_severity(const RegressionFrame *frame) {
@@ -336,25 +344,32 @@ static void count(Regression *regression) {
         const bool pictures = frame->pixels == PIXELS_DIFFER || frame->pixels == PIXELS_RESIZED;
         const bool view = pictures && frame->other_view && frame->states != STATES_DIFFER;
         const bool renderer = pictures && !view && frame->states == STATES_EQUAL;
-        regression->by_verdict[frame->pixels]++;
-        regression->failed += frame_failed(frame);
-        regression->physics += frame->states == STATES_DIFFER;
+        const bool failed = frame_failed(frame),
+                   equal = frame->pixels == PIXELS_EQUAL && frame->states != STATES_DIFFER;
+        regression->by_verdict[frame->pixels > PIXELS_DIFFER ? frame->pixels
+                               : failed                      ? PIXELS_DIFFER
+                               : equal                       ? PIXELS_EQUAL
+                                                             : PIXELS_WITHIN]++;
+        regression->failed += failed;
+        regression->physics += failed && frame->states == STATES_DIFFER;
         regression->view += view;
         regression->elsewhere += pictures && !view && frame->states == STATES_DIFFER_ELSEWHERE;
         if (renderer && !frame->alone && regression->first_renderer < 0) regression->first_renderer = i;
         regression->renderer += renderer;
         regression->unknown += pictures && !view && frame->states == STATES_UNKNOWN;
         if (frame->metadata.text[0] != '\0' && regression->metadata++ == 0) regression->first_metadata = i;
-        regression->metadata_failed += frame->metadata_failed && !pictures && frame->states != STATES_DIFFER;
-        regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
+        regression->metadata_failed += frame->metadata_failed && !pictures && !frame->states_failed;
+        regression->other_accepted += !failed && frame->at[EXPECTED] != frame->base;
     }
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *runs = regression->runs;
         regression->run_within += runs[i].within;
         if (!run_failed(&runs[i])) continue;
         regression->run_failed++;
-        for (RegressionSide side = EXPECTED; side < SIDES; side++) regression->runs_alone[side] += runs[i].alone[side];
-        if (runs[i].alone[EXPECTED] || runs[i].alone[ACTUAL]) continue;
+        regression->runs_unread += runs[i].read_error != NULL;
+        for (RegressionSide side = EXPECTED; side < SIDES; side++)
+            regression->runs_alone[side] += runs[i].alone[side] && runs[i].read_error == NULL;
+        if (runs[i].alone[EXPECTED] || runs[i].alone[ACTUAL] || runs[i].read_error != NULL) continue;
         int first = regression->first_run;
         if (first < 0 || (unsigned)runs[i].difference.frame < (unsigned)runs[first].difference.frame)
             regression->first_run = i;
@@ -437,9 +452,11 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     PoseTolerance *poses = &regression->options.poses;
     const double begun = clock_seconds();
     const ParallelWork work = {compare_frame, regression};
-    bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
-              (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
-              pair_frames(regression, error);
+    bool ok =
+        (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, options->strict, error)) !=
+            NULL &&
+        (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, options->strict, error)) != NULL &&
+        pair_frames(regression, error);
     poses->given = poses->given && (regression->count == 0 || (options->tolerance.given & LIMIT_TOLERANCE) == 0);
     ok = ok && regression_find_runs(regression, error) &&
          check_inputs(regression, (const char *const[]){expected, actual}, error) && read_rules(regression, error) &&

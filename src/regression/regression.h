@@ -32,7 +32,7 @@ typedef struct RegressionOptions {
     const Mask *mask;    /* for all frames, beside the masks of the rules; or NULL */
     int64_t max_pixels;  /* of a picture; larger ones are refused before decompression */
     bool flat;           /* without subfolders */
-    bool strict;         /* files that display differently fail (png_display.h) */
+    bool strict;         /* files that display differently fail (png_display.h), and pictures that are no PNG files */
 } RegressionOptions;
 
 typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
@@ -85,7 +85,8 @@ typedef struct RegressionFrame {
     PixelVerdict pixels;
     bool sizes_alone; /* PIXELS_RESIZED, and the overlap is less than 1/16 of the larger picture: it is not compared */
     StateVerdict states;
-    int panel; /* first panel, from 1, whose "State" text differs; else 0 */
+    bool states_failed; /* STATES_DIFFER, and no limit that is given lets them: regression_judge_states() */
+    int panel;          /* first panel, from 1, whose "State" text differs; else 0 */
     ImageDifference difference;
     PngDisplay metadata; /* that differs; only for different files */
     bool metadata_failed;
@@ -97,7 +98,7 @@ typedef struct RegressionFrame {
     char *read_error;      /* of PIXELS_UNREAD: why; then no other member but the files' names says anything */
 } RegressionFrame;
 
-/* A trajectory that is in both folders. */
+/* A trajectory of both folders, or of one. */
 typedef struct RegressionRun {
     char *name;
     char *paths[SIDES]; /* where the files are, or would be */
@@ -107,8 +108,9 @@ typedef struct RegressionRun {
     bool within;       /* the poses are within the tolerance in all frames, of which both runs have equally many */
     PartedBody beyond; /* where they first are not; frame -1: nowhere, or there is no tolerance */
     char scene[TRAJECTORY_NAME_SIZE];
-    int frames;    /* of the longer one; 0 if equal */
-    bool *differs; /* [frames] */
+    char *read_error; /* why it cannot be compared, or NULL; then no member but the names and files says anything */
+    int frames;       /* of the longer one; 0 if equal */
+    bool *differs;    /* [frames] */
     double seconds;
 } RegressionRun;
 
@@ -121,12 +123,14 @@ typedef struct Regression {
     RegressionFrame *frames;        /* by stem, then number */
     RegressionRun *runs;            /* by name */
     int failed;                     /* frames */
-    int by_verdict[PIXEL_VERDICTS]; /* frames */
+    int by_verdict[PIXEL_VERDICTS]; /* frames by what they count as: PIXELS_DIFFER also those that fail for their states
+                                       or metadata alone, so that all from there on are those that fail */
     int renderer, physics, unknown; /* frames by cause of the difference */
     int view, elsewhere;            /* the same: the camera differs; the run does, but not in this frame */
     int first_renderer;             /* first frame of a sequence in which the renderer changed; -1: none */
     int run_failed, first_run;      /* trajectories that fail, and the one that differs first (-1: none) */
     int run_within;                 /* trajectories that are not equal, but within the tolerance */
+    int runs_unread;                /* trajectories that cannot be compared: they fail */
     Shown shown;
     int cause_count, causes_left_out; /* more than CAUSES_MAX */
     RegressionCause *causes;          /* different cameras first, then by first frame */
@@ -140,20 +144,24 @@ typedef struct Regression {
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are checked (pixels/png.h), but not decoded.
-   Frames with a picture that cannot be read get this verdict, and the others theirs. False with error set if a folder
-   or a run cannot be read, or if progress stops the comparison; then nothing needs to be freed. */
+   Frames and trajectories that cannot be read get this verdict, and the others theirs. False with error set if a folder
+   cannot be read, or if progress stops the comparison; then nothing needs to be freed. */
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error);
 void regression_free(Regression *regression);
 
 bool regression_passed(const Regression *regression);
 
-/* False with error set if frames could not be compared: the first by their order, and how many more. */
+/* False with error set if frames or trajectories could not be compared: the first by their order, and how many more. */
 bool regression_was_read(const Regression *regression, Error *error);
+
+/* Why a frame, or behind them a trajectory, cannot be compared; NULL if it was. */
+const char *regression_unread(const Regression *regression, int i);
 bool frame_failed(const RegressionFrame *frame);
 bool run_failed(const RegressionRun *run);
 const char *
-run_verdict(const RegressionRun *run); /* "equal", "within tolerance", "physics changed", "missing" or "extra" */
+run_verdict(const RegressionRun *run); /* "equal", "within tolerance", "physics changed", "missing", "extra" or
+                                          "not comparable" */
 const char *frame_name(const RegressionFrame *frame); /* of `base` */
 double frame_severity(const RegressionFrame *frame); /* differing pixels; infinite where sizes differ or a file lacks */
 

@@ -11,16 +11,17 @@
 /* Runs: runs.c */
 
 /* Finds and compares the .npz files of the same name in both folders. Ignores those that are a trajectory in neither
-   folder; ERROR_INPUT if only one of the two is a trajectory. */
+   folder; cannot compare those that are one in only one of them. */
 bool regression_find_runs(Regression *regression, Error *error);
 void regression_free_run(RegressionRun *run);
 
 /* States and names: states.c */
 
-/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory
-   is short. */
+/* Sets the states verdict of a frame, and whether it fails: with limits of poses, if one of its runs that differ exceeds
+   them; otherwise unless a limit of pixels is given, which then alone decides. data: the two PNG files, whose texts are
+   read. False with error set when memory is short. */
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error);
+                             const Tolerance *limits, Error *error);
 
 /* *named: whether the changes of a frame, whose size is known, can have names: both folders say what their pictures
    show. Thread-safe. */

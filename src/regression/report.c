@@ -199,10 +199,11 @@ bool regression_report_write(Regression *regression, const char *folder, size_t 
                                    .write_json = report_write_json};
     size_t left = max_bytes; /* for the pages of runs */
     bool ok = (report.pictures != NULL && report.links != NULL) || error_memory(error, "report");
-    ok = ok && file_make_directory(folder, error) && gather_pictures(&report, regression, max_bytes, progress, error);
+    ok = ok && gather_pictures(&report, regression, max_bytes, progress, error);
     for (int i = 0; ok && i < regression->run_count; i++) {
         ok = progress_report(progress, i, regression->run_count) || error_interrupted(error, "report", "stopped");
-        if (ok && !regression->runs[i].difference.equal) ok = write_run(&report, i, &left, error);
+        if (ok && !regression->runs[i].difference.equal && regression->runs[i].read_error == NULL)
+            ok = write_run(&report, i, &left, error);
     }
     ok = ok && report_write(&results, folder, error);
     for (int i = 0; report.pictures != NULL && i < regression->count; i++) drop(report.pictures[i]);

@@ -3,6 +3,7 @@
    approve(). Beside it run-NAME.html, a page that plays both runs (pictures/player.h), for each trajectory that
    differs.
 
+     report_begin("out/report", error);
      regression_report_write(&regression, "out/report", (size_t)REPORT_MEGABYTES << 20, NULL, error); */
 #pragma once
 #include "base/base.h"
@@ -16,7 +17,7 @@
 /* Default limit for the pictures in a report: a browser opens this size in a second or two. */
 enum { REPORT_MEGABYTES = 64 };
 
-/* Writes the files into a folder, created if missing. Pictures of failed frames, then of frames within tolerance,
+/* Writes the files into the folder of report_begin(). Pictures of failed frames, then of frames within tolerance,
    are shown as long as they fit into max_bytes; the other frames cannot be approved. The pages of runs may take as much
    again.
    ERROR_INPUT if a file has changed since the comparison. The same comparison gives the same bytes,
@@ -45,6 +46,10 @@ typedef struct ReportResults {
     void (*write_page)(FILE *file, const void *comparison);
     void (*write_json)(FILE *file, const void *comparison);
 } ReportResults;
+
+/* Makes and reserves the folder (folder_reserve()), and removes the files of an earlier report: before any work, so that
+   a comparison that fails, or is killed, leaves none. */
+bool report_begin(const char *folder, Error *error);
 
 /* Writes report.html, junit.xml and results.json into a folder that exists. results.json is last: if it is
    there, the report is complete. */

@@ -48,7 +48,7 @@ static void write_plot(FILE *file, const Regression *regression) {
 /* The fixed parts of page/, and pictures and results as data for its script. */
 
 static void write_counts(FILE *file, const Regression *regression) {
-    const int *by = regression->by_verdict;
+    const int *by = regression->by_verdict, different = regression->run_failed - regression->runs_unread;
     const struct {
         int count;
         const char *look, *what;
@@ -64,7 +64,8 @@ static void write_counts(FILE *file, const Regression *regression) {
                  {regression->metadata_failed, "bad", "metadata changed", false},
                  {by[PIXELS_WITHIN], "odd", "within tolerance", false},
                  {by[PIXELS_EQUAL], "good", "equal pixels", false},
-                 {regression->run_failed, "bad", regression->run_failed == 1 ? "differs" : "differ", true},
+                 {different, "bad", different == 1 ? "differs" : "differ", true},
+                 {regression->runs_unread, "bad", "not comparable", true},
                  {regression->run_within, "odd", "within tolerance", true}};
     fputs("<ul class=\"counts\" aria-label=\"Frames by verdict\">\n", file);
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {

@@ -151,7 +151,8 @@ void regression_write_json(JsonWriter *json, const Regression *regression) {
     for (int i = 0; i < PIXEL_VERDICTS; i++) json_put_int(json, counts[i], regression->by_verdict[i]);
     json_put_int(json, "trajectories", regression->run_count);
     json_put_int(json, "trajectories_within_tolerance", regression->run_within);
-    json_put_int(json, "trajectories_different", regression->run_failed);
+    json_put_int(json, "trajectories_different", regression->run_failed - regression->runs_unread);
+    json_put_int(json, "trajectories_not_comparable", regression->runs_unread);
     json_end(json);
     json_put_text(json, "tolerance", regression_limits(regression).text);
     json_put_text(json, "rules", regression->rules == NULL ? NULL : rules_path(regression->rules));
@@ -171,7 +172,7 @@ void regression_write_json(JsonWriter *json, const Regression *regression) {
         json_put_text(json, "name", run->name);
         json_put_text(json, "verdict", run_verdict(run));
         json_put_bool(json, "failed", run_failed(run));
-        json_put_bool(json, "shown", true);
+        json_put_bool(json, "shown", run->read_error == NULL);
         json_put_text(json, "words", run_words(run).text);
         write_file(json, "expected", run->alone[ACTUAL] ? NULL : run->name, &run->files[EXPECTED]);
         write_file(json, "actual", run->alone[EXPECTED] ? NULL : run->name, &run->files[ACTUAL]);
@@ -189,17 +190,27 @@ void report_write_json(FILE *file, const void *context) {
     json_end(&json);
 }
 
+/* The files of a report; the last is there if it is complete. */
+static const char *const names[] = {"report.html", "junit.xml", "results.json"};
+enum { FILES = sizeof names / sizeof *names };
+
+bool report_begin(const char *folder, Error *error) {
+    char path[PATH_MAX];
+    if (!folder_reserve(folder, error)) return false;
+    for (int i = FILES - 1; i >= 0; i--)
+        if (!file_path(path, sizeof path, error, "%s/%s", folder, names[i]) || !file_remove(path, error)) return false;
+    return true;
+}
+
 bool report_write(const ReportResults *results, const char *folder, Error *error) {
     const struct {
-        const char *name;
         void (*write)(FILE *file, const void *context);
         const void *context;
-    } parts[] = {{"report.html", results->write_page, results->comparison},
-                 {"junit.xml", write_junit, results},
-                 {"results.json", results->write_json, results->comparison}};
+    } parts[FILES] = {
+        {results->write_page, results->comparison}, {write_junit, results}, {results->write_json, results->comparison}};
     char path[PATH_MAX];
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
-        if (!file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) ||
+    for (int i = 0; i < FILES; i++)
+        if (!file_path(path, sizeof path, error, "%s/%s", folder, names[i]) ||
             !file_write_text(path, parts[i].write, parts[i].context, error))
             return false;
     return true;

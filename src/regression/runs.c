@@ -36,7 +36,8 @@ static bool add_run(Regression *regression, RegressionSide side, const char *nam
         return true;
     }
     RegressionRun *run = &regression->runs[regression->run_count++];
-    *run = (RegressionRun){.beyond = {.frame = -1}};
+    *run = (RegressionRun){.beyond = {.frame = -1},
+                           .difference = {.equal = true, .frame = -1, .body = -1, .max_frame = -1, .max_body = -1}};
     run->alone[side] = alone;
     run->paths[other] = strdup(path);
     if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[side]->folder, name)) return false;
@@ -113,12 +114,9 @@ static bool judge_run(const Regression *regression, RegressionRun *run, bool *fo
         if (failures[side].kind == ERROR_SYSTEM) *error = failures[side], system = true;
     }
     bool ok = !system;
-    if (ok && one)
-        run->difference =
-            (TrajectoryDifference){.equal = true, .frame = -1, .body = -1, .max_frame = -1, .max_body = -1};
-    else if (ok && read[EXPECTED] != NULL && read[ACTUAL] != NULL)
+    if (ok && read[EXPECTED] != NULL && read[ACTUAL] != NULL)
         ok = measure(run, read[EXPECTED], read[ACTUAL], &regression->options.poses, error);
-    else if (ok && !*foreign)
+    else if (ok && !one && !*foreign)
         ok = false, *error = failures[read[EXPECTED] == NULL ? EXPECTED : ACTUAL];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) trajectory_destroy(read[side]);
     return ok;
@@ -128,6 +126,7 @@ void regression_free_run(RegressionRun *run) {
     free(run->name);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) free(run->paths[side]);
     free(run->differs);
+    free(run->read_error);
 }
 
 bool regression_find_runs(Regression *regression, Error *error) {
@@ -138,8 +137,12 @@ bool regression_find_runs(Regression *regression, Error *error) {
     for (int i = 0; i < regression->run_count; i++) {
         bool foreign = false;
         RegressionRun run = regression->runs[i];
+        Error why = {0};
         double begun = clock_seconds();
-        ok = ok && judge_run(regression, &run, &foreign, error);
+        if (ok && !judge_run(regression, &run, &foreign, &why)) { /* the others are compared */
+            ok = why.kind == ERROR_INPUT && (run.read_error = strdup(why.message)) != NULL;
+            if (!ok) *error = why;
+        }
         run.seconds = clock_seconds() - begun;
         if (foreign) {
             regression->runs_foreign++;

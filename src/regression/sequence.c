@@ -15,9 +15,18 @@
 
 bool name_is_text(const char *name) { return text_is_utf8(name) && control_in_text(name) == 0; }
 
-static bool is_png(const char *name) {
+static bool is_kind(const char *name, const char *kind) {
     const char *ending = strrchr(name, '.');
-    return ending != NULL && strcasecmp(ending, ".png") == 0;
+    return ending != NULL && strcasecmp(ending + 1, kind) == 0;
+}
+
+/* What programs that draw, browsers and cameras write. */
+static bool is_picture(const char *name) {
+    static const char *const kinds[] = {"png", "apng", "avif", "bmp", "exr", "gif",  "heic", "jpeg", "jpg",
+                                        "jxl", "pgm",  "ppm",  "qoi", "svg", "tiff", "tif",  "tga",  "webp"};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (is_kind(name, kinds[i])) return true;
+    return false;
 }
 
 /* Finds folder, stem and number of a frame's name. 19 or more digits do not count as a number. */
@@ -92,7 +101,7 @@ static int compare_frames(const void *a, const void *b) {
     return order != 0 ? order : strcmp(x->name, y->name);
 }
 
-ImageSequence *image_sequence_open(const char *path, bool recursive, Error *error) {
+ImageSequence *image_sequence_open(const char *path, bool recursive, bool all_kinds, Error *error) {
     struct stat status;
     if (stat(path, &status) != 0) return folder_error(path, error), NULL;
     ImageSequence *sequence = calloc(1, sizeof *sequence);
@@ -112,10 +121,15 @@ ImageSequence *image_sequence_open(const char *path, bool recursive, Error *erro
     if (ok && sequence->single) {
         memcpy(start, path, before);
         ok = add_frame(sequence, &capacity, start, path + before, error);
-    } else if (ok && (ok = folder_list(&files, sequence->folder, is_png, recursive, error))) {
+    } else if (ok && (ok = folder_list(&files, sequence->folder, is_picture, recursive, error))) {
         sprintf(start, "%s%s", sequence->folder, root ? "" : "/");
-        for (size_t i = 0; ok && i < files.count; i++)
-            ok = add_frame(sequence, &capacity, start, files.names[i], error);
+        for (size_t i = 0; ok && i < files.count; i++) {
+            const char *name = files.names[i];
+            if (all_kinds || is_kind(name, "png"))
+                ok = add_frame(sequence, &capacity, start, name, error);
+            else if (sequence->others++ < 3 && name_is_text(name))
+                text_join(sequence->other_names, sizeof sequence->other_names, ", ", "%.30s", name);
+        }
         sequence->skipped = (int)files.skipped;
         folder_list_free(&files);
         if (ok && sequence->count > 0)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNG sequences and their pairs:
 
-     ImageSequence *a = image_sequence_open("expected", true, error), *b = image_sequence_open("actual", true, error);
+     ImageSequence *a = image_sequence_open("expected", true, false, error), *b = ...;
      SequencePair *pairs = image_sequence_pair(a, b, &count, error);
 
    A sequence has the files of a folder whose names consist of a stem and a number, such as frame_000123.png. A folder
@@ -29,11 +29,14 @@ typedef struct ImageSequence {
     int count;
     SequenceFrame *frames; /* [count], sorted by folder, stem, number, name */
     int skipped;           /* pictures in subfolders that were not to be read */
+    int others;            /* pictures of other kinds, which are no frames */
+    char other_names[100]; /* "x.webp, y.jpg", of the first */
 } ImageSequence;
 
 /* The PNG files of a folder (possibly none) and, if recursive, of its subfolders; or one file. Files are found as
-   folder_list() finds them. ERROR_INPUT if there is no such path, or if a name is not text. */
-ImageSequence *image_sequence_open(const char *path, bool recursive, Error *error);
+   folder_list() finds them. all_kinds: pictures of other kinds are frames, too, which nobody can read. ERROR_INPUT if
+   there is no such path, or if a name is not text. */
+ImageSequence *image_sequence_open(const char *path, bool recursive, bool all_kinds, Error *error);
 void image_sequence_close(ImageSequence *sequence);
 
 typedef struct SequencePair {

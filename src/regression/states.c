@@ -27,7 +27,7 @@ static bool read_texts(Texts *texts, const uint8_t *data, size_t size, Error *er
 }
 
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error) {
+                             const Tolerance *limits, Error *error) {
     Texts texts[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (!read_texts(&texts[side], data[side], frame->files[side].size, error)) return false;
@@ -35,21 +35,26 @@ bool regression_judge_states(const Regression *regression, RegressionFrame *fram
     const char *a = texts[EXPECTED].states, *b = texts[ACTUAL].states;
     const char *number = texts[EXPECTED].frame, *scene = texts[EXPECTED].scene;
     const int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : picture->number;
-    bool known = a[0] != '\0' && b[0] != '\0', differs = known && strcmp(a, b) != 0;
+    bool known = a[0] != '\0' && b[0] != '\0', differs = known && strcmp(a, b) != 0, within = false, beyond = false;
     if (differs) /* the first panel: "a1 | b2" and "a1 | c3" give 2 */
         for (frame->panel = 1; *a != '\0' && *a == *b; a++, b++) frame->panel += *a == '|';
     /* Runs of the picture's folder and scene, or of any scene if the picture names none. */
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
+        if (run->read_error != NULL) continue;
         if (file_folder_length(run->name) != (size_t)picture->folder ||
             memcmp(run->name, picture->name, (size_t)picture->folder) != 0)
             continue;
         known = true;
         if (run->differs == NULL || (scene[0] != '\0' && strcmp(scene, run->scene) != 0)) continue;
         const int64_t last = at < run->frames ? at : run->frames - 1;
-        differs = differs || run->differs[last < 0 ? 0 : last];
         frame->run_differs = true;
+        if (!run->differs[last < 0 ? 0 : last]) continue;
+        differs = true;
+        within = within || run->within;
+        beyond = beyond || (regression->options.poses.given && !run->within);
     }
+    frame->states_failed = differs && (beyond || !(within || limits->given != 0));
     frame->states = differs ? STATES_DIFFER : known ? STATES_EQUAL : STATES_UNKNOWN;
     return true;
 }

@@ -274,6 +274,26 @@ END
 compare 1
 says "64 pixels differ (100%) by at most 255, first at (0, 0): the whole picture is another"
 
+# Pictures of other kinds are told, and fail if told to.
+fresh <<<'a/home.png 8 8 255'
+echo 1 >a/x.webp
+echo 2 >b/x.webp
+echo 2 >b/sub/Y.JPG
+compare 0 --report report
+says "not compared: 1 picture in a that is no PNG file: x.webp (--strict fails)"
+says "not compared: 2 pictures in b that are no PNG files: sub/Y.JPG, x.webp (--strict fails)"
+has report/junit.xml "sub/Y.JPG, x.webp"
+compare 2 --strict --report report
+complains "a/x.webp: error: not a PNG file"
+says "not comparable: b/sub/Y.JPG: error: not a PNG file"
+says "verdict: 2 frames not comparable"
+has report/results.json '"name": "x.webp", "verdict": "not comparable", "failed": true'
+run 1 approve report
+says "0 replaced, 0 added, 0 removed, 2 not shown"
+rm a/home.png
+compare 2
+complains "no PNG files"
+
 # More than one accepted picture: the closest counts, and approve replaces it. A damaged one is not passed over.
 fresh <<'END'
 a/home.png 8 8 255

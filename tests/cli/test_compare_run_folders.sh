@@ -15,7 +15,16 @@ grep -q '^frame,body,x,y,angle' poses.csv || fail "other columns: $(grep -m1 bod
 ! cmp -s poses.csv moved.csv || fail "no pose is moved"
 run 0 import moved.csv -o actual/box.npz
 
-compare() { run "$1" compare expected actual "${@:2}"; }
+# The printed line, the report and the exit status are one.
+compare() {
+    local report=agreed said=1 stored=1 junit=1
+    [ "${*: -2:1}" = --report ] && report=${*: -1} || set -- "$@" --report agreed
+    run "$1" compare expected actual "${@:2}"
+    grep -q '^\(equal\|passed\): ' out && said=0
+    grep -q '"passed": true' $report/results.json && stored=0
+    grep -q 'failures="0"' $report/junit.xml && junit=0
+    equal "what is printed, stored and in junit.xml: $*" $said$stored$junit $(($1 > 0))$(($1 > 0))$(($1 > 0))
+}
 compare 1
 says "1 of 2 trajectories differs"
 compare 1 --tolerance 0.0029
@@ -76,4 +85,45 @@ run 0 simulate "$scenes/single.yaml" --frames 19 --no-bomb -o actual/same.npz
 compare 1 --tolerance 100.5
 rm expected/*.npz
 compare 0 --tolerance 3
+
+# A run that cannot be read, here one with a NaN, and one that was cut off: the others are compared, and no picture of its
+# frames is called the renderer's.
+/usr/bin/python3 - <<'PYTHON'
+import numpy
+run = dict(numpy.load("frames/single-engine.npz"))
+numpy.savez("expected/nan.npz", **run)
+run["position"][3, 1, 0] = numpy.nan
+numpy.savez("actual/nan.npz", **run)
+PYTHON
+cp frames/single-engine.npz expected/cut.npz
+head -c 999 expected/cut.npz >actual/cut.npz
+cp frames/frame_000000.png expected/frame_000001.png
+/usr/bin/python3 "$sources/tests/cli/png.py" - <<<'actual/frame_000001.png 64 64 3'
+compare 2
+says "verdict: pictures differ (cause unknown: no states), 2 trajectories not comparable"
+cp frames/single-engine.npz expected/same.npz
+cp frames/single-engine.npz actual/same.npz
+compare 2 --report unread
+complains "actual/cut.npz: error: "
+complains "(further files that cannot be compared: 1)"
+says "not comparable: actual/nan.npz: error: "
+says "verdict: renderer changed, 2 trajectories not comparable"
+grep -q '"name": "same.npz", "verdict": "equal", "failed": false' unread/results.json || fail "the other run"
+grep -q '"trajectories_different": 0, "trajectories_not_comparable": 2' unread/results.json || fail "counts of runs"
+grep -q '<failure type="not comparable" message="not comparable: actual/nan.npz' unread/junit.xml || fail "junit.xml"
+rm actual/frame_000001.png expected/frame_000001.png
+compare 2 --report unread
+run 1 approve unread
+says "0 replaced, 0 added, 0 removed, 2 not shown: report.html says why"
+
+# A report that is not finished is none; and two comparisons cannot write one.
+compare 2 --report unread
+rm -r actual
+run 2 compare expected actual --report unread
+equal "files of a comparison that failed" "$(ls unread)" ""
+cp -r expected actual
+(flock 9; sleep 0.3; touch released) 9<unread &
+sleep 0.1
+compare 0 --report unread
+[ -e released ] || fail "a folder that is reserved was written into"
 finish

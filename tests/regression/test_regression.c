@@ -72,16 +72,18 @@ FIXTURE(remove_folders) {
     assert_int_equal(system(command), 0);
 }
 
-static Regression compared(void) {
+static Regression compared_by(RegressionOptions options) {
     Error error = {0};
     Regression regression;
-    const RegressionOptions options = {.max_pixels = IMAGE_MAX_PIXELS};
+    options.max_pixels = IMAGE_MAX_PIXELS;
     assert_ok(regression_run(&regression, expected, actual, &options, NULL, &error), error);
     assert_int_equal(regression.count, FRAMES);
     return regression;
 }
 
-/* One letter per frame: (e)qual, (r)enderer or (r)un, (p)hysics, (v)iew; and the overall verdict. */
+static Regression compared(void) { return compared_by((RegressionOptions){0}); }
+
+/* One letter per frame: (e)qual, (w)ithin tolerance, (r)enderer or (r)un, (p)hysics, (v)iew; and the overall verdict. */
 static void assert_verdicts(const Regression *regression, const char *letters, const char *whole) {
     char found[FRAMES + 1] = "";
     for (int i = 0; i < FRAMES; i++) found[i] = frame_verdict(&regression->frames[i])[0];
@@ -185,6 +187,39 @@ TEST_WITH(a_box_moved_a_sixteenth_of_a_pixel, make, remove_folders) {
     assert_non_null(strstr(case_words(&regression.frames[0]).text, "states differ in panel 1"));
     assert_true(regression.cause_count == 0 && regression_begin(&regression).text[0] == '\0');
     regression_free(&regression);
+}
+
+/* A frame passes if it is within all limits that are given: states by those of poses, or else by those of pixels. */
+TEST_WITH(limits_that_are_given_decide, make, remove_folders) {
+    static const struct {
+        PoseTolerance poses;
+        unsigned given;
+        bool runs, passes;
+        const char *frames;
+    } cases[] = {
+        {{0}, 0, true, false, "eeepee"},
+        {{0}, LIMIT_TOLERANCE, true, false, "eeewee"}, /* but the run differs */
+        {{.given = true, .distance = 0.01, .angle = INFINITY}, LIMIT_BEYOND, true, true, "eeewee"},
+        {{.given = true, .distance = 0.01, .angle = INFINITY}, 0, true, false, "eeepee"}, /* its pixels */
+        {{.given = true, .distance = 0.001, .angle = INFINITY}, LIMIT_BEYOND, true, false, "eeepee"},
+        {{0}, LIMIT_TOLERANCE, false, true, "eeewee"},
+        {{0}, LIMIT_BEYOND, false, true, "eeewee"},
+    };
+    run_position(run, 3, FIRST_BOX)->x += SIXTEENTH;
+    render_into(actual);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        if (!cases[i].runs && cases[i - 1].runs) remove_runs();
+        const Tolerance limits = {.given = cases[i].given,
+                                  .tolerance = cases[i].given == LIMIT_TOLERANCE ? 255 : 0,
+                                  .beyond = {cases[i].given == LIMIT_BEYOND, false}};
+        Regression regression = compared_by((RegressionOptions){.tolerance = limits, .poses = cases[i].poses});
+        const bool differs = cases[i].frames[3] == 'p';
+        assert_verdicts(&regression, cases[i].frames, cases[i].passes ? "equal" : "physics changed");
+        assert_true(regression.failed == differs && regression.by_verdict[PIXELS_DIFFER] == differs);
+        assert_int_equal(regression.by_verdict[PIXELS_WITHIN], !differs);
+        assert_int_equal(regression.cause_count, differs);
+        regression_free(&regression);
+    }
 }
 
 /* One channel of one pixel of the caption differs by one. */

@@ -25,7 +25,7 @@ static const char *folder_of(const char *name, const char *files) {
 
 static ImageSequence *opened(const char *path) {
     Error error = {0};
-    ImageSequence *sequence = image_sequence_open(path, true, &error);
+    ImageSequence *sequence = image_sequence_open(path, true, false, &error);
     assert_ok(sequence != NULL, error);
     return sequence;
 }
@@ -133,7 +133,7 @@ TEST(numbers_too_long_are_part_of_the_name) {
 
 static void refuse(const char *path, const char *text) {
     Error error = {0};
-    assert_refused(image_sequence_open(path, true, &error), text);
+    assert_refused(image_sequence_open(path, true, false, &error), text);
 }
 
 TEST(doubtful_folders_are_refused) {
@@ -161,7 +161,8 @@ TEST(frames_that_could_be_two_pairs_are_refused) {
 }
 
 TEST(pictures_in_subfolders_are_counted) {
-    ImageSequence *sequence = image_sequence_open(folder_of("flat", "1.png a/1.png a/b/2.png a/x.txt"), false, &error);
+    ImageSequence *sequence =
+        image_sequence_open(folder_of("flat", "1.png a/1.png a/b/2.png a/x.txt"), false, false, &error);
     assert_ok(sequence != NULL, error);
     assert_int_equal(sequence->count, 1);
     assert_int_equal(sequence->skipped, 2);
