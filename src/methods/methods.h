@@ -51,7 +51,7 @@ typedef struct MethodDescription {
     const char *twin;   /* of a learned method: its ablation, as on the command line ("sain:net=off"); it takes the same
                             settings otherwise. NULL: nothing is learned */
     const char *own_settings; /* those that hold where none are given, "k=10"; NULL: k is the scene's iterations */
-    const char *shipped;      /* the setting in common use, which charts mark; NULL: none */
+    bool baseline;            /* charts mark its run with the scene's own settings, and compare the others with it */
     const char *converges;    /* settings with which it finds the converged solution, as a test checks; NULL: none do */
     /* What `twinbox chart`, `twinbox chart --quick` and `twinbox stability` run by default. NULL: one run, no settings
        given. METHOD_NO_RUNS: left out unless named, and reported as left out. */

@@ -70,12 +70,12 @@ static bool is_without_push_out(const ChartLine *line) {
 
 static void add_curves(const Caption *caption) {
     const Chart *chart = caption->chart;
-    const ChartLine *shipped = NULL;
+    const ChartLine *baseline = NULL;
     bool lost = false, twin = false, hidden = false;
     for (int p = 0; p < CHART_PANELS; p++)
         for (int i = 0; i < chart->panels[p].count; i++) {
             const ChartMark *mark = &chart->panels[p].marks[i];
-            if (mark->shipped && shipped == NULL) shipped = &chart->lines[mark->line];
+            if (mark->baseline && baseline == NULL) baseline = &chart->lines[mark->line];
             lost |= mark->lost;
         }
     for (int i = 0; i < chart->line_count; i++) {
@@ -87,10 +87,11 @@ static void add_curves(const Caption *caption) {
         caption->text, caption->size,
         " A curve joins the settings of a method that no other of its settings beats in both time and error; chart.csv "
         "has all. Shaded: what no solver reaches. Bars: quartiles of the time over repetitions of the same steps.");
-    if (shipped != NULL)
+    if (baseline != NULL)
         text_add(caption->text, caption->size,
-                 " Ring and dotted lines: %s as shipped, with whose time and error the others are compared.",
-                 shipped->name);
+                 " Ring and dotted lines: %s with as many sweeps as the scene sets, with whose time and error the "
+                 "others are compared.",
+                 baseline->name);
     add_names(caption, chart_is_program, "an external program, by its own clock, whose errors have the same measure.");
     if (lost) text_add(caption->text, caption->size, " Crosses: the method lost the scene before the impact.");
     if (twin) text_add(caption->text, caption->size, " Dashed, open: the method with its learned part switched off.");
@@ -103,8 +104,8 @@ void chart_caption(const Chart *chart, const char *title, const bool *named, cha
     snprintf(
         text, size,
         "Speed against accuracy: %s. At the impact: the first frames after the bomb touches a box. Velocity error: "
-        "difference from the converged solution of the same step, RMS over the boxes; mean over all launches.",
-        title);
+        "difference from the converged solution of the same step%s, RMS over the boxes; mean over all launches.",
+        title, chart->frozen ? " of the engine's run, on which every method is tried" : "");
     add_curves(&caption);
     add_names(&caption, is_without_push_out,
               "error against the solution without the velocity that pushes overlapping boxes apart.");

@@ -51,9 +51,9 @@ typedef struct ChartMark {
     bool floored; /* it was less */
     bool varies;  /* ChartRow.us_varies */
     bool on_front;
-    bool beaten;  /* another setting of its line beats it in both time and error */
-    bool lost;    /* the method lost the scene; only of lines that are asked for */
-    bool shipped; /* the setting that the method's description calls shipped */
+    bool beaten;   /* another setting of its line beats it in both time and error */
+    bool lost;     /* the method lost the scene; only of lines that are asked for */
+    bool baseline; /* the run with the scene's own settings that the others are compared with */
     char
         label[CHART_TEXT_SIZE]; /* "k=20"; of several numeric settings those in which marks with the same keys differ */
     const char *method, *setting; /* as in the table, which outlives them */
@@ -66,9 +66,10 @@ typedef struct ChartPanel {
 
 typedef struct Chart {
     int line_count, launches;
+    bool frozen; /* ChartLook */
     int floored; /* number of marks drawn at PARETO_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
-    ChartPanel panels[CHART_PANELS]; /* impact frames and the frames after; closed loop */
+    ChartPanel panels[CHART_PANELS]; /* impact frames and the frames after */
     /* [front_count] the Pareto front by rising time, of all methods that compete and the reference */
     CurvePoint *front[CHART_PANELS];
     int front_count[CHART_PANELS];

@@ -12,7 +12,7 @@
 
 #define CHART_NAME_POINTS 8.0
 #define CHART_SMALL_POINTS 6.5
-#define CHART_RING_RADIUS 1.9  /* mm: around the engine as shipped */
+#define CHART_RING_RADIUS 1.9  /* mm: around the baseline */
 #define CHART_GREY_RADIUS 0.42 /* mm: of grey marks */
 #define CHART_GREY_INK 0x666E78u
 
@@ -21,7 +21,9 @@ typedef struct ChartDrawing {
     const ChartPanel *panel;
     const PlotPanel *plot;
     Sketch *sketch;
-    LabelField field;                       /* its first two segments are the lines through the engine as shipped */
+    bool bare;                              /* names alone: there is no room for what is beside them */
+    LabelField tried;                       /* the field before a first try */
+    LabelField field;                       /* its first two segments are the lines through the baseline */
     int marks;                              /* the field's boxes of marks; those of labels follow */
     bool *named;                            /* [line] */
     const ChartMark *told[CHART_MAX_LINES]; /* in this panel: the mark that a line's name tells of, or NULL */
@@ -41,12 +43,12 @@ static inline Point chart_place(const ChartDrawing *drawing, const ChartMark *ma
 
 PlotStyle chart_line_style(const ChartLine *line);
 
-/* The setting as shipped of the method that has one; NULL: not in the panel. */
-const ChartMark *chart_find_shipped(const ChartPanel *panel);
+/* The mark that the others are compared with; NULL: not in the panel. */
+const ChartMark *chart_find_baseline(const ChartPanel *panel);
 
-/* Begins the field with the lines through the engine as shipped. */
+/* Begins the field with the lines through the baseline. */
 void chart_find_cross(ChartDrawing *drawing);
 
 /* Draws the names of all lines for which there is room beside marks and curves, settings of coloured ones, and the
-   lines through the engine as shipped. */
+   lines through the baseline. */
 void chart_draw_names(ChartDrawing *drawing, int panel);

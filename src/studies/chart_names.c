@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of the curves in a chart, where there is room beside them, and the lines through the engine as shipped, which
+/* Names of the curves in a chart, where there is room beside them, and the lines through the baseline, which
    they interrupt. */
 #include "figures/labels.h"
 #include "figures/plot.h"
@@ -33,6 +33,7 @@ static void label_row(Label *label, double points, const char *text) {
 }
 
 static void draw_label(const ChartDrawing *drawing, const Label *label, const PageBox *box, bool right) {
+    if (drawing->sketch == NULL) return;
     double y = box->top;
     for (int i = 0; i < label->count; i++) {
         const TextStyle style = {label->points[i], right ? TEXT_RIGHT : TEXT_LEFT, label->ink, 0, false};
@@ -48,10 +49,11 @@ static bool place_label(ChartDrawing *drawing, const ChartMark *mark, const Labe
     const Point at = chart_place(drawing, mark);
     LabelWish wish = {.x = at.x,
                       .y = at.y,
-                      .clear = mark->shipped                      ? CHART_RING_RADIUS
+                      .clear = mark->baseline                     ? CHART_RING_RADIUS
                                : chart_is_coloured(drawing, mark) ? MARK_RADIUS
                                                                   : CHART_GREY_RADIUS,
-                      .farthest = farthest};
+                      .farthest = farthest,
+                      .across = drawing->bare};
     for (int i = 0; i < label->count; i++) {
         wish.width = fmax(wish.width, type_width(label->rows[i], label->points[i]) + label_gap);
         wish.height += row_height(label->points[i]);
@@ -67,7 +69,7 @@ static bool place_label(ChartDrawing *drawing, const ChartMark *mark, const Labe
         memcpy(drawing->field.segments, cross, sizeof cross);
         if (!placed) return false;
     }
-    if (led) {
+    if (led && drawing->sketch != NULL) {
         const Pen pen = pen_line(label->ink, 0.6, NULL);
         sketch_line(drawing->sketch, (Point){leader.x0, leader.y0}, (Point){leader.x1, leader.y1}, &pen);
     }
@@ -83,30 +85,30 @@ static void label_factor(Label *label, double factor, const char *of) {
     label_row(label, CHART_SMALL_POINTS, text);
 }
 
-/* The mark that stands for a line: its setting as shipped or by default, else the most accurate one. */
+/* The mark that stands for a line: the baseline or its default setting, else the most accurate one. */
 static const ChartMark *find_chief(const ChartDrawing *drawing, int line) {
     const ChartMark *chief = NULL;
     for (int i = 0; i < drawing->panel->count; i++) {
         const ChartMark *mark = &drawing->panel->marks[i];
         if (mark->line != line || mark->lost) continue;
-        if (mark->shipped || chart_mark_is_default(mark)) return mark;
+        if (mark->baseline || chart_mark_is_default(mark)) return mark;
         if (chief == NULL || mark->error < chief->error) chief = mark;
     }
     return chief;
 }
 
-/* The name of a coloured line; of a mark, how its setting stands to the engine as shipped. */
+/* The name of a coloured line; of a mark, how its setting stands to the baseline. */
 static Label label_of(const ChartDrawing *drawing, int line, const ChartMark *mark) {
-    const ChartMark *shipped = chart_find_shipped(drawing->panel);
+    const ChartMark *baseline = chart_find_baseline(drawing->panel);
     Label label = {.ink = chart_line_style(&drawing->chart->lines[line]).ink};
     /* A silenced twin stands beside its method, in its colour: "net=off". */
     const char *word = chart_twin_word(&drawing->chart->lines[line]);
     label_row(&label, CHART_NAME_POINTS, word != NULL ? word : drawing->chart->lines[line].name);
-    if (mark == NULL || mark == shipped) return label;
+    if (mark == NULL || mark == baseline) return label;
     label_row(&label, CHART_SMALL_POINTS, mark->label);
-    if (shipped != NULL && line != shipped->line && !chart_is_program(&drawing->chart->lines[line])) {
-        label_factor(&label, mark->us / shipped->us, "time,");
-        label_factor(&label, mark->error / shipped->error, "error");
+    if (baseline != NULL && line != baseline->line && !chart_is_program(&drawing->chart->lines[line])) {
+        label_factor(&label, mark->us / baseline->us, "time,");
+        label_factor(&label, mark->error / baseline->error, "error");
     }
     return label;
 }
@@ -114,7 +116,7 @@ static Label label_of(const ChartDrawing *drawing, int line, const ChartMark *ma
 /* At the chief mark of a line, else at another one, the most accurate first: with what is to say of that mark, or the
    name alone. */
 static const ChartMark *name_mark(ChartDrawing *drawing, const ChartMark *chief, bool whole) {
-    const double farthest = 12; /* the chief mark's name may be led to it from twice as far */
+    const double farthest = drawing->bare ? 60 : 12; /* the chief mark's name may be led to it from twice as far */
     for (double far = 3; far <= farthest; far *= 2)
         for (int i = drawing->panel->count; i >= 0; i--) {
             const ChartMark *mark = i == drawing->panel->count ? chief : &drawing->panel->marks[i];
@@ -125,9 +127,9 @@ static const ChartMark *name_mark(ChartDrawing *drawing, const ChartMark *chief,
     return NULL;
 }
 
-/* The most accurate first: below them is room. */
-static void name_coloured(ChartDrawing *drawing) {
-    bool named[CHART_MAX_LINES] = {false};
+/* The most accurate first: below them is room. Whether each has a place for its name. */
+static bool name_coloured(ChartDrawing *drawing) {
+    bool named[CHART_MAX_LINES] = {false}, all = true;
     for (;;) {
         const ChartMark *chief = NULL;
         int next = -1;
@@ -137,11 +139,13 @@ static void name_coloured(ChartDrawing *drawing) {
             named[i] = mark == NULL;
             if (mark != NULL && (chief == NULL || mark->error < chief->error)) next = i, chief = mark;
         }
-        if (next < 0) return;
+        if (next < 0) return all;
         named[next] = true;
-        const ChartMark *told = name_mark(drawing, chief, true);
+        const ChartMark *told = drawing->bare ? NULL : name_mark(drawing, chief, true);
+        const bool placed = told != NULL || name_mark(drawing, chief, false) != NULL;
         drawing->told[next] = told;
-        drawing->named[next] |= told != NULL || name_mark(drawing, chief, false) != NULL;
+        drawing->named[next] |= placed;
+        all = all && placed;
     }
 }
 
@@ -170,37 +174,36 @@ static void name_settings(ChartDrawing *drawing, int index) {
         const ChartMark *mark = &panel->marks[i];
         const bool first = i == 0 || panel->marks[i - 1].line != index;
         const bool last = i + 1 == panel->count || panel->marks[i + 1].line != index;
-        if (mark->line != index || !(first || last) || mark == drawing->told[index] || mark->shipped) continue;
+        if (mark->line != index || !(first || last) || mark == drawing->told[index] || mark->baseline) continue;
         Label label = {.ink = chart_line_style(&drawing->chart->lines[index]).ink};
         label_row(&label, CHART_SMALL_POINTS, mark->label);
         place_label(drawing, mark, &label, 1.8);
     }
 }
 
-static void draw_names(ChartDrawing *drawing) {
+static bool draw_names(ChartDrawing *drawing) {
     const Chart *chart = drawing->chart;
-    const ChartMark *shipped = chart_find_shipped(drawing->panel);
-    if (shipped != NULL) {
+    const ChartMark *baseline = chart_find_baseline(drawing->panel);
+    if (baseline != NULL) {
         Label label = {.ink = ACCENT};
-        char text[CHART_TEXT_SIZE + 16];
-        snprintf(text, sizeof text, "%s as shipped", chart_line_of(drawing, shipped)->name);
-        label_row(&label, CHART_SMALL_POINTS, text);
-        place_label(drawing, shipped, &label, 20);
+        label_row(&label, CHART_SMALL_POINTS, "the scene's sweeps");
+        place_label(drawing, baseline, &label, 20);
     }
-    name_coloured(drawing);
+    const bool all = name_coloured(drawing);
     for (int i = 0; i < chart->line_count; i++)
-        if (chart->lines[i].rank == CHART_COLOURED) name_settings(drawing, i);
+        if (chart->lines[i].rank == CHART_COLOURED && !drawing->bare) name_settings(drawing, i);
     for (int i = 0; i < chart->line_count; i++)
         if (chart->lines[i].rank == CHART_GREY) name_grey(drawing, i);
+    return all;
 }
 
-/* Time and error of the engine as shipped, across the panel. */
+/* Time and error of the baseline, across the panel. */
 void chart_find_cross(ChartDrawing *drawing) {
-    const ChartMark *shipped = chart_find_shipped(drawing->panel);
+    const ChartMark *baseline = chart_find_baseline(drawing->panel);
     const PlotBox *box = &drawing->plot->box;
     Segment cross[CROSS] = {0};
-    if (shipped != NULL) {
-        const Point at = chart_place(drawing, shipped);
+    if (baseline != NULL) {
+        const Point at = chart_place(drawing, baseline);
         cross[0] = (Segment){at.x, box->bottom, at.x, box->bottom + box->height};
         cross[1] = (Segment){box->left, at.y, box->left + box->width, at.y};
     }
@@ -224,9 +227,9 @@ static double next_label(const ChartDrawing *drawing, const Segment *line, doubl
 
 /* Interrupted by labels. */
 static void draw_cross(const ChartDrawing *drawing) {
-    const ChartMark *shipped = chart_find_shipped(drawing->panel);
-    if (shipped == NULL) return;
-    const Pen pen = pen_line(chart_line_style(chart_line_of(drawing, shipped)).colour, 0.7, "(1.2,2.4)");
+    const ChartMark *baseline = chart_find_baseline(drawing->panel);
+    if (baseline == NULL) return;
+    const Pen pen = pen_line(chart_line_style(chart_line_of(drawing, baseline)).colour, 0.7, "(1.2,2.4)");
     for (int i = 0; i < CROSS; i++) {
         const Segment *line = &drawing->field.segments[i];
         const bool upright = line->x0 == line->x1;
@@ -256,7 +259,14 @@ static void name_shade(ChartDrawing *drawing, int panel) {
 }
 
 void chart_draw_names(ChartDrawing *drawing, int panel) {
+    /* Tried first: where a coloured curve finds no place for its name, all that stands beside the names goes. */
+    Sketch *sketch = drawing->sketch;
     drawing->marks = drawing->field.box_count;
+    drawing->tried = drawing->field;
+    drawing->sketch = NULL;
+    drawing->bare = !draw_names(drawing);
+    drawing->field = drawing->tried;
+    drawing->sketch = sketch;
     draw_names(drawing);
     name_shade(drawing, panel);
     draw_cross(drawing);

@@ -127,9 +127,9 @@ static bool draw_shade(const ChartDrawing *drawing, int panel) {
     return true;
 }
 
-const ChartMark *chart_find_shipped(const ChartPanel *panel) {
+const ChartMark *chart_find_baseline(const ChartPanel *panel) {
     for (int i = 0; i < panel->count; i++)
-        if (panel->marks[i].shipped) return &panel->marks[i];
+        if (panel->marks[i].baseline) return &panel->marks[i];
     return NULL;
 }
 
@@ -165,13 +165,13 @@ static void draw_mark(ChartDrawing *drawing, const ChartMark *mark) {
     PlotStyle style = chart_line_style(chart_line_of(drawing, mark));
     const Point at = chart_place(drawing, mark);
     const bool coloured = chart_is_coloured(drawing, mark);
-    const double radius = mark->shipped ? CHART_RING_RADIUS : coloured ? MARK_RADIUS : CHART_GREY_RADIUS;
+    const double radius = mark->baseline ? CHART_RING_RADIUS : coloured ? MARK_RADIUS : CHART_GREY_RADIUS;
     if (mark->lost) style.symbol = PLOT_CROSS;
     if (coloured)
         plot_marks(drawing->sketch, &at, 1, &style);
     else
         plot_mark(drawing->sketch, at, &style, CHART_GREY_RADIUS, 0);
-    if (mark->shipped)
+    if (mark->baseline)
         plot_mark(drawing->sketch, at, &(PlotStyle){.symbol = METHOD_CIRCLE, .open = true, .colour = ACCENT},
                   CHART_RING_RADIUS, 2);
     label_add_box(&drawing->field, (PageBox){at.x - radius, at.y - radius, at.x + radius, at.y + radius});
@@ -213,6 +213,35 @@ static bool draw_panel(ChartPicture *picture, int panel) {
     return whole;
 }
 
+/* Right of the title, from `left` on: the methods that no panel shows, and why, as far as there is room. */
+static void draw_left_out(ChartPicture *picture, double left) {
+    const Chart *chart = picture->chart;
+    const double right = picture->width - RIGHT_MARGIN;
+    char text[PLOT_CAPTION_SIZE] = "", next[PLOT_CAPTION_SIZE];
+    int more = 0;
+    for (int i = 0; i < chart->line_count; i++) {
+        const ChartLine *line = &chart->lines[i];
+        const char *why = line->lost > 0       ? "unstable"
+                          : line->left_out > 0 ? "no time or error"
+                          : line->beyond > 0   ? "beyond the axes"
+                                               : NULL;
+        if (why == NULL || line->marks[0] + line->marks[1] > 0 || line->rank == CHART_HIDDEN) continue;
+        snprintf(next, sizeof next, "%s%s%s (%s)", text, more == 0 && text[0] == '\0' ? "left out: " : ", ", line->name,
+                 why);
+        if (more == 0 &&
+            left + type_width(next, CHART_SMALL_POINTS) + type_width(", 99 more", CHART_SMALL_POINTS) < right)
+            strcpy(text, next);
+        else
+            more++;
+    }
+    if (more > 0 && text[0] != '\0')
+        text_add(text, sizeof text, ", %d more", more);
+    else if (more > 0)
+        snprintf(text, sizeof text, "left out: %d method%s", more, plural(more));
+    const TextStyle style = {CHART_SMALL_POINTS, TEXT_RIGHT, CHART_GREY_INK, 0, false};
+    if (text[0] != '\0') sketch_text(&picture->sketch, (Point){right, picture->height - 3}, &style, "%s", text);
+}
+
 /* Everything but the caption's words below. */
 static bool draw_panels(ChartPicture *picture, const char *title, double words) {
     bool whole = true;
@@ -221,6 +250,7 @@ static bool draw_panels(ChartPicture *picture, const char *title, double words) 
     for (int p = 0; whole && p < CHART_PANELS; p++) whole = draw_panel(picture, p);
     const TextStyle style = {AXIS_POINTS, TEXT_LEFT, CHART_GREY_INK, 0, false};
     sketch_text(&picture->sketch, (Point){LEFT_MARGIN, picture->height - 3}, &style, "%s", title);
+    draw_left_out(picture, LEFT_MARGIN + type_width(title, AXIS_POINTS) + 6);
     return whole;
 }
 
@@ -243,7 +273,8 @@ static bool make_picture(ChartPicture *picture, const Chart *chart, const char *
     char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
     *picture = (ChartPicture){.chart = chart, .size = look->size};
     chart_plain(name, scene);
-    snprintf(title, sizeof title, "%s, %d launch%s", name, chart->launches, plural_es(chart->launches));
+    snprintf(title, sizeof title, "%s, %d launch%s%s", name, chart->launches, plural_es(chart->launches),
+             chart->frozen ? ", on the engine's steps" : "");
     bool whole = draw_panels(picture, title, 0);
     chart_caption(chart, title, picture->named, picture->caption, sizeof picture->caption);
     if (whole && look->words) whole = draw_words(picture, title);

@@ -14,6 +14,7 @@ typedef struct ChartLook {
     ChartSize size;
     const char *highlight; /* methods to be drawn in colour, separated by commas; NULL: none beside the usual ones */
     bool chosen;           /* all lines are: methods that --methods names, but silenced twins */
+    bool frozen;           /* errors and times on recorded steps, which methods that lose the scene have, too */
     bool words;            /* the caption below the picture, too, which makes it higher */
     ColourChoices colours; /* those that name a line count */
 } ChartLook;
@@ -28,7 +29,7 @@ bool chart_highlight_check(const char *highlight, const ChartRow *rows, int coun
 /* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path, and writes what they show as chart-SCENE.txt.
    x: solver time per step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after,
    in closed loop. At most six methods are in colour, each named at its curve; all others are grey. What no method
-   reaches is shaded (the Pareto front, studies/error_curve.h); dotted lines are the time and the error of the engine as
-   shipped. The folder must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not
+   reaches is shaded (the Pareto front, studies/error_curve.h); dotted lines are the time and the error of the engine
+   with the scene's own sweeps. The folder must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not
    a file name. Each file appears complete or not at all. */
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, const ChartLook *look, Error *error);

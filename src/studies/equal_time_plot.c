@@ -294,6 +294,12 @@ static void draw_scale(const Layout *layout) {
               "error at the impact / error of the best rival,");
     plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
     plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower, or unstable before the impact");
+    if (layout->grid->left_out.used > 0) {
+        char names[sizeof layout->grid->left_out.text + 16];
+        snprintf(names, sizeof names, "left out: %s", layout->grid->left_out.text);
+        while (type_width(names, 7) > bar_width) strcpy(names + utf8_cut(names, strlen(names) - 4), "...");
+        plot_text(sketch, (Point){layout->left, bottom - 6}, TEXT_LEFT, 7, names);
+    }
     snprintf(note, sizeof note, "white: both below %g m/s", PARETO_RESOLUTION);
     plot_text(sketch, (Point){right, bottom - 9}, TEXT_LEFT, 8, note);
 }

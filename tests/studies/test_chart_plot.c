@@ -53,11 +53,26 @@ TEST(a_picture_and_its_caption_are_written) {
                "for wanted in ('At the impact', 'In the 60 frames after it', 'engine', 'engine:warm=off', 'momentum',\n"
                "               'momentum-schedule', 'playback', 'pair-net', 'no solver gets here', 'k=100',\n"
                "               'pyramid_settled, 40 launches', '9.4 × the time,', '1/39 of the error'):\n"
-               "    assert wanted in texts, (wanted, texts)\n",
+               "    assert wanted in texts, (wanted, texts)\n"
+               /* Beside a name and a setting: their row over that of the scene's sweeps, in two digits. */
+               "import csv\n"
+               "rows = [row for row in csv.DictReader(open('" SAMPLE "'))\n"
+               "        if row['phase'] in ('impact', 'after') and float(row['error_mean'] or 0) > 0]\n"
+               "own = {row['phase']: row for row in rows if (row['method'], row['setting']) == ('engine', '')}\n"
+               "def words(row, column):\n"
+               "    factor = float(row[column]) / float(own[row['phase']][column])\n"
+               "    most = max(factor, 1 / factor)\n"
+               "    text = f'{float(f\"{most:.2g}\"):.{1 if most < 9.95 else 0}f}'\n"
+               "    return ('1/' + text + ' of the ') if factor < 1 else (text + ' × the ')\n"
+               "told = {(row['method'], row['setting'], words(row, 'us_solver') + 'time,', words(row, 'error_mean') + "
+               "'error')\n"
+               "        for row in rows}\n"
+               "found = [tuple(texts[i - 2:i + 2]) for i, text in enumerate(texts) if text.endswith('the time,')]\n"
+               "assert len(found) > 3 and told.issuperset(found), set(found) - told\n",
                drawn_file("pyramid_settled", "svg"));
     FREED char *caption = read_drawn("pyramid_settled", "txt", &size);
     assert_non_null(strstr(caption, " Beyond the axes: reference (2232 to 2400 µs, below 0.0001 m/s)."));
-    assert_non_null(strstr(caption, "Ring and dotted lines: engine as shipped"));
+    assert_non_null(strstr(caption, "Ring and dotted lines: engine with as many sweeps as the scene sets"));
 }
 
 /* The picture's size in pixels, from the head of its file. */
@@ -101,16 +116,15 @@ static void expect_refused(const char *lines, const char *scene, const char *mes
 
 TEST(tables_without_a_mark_are_refused) {
     static const char none[] = "rows.csv: error: no row of the scene 'single' in closed loop has a time and an error";
-    expect_refused("stack,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "single", none);
+    expect_refused("stack,engine,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "single", none);
     expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,,1,,,,,,,,\n"
-                   "single,engine,k=10,closed,rest,40,5,4,6,,,1,,,,,,,,\n"
+                   "single,engine,,closed,rest,40,5,4,6,,,1,,,,,,,,\n"
                    "single,engine,k=30,closed,impact,40,5,4,6,,,,,,,,,,,\n"
                    "single,engine,k=40,closed,impact,40,,,,,,1,,,,,,,,\n"
                    "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,,\n",
                    "single", none);
-    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single",
-                   "error_mean: '-1' is less than 0");
-    expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "is not a valid scene name");
+    expect_refused("single,engine,,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single", "error_mean: '-1' is less than 0");
+    expect_refused("../x,engine,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "is not a valid scene name");
     char many[8000] = "";
     for (int i = 0; i <= CHART_MAX_LINES; i++)
         snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
@@ -136,7 +150,7 @@ TEST(times_that_vary_are_noted) {
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     fputs(CHART_HEADER ",cpu,us_engine,us_varies\n"
-                       "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,,AMD,,0\n"
+                       "stack,engine,,closed,impact,40,5,5,5,,,1,,,,,,,,,AMD,,0\n"
                        "stack,engine,k=20,closed,impact,40,9,5,9,,,0.5,,,,,,,,,AMD,,1\n",
           file);
     assert_int_equal(fclose(file), 0);
@@ -146,7 +160,7 @@ TEST(times_that_vary_are_noted) {
 
 /* The caption names the methods whose errors have another target. */
 TEST(a_target_without_push_out_is_noted) {
-    static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+    static const char rows[] = "stack,engine,,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n";
     const char *engine = printed("%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
@@ -194,7 +208,7 @@ TEST(marks_are_gathered_by_line_and_time) {
     CsvTable table;
     Chart chart = gather(&table, "single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
                                  "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
-                                 "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                 "stack,engine,,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
                                  "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,,\n"
                                  "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
                                  "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n");
@@ -210,9 +224,9 @@ TEST(marks_are_gathered_by_line_and_time) {
     assert_true(chart.panels[1].marks[0].error == 1e-4);
     assert_string_equal(impact->marks[0].label, "k=7,b=0.5");
     assert_string_equal(impact->marks[1].label, "k=5");
-    assert_true(impact->marks[1].on_front && !impact->marks[1].shipped);
-    assert_string_equal(impact->marks[2].label, "k=10");
-    assert_true(!impact->marks[2].on_front && impact->marks[2].shipped && impact->marks[2].beaten);
+    assert_true(impact->marks[1].on_front && !impact->marks[1].baseline);
+    assert_string_equal(impact->marks[2].label, "");
+    assert_true(!impact->marks[2].on_front && impact->marks[2].baseline && impact->marks[2].beaten);
     assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
     free_chart(&chart, &table);
 }
@@ -260,12 +274,12 @@ TEST(what_is_beaten_is_left_out) {
                                  "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
                                  "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
                                  "stack,engine,k=5,closed,impact,40,2,2,2,,,2,,,,,,,,\n"
-                                 "stack,engine,k=10,closed,impact,40,4,4,4,,,3,,,,,,,,\n");
+                                 "stack,engine,,closed,impact,40,4,4,4,,,3,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
     assert_int_equal(chart.lines[0].marks[0], 2); /* k=20 is slower and less accurate than near=0.5 */
     assert_string_equal(chart.panels[0].marks[1].label, "near=0.5");
-    assert_int_equal(chart.lines[1].marks[0], 2); /* the engine as shipped stays */
-    assert_true(chart.panels[0].marks[3].beaten && chart.panels[0].marks[3].shipped);
+    assert_int_equal(chart.lines[1].marks[0], 2); /* the baseline stays */
+    assert_true(chart.panels[0].marks[3].beaten && chart.panels[0].marks[3].baseline);
     free_chart(&chart, &table);
 }
 
@@ -327,7 +341,7 @@ TEST(six_lines_at_most_are_in_colour) {
 
 /* What lost the scene is drawn if it is asked for. */
 TEST(lost_methods_are_shown_on_request) {
-    static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+    static const char rows[] = "stack,engine,,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,pair-net,,closed,impact,40,6,6,6,,,2,,,,,,,,\n"
                                "stack,pair-net,,closed,rest,40,6,6,6,,,2,,,,,,0.6,,\n";
     const ChartLook asked = {.highlight = "pair-net"};
@@ -339,6 +353,48 @@ TEST(lost_methods_are_shown_on_request) {
     assert_null(strstr(caption, "left out: pair-net"));
 }
 
+/* What lost the scene is no part of what is reached: its front, and its curve. Bars go from quartile to quartile: in
+   logarithms these are as far from the mark on both sides. */
+TEST(curves_and_fronts_join_what_held) {
+    static const char rows[] = "stack,engine,k=1,closed,impact,40,10,2,50,,,3,,,,,,,,\n"
+                               "stack,engine,k=5,closed,impact,40,100,100,100,,,1,,,,,,,,\n"
+                               "stack,engine,k=5,closed,rest,40,6,6,6,,,2,,,,,,0.6,,\n"
+                               "stack,engine,k=50,closed,impact,40,1000,1000,1000,,,0.5,,,,,,,,\n";
+    CsvTable table;
+    Chart chart = gather(&table, rows);
+    assert_int_equal(chart.front_count[0], 2);
+    free_chart(&chart, &table);
+    assert_ok(chart_plot(write_rows(rows), "stack", folder(), &(ChartLook){.highlight = "engine"}, &error), error);
+    run_python(
+        "import re, sys\n"
+        "lines = [tuple(map(float, line)) for line in re.findall(r'd=\"M(\\S+) (\\S+)L(\\S+) (\\S+)\" fill=\"none\" '\n"
+        "         r'stroke=\"#0072B2\"', open(sys.argv[1]).read())]\n"
+        "points = [(x, y) for x, y, to_x, to_y in lines if (x, y) == (to_x, to_y)]\n"
+        "bars = [line for line in lines if line[1] == line[3] and line[2] - line[0] > 3 and line[1] == points[0][1]]\n"
+        "joined = [line for line in lines if line[:2] == points[0] and line[1] != line[3]]\n"
+        "decade = (bars[0][2] - bars[0][0]) / 1.39794 # from 2 to 50; the curve goes from 10 to 1000\n"
+        "assert len(joined) == 1 and abs(joined[0][2] - joined[0][0] - 2 * decade) < 0.05, lines\n"
+        "assert len(bars) == 1 and abs((bars[0][0] + bars[0][2]) / 2 - points[0][0]) < 0.02, lines\n",
+        drawn_file("stack", "svg"));
+}
+
+/* The picture itself says what it leaves out; on recorded steps nothing is lost. */
+TEST(what_is_left_out_is_in_the_picture) {
+    static const char rows[] = "stack,engine,,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                               "stack,pair-net,,frozen,impact,40,6,6,6,,,2,,,,,,,,\n"
+                               "stack,pair-net,,closed,impact,40,6,6,6,,,2,,,,,,,,\n"
+                               "stack,pair-net,,closed,rest,40,6,6,6,,,2,,,,,,0.6,,\n";
+    const ChartLook frozen = {.frozen = true};
+    size_t size;
+    for (int i = 0; i < 2; i++) {
+        assert_ok(chart_plot(write_rows(rows), "stack", folder(), i == 0 ? &page : &frozen, &error), error);
+        FREED char *svg = read_drawn("stack", "svg", &size);
+        assert_true((strstr(svg, "left out: pair-net (unstable)") != NULL) == (i == 0));
+        assert_true((strstr(svg, ">pair-net<") != NULL) == (i == 1));
+        assert_true((strstr(svg, "on the engine's steps") != NULL) == (i == 1));
+    }
+}
+
 /* A program reports one time; its curve is in colour and no part of the front. */
 TEST(programs_are_drawn_with_their_own_time) {
     CsvTable table;
@@ -346,7 +402,7 @@ TEST(programs_are_drawn_with_their_own_time) {
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     fputs(CHART_HEADER ",cpu,us_engine\n"
-                       "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,,AMD,\n"
+                       "stack,engine,,closed,impact,40,5,5,5,,,1,,,,,,,,,AMD,\n"
                        "stack,exec,\"program=node a.mjs,name=Rapier\",closed,impact,40,,,,,,0.5,,,,,,,,,,2.5\n"
                        "stack,exec,program=silent,closed,impact,40,,,,,,0.5,,,,,,,,,,\n"
                        "stack,exec,program=zero,closed,impact,40,,,,,,0.5,,,,,,,,,,0\n",
@@ -370,7 +426,7 @@ TEST(programs_are_drawn_with_their_own_time) {
 /* What the reference reaches is no place that no solver gets to; a baseline solves nothing. */
 TEST(the_front_goes_through_the_reference) {
     CsvTable table;
-    const char *path = write_rows("stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+    const char *path = write_rows("stack,engine,,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                   "stack,reference,,closed,impact,40,50,50,50,,,0.0001,,,,,,,,\n"
                                   "stack,playback,launches=25,closed,impact,40,1,1,1,,,0.5,,,,,,,,\n");
     assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);

@@ -37,6 +37,29 @@ TEST(a_poor_method_diverges_before_a_good_one) {
     assert_true(poor.penetration_max > good.penetration_max);
 }
 
+/* The deepest contact is that of the launch that has it, whichever comes last. */
+TEST(the_deepest_contact_is_that_of_any_launch) {
+    OWN(Scene) *scene = scene_named("stack");
+    const Method method = method_named("engine:k=1,warm=off");
+    Scene launches[2] = {*scene, *scene};
+    RunLog converged[2] = {0};
+    ClosedLoop one[2], both[2];
+    launches[1].bomb.mass.value = 1;
+    for (int i = 0; i < 2; i++) {
+        assert_ok(closed_loop_log_converged(&converged[i], &launches[i], &error), error);
+        assert_ok(closed_loop_run(&method, &launches[i], &converged[i], 1, &one[i], &error), error);
+    }
+    assert_true(one[0].penetration_max != one[1].penetration_max);
+    for (int i = 0; i < 2; i++) {
+        const Scene order[] = {launches[i], launches[1 - i]};
+        const RunLog logs[] = {converged[i], converged[1 - i]};
+        assert_ok(closed_loop_run(&method, order, logs, 2, &both[i], &error), error);
+        assert_true(both[i].penetration_max == fmax(one[0].penetration_max, one[1].penetration_max));
+        assert_true(both[i].energy_ratio == fmax(one[0].energy_ratio, one[1].energy_ratio));
+    }
+    for (int i = 0; i < 2; i++) run_log_free(&converged[i]);
+}
+
 /* The energy that a late bomb brings is not counted as created by the method. */
 TEST(energy_counts_from_the_bomb_on) {
     OWN(Scene) *scene = scene_named("single");

@@ -79,6 +79,7 @@ TEST(every_setting_meets_its_best_rival_at_its_time) {
         }
         assert_same(row->ratio, want->ratio);
         assert_same(row->time_momentum_20, want->time_momentum_20);
+        assert_same(row->time_scene_net, row->us_solver / 10);
     }
 }
 

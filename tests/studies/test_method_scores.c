@@ -37,6 +37,15 @@ static LaunchScores make_scores(int launch, int method) {
     return scores;
 }
 
+/* A launch without a measure does not count in its mean. */
+TEST(means_are_over_launches_that_have_the_measure) {
+    const RunMeasures measures[] = {{.energy = {4, 4, 4}, .drift = 3, .moved = NAN, .penetration = {1, 1, 1}},
+                                    {.energy = {NAN, NAN, NAN}, .drift = 5, .moved = 7, .penetration = {2, 2, 0}}};
+    ChartRow row = {.phase = PHASE_REST};
+    scene_row_measures(&row, measures, 2);
+    assert_true(row.energy == 4 && row.drift == 4 && row.moved == 7 && row.penetration_max == 1);
+}
+
 static char *write_launch(int launch, size_t *size) {
     LaunchScores scores[METHODS];
     char *bytes = NULL;
