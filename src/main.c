@@ -2,7 +2,9 @@
 /* Finds the command, runs it, and makes an exit status of its error. */
 #define _GNU_SOURCE
 #include "base/base.h"
+#include "base/file.h"
 #include "cli/cli.h"
+#include "cli/installed.h"
 #include "cli/interrupt.h"
 #include "cli/notes.h"
 
@@ -77,6 +79,7 @@ int main(int argc, char **argv) {
         close(full);
     }
     on_exit(check_exit, &ended);
+    file_elsewhere = installed_path;
     interrupt_handle();
     /* OpenMP takes any number that the environment asks for, and an area of the stack for each. More threads than
        processors gain nothing. */

@@ -204,6 +204,8 @@ bool file_make_directory(const char *path, Error *error) {
     return true;
 }
 
+const char *(*file_elsewhere)(const char *path);
+
 bool file_path(char *path, size_t size, Error *error, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);

@@ -92,6 +92,8 @@ static int open_checked(const char *path, uint64_t *size, Error *error) {
     int descriptor =
         path_is_standard(path) ? standard_input_open(error) : open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     struct stat status;
+    if (descriptor < 0 && errno == ENOENT && file_elsewhere != NULL)
+        descriptor = open(file_elsewhere(path), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor < 0) {
         file_open_error(path, error);
         return -1;

@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "cli/common_options.h"
 #include "cli/notes.h"
+#include "cli/installed.h"
 #include "cli/options.h"
 #include "cli/output_checks.h"
 #include "cli/panels.h"
@@ -81,7 +82,7 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
     for (int i = 0; i < panels->count; i++) {
         /* Folders differ between machines, but a scene is as it was typed, where that means the same in another
            checkout. */
-        const char *input = panels->inputs[i], *name = input + file_folder_length(input);
+        const char *input = installed_name(panels->inputs[i]), *name = input + file_folder_length(input);
         const bool elsewhere = input[0] == '/' || strncmp(input, "../", 3) == 0 || strstr(input, "/../") != NULL;
         if (file_name_ends_with(input, ".npz"))
             page.files[i] = name;

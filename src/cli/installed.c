@@ -13,6 +13,7 @@ enum { PATH_SIZE = 4096 };
 /* What was found; a list, because callers keep the paths. */
 typedef struct Found {
     struct Found *next;
+    size_t name; /* where in the path its name below the installed data begins */
     char path[PATH_SIZE];
 } Found;
 
@@ -38,15 +39,17 @@ const char *installed_path(const char *path) {
     if (path[0] == '/' || access(path, F_OK) == 0) return path;
     Found *found = malloc(sizeof *found);
     bool there = found != NULL && installed_find(found->path, path);
+    if (there) found->name = strlen(found->path) - strlen(path);
     /* A name without "/" and "." is a scene's. */
     for (int i = 0; found != NULL && !there && strpbrk(path, "./") == NULL && i < SCENE_FOLDERS; i++) {
         char scene[PATH_SIZE];
         if (!file_path(scene, sizeof scene, &(Error){0}, "%s/%s.yaml", scene_folders[i], path)) break;
         there = access(scene, R_OK) == 0;
-        if (there)
+        if (there) {
             memcpy(found->path, scene, sizeof scene);
-        else
-            there = installed_find(found->path, scene);
+            found->name = 0;
+        } else if ((there = installed_find(found->path, scene)))
+            found->name = strlen(found->path) - strlen(scene);
     }
     if (!there) {
         free(found);
@@ -57,23 +60,8 @@ const char *installed_path(const char *path) {
     return found->path;
 }
 
-const char *installed_network(const char *method) {
-    static const char key[] = "network=";
-    const char *value = strstr(method, key);
-    if (value == NULL || (value > method && value[-1] != ':' && value[-1] != ',')) return method;
-    char path[PATH_SIZE];
-    value += strlen(key);
-    const int length = (int)strcspn(value, ",");
-    Error ignored = {0};
-    if (!file_path(path, sizeof path, &ignored, "%.*s", length, value)) return method;
-    const char *found = installed_path(path);
-    Found *text = found != path ? malloc(sizeof *text) : NULL;
-    if (text == NULL || !file_path(text->path, sizeof text->path, &ignored, "%.*s%s%s", (int)(value - method), method,
-                                   found, value + length)) {
-        free(text);
-        return method;
-    }
-    text->next = all_found;
-    all_found = text;
-    return text->path;
+const char *installed_name(const char *path) {
+    for (const Found *found = all_found; found != NULL; found = found->next)
+        if (strcmp(found->path, path) == 0) return path + found->name;
+    return path;
 }

@@ -133,12 +133,12 @@ bool option_texts(const Option *option, const char *text, void *value, Error *er
 
 bool option_method(const Option *option, const char *text, void *value, Error *error) {
     programs_allow(text);
-    return option_text(option, installed_network(text), value, error);
+    return option_text(option, text, value, error);
 }
 
 bool option_method_texts(const Option *option, const char *text, void *value, Error *error) {
     programs_allow(text);
-    return option_texts(option, installed_network(text), value, error);
+    return option_texts(option, text, value, error);
 }
 
 bool option_paths(const Option *option, const char *text, void *value, Error *error) {

@@ -35,6 +35,16 @@ says "arch by engine: 1 steps"
 # A network by its path in the repository; one that is nowhere is named.
 run 0 simulate stack --method pair-net:network=scenes/networks/pair-net.npz --hash run.hash
 cmp -s run.hash ../built.hash || fail "scenes/networks/pair-net.npz is another network"
+# What is stored has the name as it was typed: another prefix gives the same bytes.
+own=pair-net:network=scenes/networks/pair-net.npz
+run 0 simulate stack --method $own --frames 20 -o own.npz
+run 0 page own.npz -o own.html
+run 0 page --live stack --method $own -o live.html
+(cd "$sources" && "$built" simulate stack --method $own --frames 20 -o "$folder/own.npz" && "$built" page "$folder/own.npz" \
+    -o "$folder/own.html" && "$built" page --live stack --method $own -o "$folder/live.html") >/dev/null
+for file in own.npz own.html live.html; do
+    cmp -s $file ../$file || fail "$file depends on where twinbox is installed"
+done
 run 2 simulate stack --method pair-net:network=scenes/networks/none.npz
 complains "scenes/networks/none.npz: error: cannot open"
 run 2 simulate no_such_scene
