@@ -31,8 +31,12 @@ function compare(expected, actual, options = []) {
   return new Promise((resolve, reject) => {
     const words = ["compare", ...options, "--json", "--", expected, actual];
     execFile(find(), words, { maxBuffer: 1 << 30 }, (error, output, messages) => {
-      if (error && error.code !== 1) reject(new Error(messages.trim() || error.message));
-      else resolve(JSON.parse(output));
+      if (error && error.code !== 1) return reject(new Error(messages.trim() || error.message));
+      try {
+        resolve(JSON.parse(output));
+      } catch {
+        reject(new Error(`these options compare nothing: ${options.join(" ")}`));
+      }
     });
   });
 }

@@ -71,6 +71,8 @@ def pytest_collection_modifyitems(items):
 def save(picture, path):
     path.parent.mkdir(parents=True, exist_ok=True)
     if isinstance(picture, (str, os.PathLike)):
+        if not Path(picture).read_bytes().startswith(b"\x89PNG"):
+            pytest.fail(f"the test returned {picture}, which is no PNG file", pytrace=False)
         shutil.copyfile(picture, path)
     elif hasattr(picture, "savefig"):
         picture.savefig(path)
@@ -104,8 +106,9 @@ def check(item, marker, picture):
     root = Path(item.config.rootpath)
     name = picture_name(item)
     expected, actual = Path("expected", name), Path("actual", name)
-    if marker.kwargs:
-        pytest.fail(f"twinbox_compare takes options as texts, not {', '.join(marker.kwargs)}=", pytrace=False)
+    others = [f"{name}=" for name in marker.kwargs] + [repr(option) for option in marker.args if not isinstance(option, str)]
+    if others:
+        pytest.fail(f"twinbox_compare takes options as texts, not {', '.join(others)}", pytrace=False)
     save(picture, root / actual)
     if item.config.getoption("--twinbox-accept"):
         (root / expected).parent.mkdir(parents=True, exist_ok=True)

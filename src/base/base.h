@@ -207,10 +207,10 @@ bool array_block_reserve(ArrayBlock *block, const ArrayPart *parts, size_t count
 /* A decimal number, rounded to the nearest float32, or a fraction of two such as 1/60, divided in float32. */
 bool parse_float(const char *text, float *value);
 
-/* A decimal number in the range of float32, rounded to the nearest double. */
+/* The same in double, in the range of float32. */
 bool parse_double(const char *text, double *value);
 
-/* The decimal number that text begins with, as parse_double reads it; *rest is what follows it. */
+/* The decimal number that text begins with, in the range of float32; *rest is what follows it. */
 bool parse_leading_double(const char *text, double *value, const char **rest);
 
 bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value);

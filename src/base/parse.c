@@ -80,11 +80,13 @@ bool parse_float(const char *text, float *value) {
 }
 
 bool parse_double(const char *text, double *value) {
-    Number number;
+    Number number, divisor = {1, 1};
     const char *rest;
-    if (!take_number(text, '\0', &number, &rest)) return false;
-    *value = number.full;
-    return true;
+    if (!take_number(text, '\0', &number, &rest) &&
+        !(take_number(text, '/', &number, &rest) && take_number(rest, '\0', &divisor, &rest) && divisor.single != 0))
+        return false;
+    *value = number.full / divisor.full;
+    return isfinite((float)*value);
 }
 
 bool parse_leading_double(const char *text, double *value, const char **rest) {

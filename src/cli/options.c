@@ -85,12 +85,10 @@ bool option_float(const Option *option, const char *text, void *value, Error *er
 }
 
 bool option_double(const Option *option, const char *text, void *value, Error *error) {
-    const char *rest;
-    double parsed = 0, divisor = 1;
-    const bool is_number = parse_leading_double(text, &parsed, &rest) &&
-                           (*rest == '\0' || (*rest == '/' && parse_double(rest + 1, &divisor) && divisor != 0));
-    if (!check_number(option, text, is_number, parsed / divisor, error)) return false;
-    *(double *)value = parsed / divisor;
+    double parsed = 0;
+    const bool is_number = parse_double(text, &parsed);
+    if (!check_number(option, text, is_number, parsed, error)) return false;
+    *(double *)value = parsed;
     return true;
 }
 

@@ -18,7 +18,8 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
     double squares = 0;
     for (int frame = 0; frame < frames; frame++) {
         for (int body = 0; body < a->bodies; body++) {
-            count += !a->fixed[body] && trajectory_has(a, frame, body) && trajectory_has(b, frame, body);
+            const bool fixed = a->fixed[body] && b->fixed[body];
+            count += !fixed && trajectory_has(a, frame, body) && trajectory_has(b, frame, body);
             if (trajectory_same_state(a, b, frame, body)) continue;
             const StateDifference state = trajectory_state_difference(a, b, frame, body);
             if (d->frame < 0) { /* the first */
@@ -31,7 +32,7 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
                     snprintf(d->what, sizeof d->what, "body %d exists in frame %d of the %s only", body, frame,
                              state.in_a ? "first" : "second");
             }
-            if (!a->fixed[body]) squares += state.distance * state.distance;
+            if (!fixed) squares += state.distance * state.distance;
             if (!(state.distance > d->max_distance)) continue;
             d->max_distance = state.distance;
             d->max_frame = frame;

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { CSV_HEAD_LINE_SIZE = 256, NUMBERS_MAX = 4, BODIES_MAX = 1000000 };
 /* m */
@@ -62,7 +63,7 @@ static bool read_sizes(CsvHead *head, const char *path, Error *error) {
 }
 
 /* "1,2.5": `least` to `most` numbers; returns how many, 0 if the text is something else. */
-static int take_numbers(char *text, int least, int most, float numbers[NUMBERS_MAX]) {
+static int take_list(char *text, int least, int most, float numbers[NUMBERS_MAX]) {
     int count = 0;
     for (char *next = text; next != NULL && count < most; count++) {
         char *field = next + strspn(next, " "), *comma = strchr(field, ',');
@@ -89,7 +90,7 @@ static bool take_size(CsvHead *head, const char *path, char *text, Error *error,
     *right = comma != NULL;
     if (comma == NULL) return true;
     *comma = '\0';
-    *right = parse_int(text, 0, INT32_MAX - 1, &body.number) && take_numbers(comma + 1, 2, 2, size) == 2 &&
+    *right = parse_int(text, 0, INT32_MAX - 1, &body.number) && take_list(comma + 1, 2, 2, size) == 2 &&
              is_size(size[0]) && is_size(size[1]);
     body.size = vec2(size[0], size[1]);
     return !*right || add_body(head, path, body, error);
@@ -130,7 +131,7 @@ static bool take_value(CsvHead *head, const char *path, int key, char *text, Err
     case KEY_DT: *right = parse_float(text, &head->dt) && head->dt > 0; break;
     case KEY_BOMB: *right = parse_int(text, 0, INT32_MAX - 1, &head->bomb); break;
     case KEY_CAMERA:
-        *right = take_numbers(text, 4, 4, camera) == 4;
+        *right = take_list(text, 4, 4, camera) == 4;
         if (!*right) break;
         head->camera[0] = vec2(camera[0], camera[1]);
         head->camera[1] = vec2(camera[2], camera[3]);
@@ -224,15 +225,24 @@ static bool split(CsvRows *rows, Fields *fields, Error *error) {
     fields->line[used] = '\0';
     rows->at += length + (rows->at[length] == '\n');
     for (char *next = fields->line; next != NULL;) {
-        char *field = next, *comma = strchr(field, ',');
+        char *field = next + strspn(next, " \t"), *end = field;
+        const int column = fields->column[fields->count % FIELDS_MAX] = (int)(next - fields->line) + 1;
+        const bool quoted = *field == '"';
         if (fields->count == FIELDS_MAX)
             return csv_fail(rows->path, rows->line, 0, error, "more than %d fields", FIELDS_MAX);
-        next = comma != NULL ? comma + 1 : NULL;
-        if (comma != NULL) *comma = '\0';
-        fields->column[fields->count] = (int)(field - fields->line) + 1;
-        field += strspn(field, " \t");
-        size_t size = strlen(field);
-        while (size > 0 && strchr(" \t", field[size - 1]) != NULL) field[--size] = '\0';
+        if (quoted) {
+            char *from = ++field;
+            for (end = field; *from != '\0' && (*from != '"' || from[1] == '"'); *end++ = *from++) from += *from == '"';
+            if (*from != '"') return csv_fail(rows->path, rows->line, column, error, "this quote is not closed");
+            next = from + 1 + strspn(from + 1, " \t");
+        } else {
+            next = end = field + strcspn(field, ",");
+            while (end > field && strchr(" \t", end[-1]) != NULL) end--;
+        }
+        if (*next != ',' && *next != '\0')
+            return csv_fail(rows->path, rows->line, column, error, "expected a comma after the closing quote");
+        next = *next == ',' ? next + 1 : NULL;
+        *end = '\0';
         fields->text[fields->count++] = field;
     }
     return true;
@@ -275,7 +285,14 @@ bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line,
     Fields fields;
     *rows = (CsvRows){.path = path, .at = text, .line = line};
     if (*text == '\0') return csv_fail(rows->path, line, 0, error, "there is no header 'frame,body,x,y,angle'");
-    if (!split(rows, &fields, error) || !find_columns(rows, &fields, error)) return false;
+    if (!split(rows, &fields, error)) return false;
+    const char *separator = fields.count == 1 ? strpbrk(fields.text[0], ";\t|") : NULL;
+    if (separator != NULL)
+        return csv_fail(rows->path, line, 0, error, "the fields are separated by %s; expected commas",
+                        *separator == ';'   ? "semicolons"
+                        : *separator == '|' ? "bars"
+                                            : "tabs");
+    if (!find_columns(rows, &fields, error)) return false;
     for (int i = COL_FRAME; i <= COL_ANGLE; i++)
         if (is_absent(rows, i))
             return csv_fail(rows->path, line, 0, error, "the column '%s' is missing; expected frame,body,x,y,angle",
@@ -305,10 +322,37 @@ static bool take_index(const CsvRows *rows, const Fields *fields, int column, in
            fail_field(rows, fields, column, error, "is not a whole number from 0 to 2147483646");
 }
 
+/* Decimal, or hexadecimal as "%a" of C prints it; or, which no float32 holds, NaN, infinite or too large. */
+static bool take_number(const char *text, double *value) {
+    const char *digits = text + (*text == '-' || *text == '+');
+    char *end;
+    if (parse_double(text, value)) return true;
+    *value = strtod(text, &end);
+    return end != text && *end == '\0' && (strncasecmp(digits, "0x", 2) == 0 || !(fabs(*value) <= (double)FLT_MAX));
+}
+
+/* The value of one in the last digit of a decimal number. */
+static double last_digit(const char *text) {
+    const size_t length = strcspn(text, "eE"), whole = strcspn(text, ".");
+    const int exponent = text[length] != '\0' ? atoi(text + length + 1) : 0;
+    return pow(10, whole < length ? exponent - (int)(length - whole - 1) : exponent);
+}
+
+/* Notes the first number that is not the text's in as many digits as the text has: as stored in float32. */
+static void note_rounding(CsvRows *rows, const char *text, float value) {
+    const bool hexadecimal = strpbrk(text, "xX") != NULL;
+    double full;
+    if (rows->rounded[0] != '\0' || strlen(text) <= FLT_DIG || !take_number(text, &full) ||
+        fabs(full - (double)value) <= (hexadecimal ? 0 : 0.500001 * last_digit(text)))
+        return;
+    snprintf(rows->rounded, sizeof rows->rounded, "%s in line %d is stored as %.9g", csv_show(text).text, rows->line,
+             (double)value);
+}
+
 bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
     Fields fields;
     *row = (CsvRow){.line = rows->line};
-    if (*rows->at == '\0' || !split(rows, &fields, error)) return false;
+    if (rows->at[strspn(rows->at, " \t\r\n")] == '\0' || !split(rows, &fields, error)) return false;
     if (fields.count != rows->width)
         return csv_fail(rows->path, rows->line, 0, error, "%d fields, but the header has %d", fields.count,
                         rows->width);
@@ -317,16 +361,21 @@ bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
         return false;
     for (int column = COL_X; column <= COL_OMEGA; column++) {
         const char *text = is_absent(rows, column) ? "0" : fields.text[rows->field[column]];
-        if (parse_float(text, &row->state[column - COL_X])) continue;
-        /* "nan", "-inf", or more than a float32 holds. */
-        char *end;
-        const double value = strtod(text, &end);
-        if (end == text || *end != '\0' || (!isnan(value) && fabs(value) <= (double)FLT_MAX))
-            return fail_field(rows, &fields, column, error, "is not a finite number");
-        row->not_finite = true;
+        float *state = &row->state[column - COL_X];
+        double value;
+        if (!parse_float(text, state)) {
+            if (!take_number(text, &value)) return fail_field(rows, &fields, column, error, "is not a finite number");
+            *state = (float)value;
+            row->not_finite = row->not_finite || !isfinite(*state);
+        }
+        if (isfinite(*state)) note_rounding(rows, text, *state);
     }
-    if (!is_absent(rows, COL_TIME) && !parse_double(fields.text[rows->field[COL_TIME]], &row->time))
-        return fail_field(rows, &fields, COL_TIME, error, "is not a finite number");
+    if (!is_absent(rows, COL_TIME)) {
+        const char *text = fields.text[rows->field[COL_TIME]];
+        if (!take_number(text, &row->time) || !isfinite(row->time))
+            return fail_field(rows, &fields, COL_TIME, error, "is not a finite number");
+        row->time_digit = last_digit(text);
+    }
     rows->line++;
     return true;
 }

@@ -44,6 +44,7 @@ PRINTF_LIKE(2, 3) static void add_note(CsvRunNotes *notes, const char *format, .
 static bool finish_bodies(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     const bool stated = import->head.states_static;
+    run->fixed_guessed = !stated;
     for (int body = 0; body < run->bodies; body++) {
         run->size[body] = import->head.bodies[body].size;
         run->fixed[body] = import->head.bodies[body].fixed;
@@ -60,6 +61,14 @@ static bool finish_bodies(CsvImport *import, Error *error) {
             run->angle[i] = run->angle[before];
             run->velocity[i] = run->velocity[before];
             run->angular_velocity[i] = run->angular_velocity[before];
+        }
+        for (int frame = 1; stated && frame < run->frames; frame++) {
+            const size_t i = trajectory_at(run, frame, body), first = trajectory_at(run, 0, body);
+            const int64_t number = import->head.bodies[body].number;
+            if (run->position[i].x != run->position[first].x || run->position[i].y != run->position[first].y ||
+                run->angle[i] != run->angle[first])
+                return csv_fail(import->path, csv_rows_find(&import->rows, import->first + frame, number), 0, error,
+                                "body %" PRId64 " is static, but moves", number);
         }
     }
     if (stated) return true;
@@ -151,24 +160,30 @@ static bool has_times(const CsvImport *import) { return import->rows.field[COL_T
 static bool choose_step(CsvImport *import, float *dt, Error *error) {
     const float stated = import->head.dt, given = import->options->dt;
     const int64_t steps = import->last - import->first;
+    const bool timed = has_times(import) && steps > 0;
+    double step = timed ? (import->last_time - import->first_time) / (double)steps : 0;
+    if (timed && !(step > 0)) return error_input(error, import->path, "the times do not rise");
+    const double rate = rint(1 / step);
+    const bool whole = fabs(rate * step - 1) < WHOLE_TOLERANCE;
+    if (whole) step = 1 / rate;
+    import->step = step;
     if (given > 0 || stated > 0) {
         *dt = given > 0 ? given : stated;
         if (given > 0 && stated > 0 && given != stated)
             add_note(import->notes, "dt is %g s, as given; the file states %g s", (double)given, (double)stated);
+        else if (given > 0 && timed && fabs(step - (double)given) > TIME_TOLERANCE * step)
+            add_note(import->notes, "dt is %g s, as given; the times of the file rise by %g s", (double)given, step);
+        if (!(given > 0)) import->step = (double)stated;
         return true;
     }
-    if (!has_times(import) || steps == 0)
+    if (!timed)
         return error_input(
             error, import->path,
             "the time step is missing: give --dt S, a line '# dt: S' above the header, or a column time%s",
             has_times(import) ? " with more than one frame" : "");
-    double step = (import->last_time - import->first_time) / (double)steps;
-    if (!(step > 0)) return error_input(error, import->path, "the times do not rise");
-    const double rate = rint(1 / step);
-    if (fabs(rate * step - 1) < WHOLE_TOLERANCE) {
-        step = 1 / rate;
+    if (whole)
         add_note(import->notes, "dt is 1/%.0f s, from the column time", rate);
-    } else
+    else
         add_note(import->notes, "dt is %.9g s, from the column time", step);
     *dt = (float)step;
     return true;
@@ -191,9 +206,9 @@ static void set_state(CsvImport *import, const CsvRow *row, int body) {
 static bool fill(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     CsvRow row;
-    /* Times are checked only where they set the step. */
-    const bool checks_times = has_times(import) && !(import->options->dt > 0 || import->head.dt > 0);
-    const double dt = (double)run->dt;
+    /* Steps are float32, and times have some digits. */
+    static const double FLOAT_TOLERANCE = 1e-7;
+    const double dt = import->step;
     csv_rows_rewind(&import->rows);
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = csv_head_body(&import->head, row.body);
@@ -205,10 +220,11 @@ static bool fill(CsvImport *import, Error *error) {
                             "body %" PRId64 " is twice in frame %" PRId64 ": also in line %d", row.body, row.frame,
                             before);
         }
-        if (checks_times && !(fabs(row.time - due) <= TIME_TOLERANCE * dt))
+        const double most = TIME_TOLERANCE * dt + row.time_digit / 2 + FLOAT_TOLERANCE * fabs(due - import->first_time);
+        if (has_times(import) && !(fabs(row.time - due) <= most))
             return csv_fail(import->path, row.line, 0, error,
-                            "time %g s does not fit to equal steps: frame %" PRId64 " is due at %g s", row.time,
-                            row.frame, due);
+                            "time %g s does not fit to equal steps of %g s: frame %" PRId64 " is due at %g s", row.time,
+                            dt, row.frame, due);
         set_state(import, &row, body);
     }
     return error->kind == ERROR_NONE;
@@ -262,6 +278,7 @@ static void note_numbers(const CsvImport *import) {
     if (head->scene[0] == '\0') add_note(notes, "the scene is called '%s'", import->run->scene);
     if (head->method[0] == '\0') add_note(notes, "the method is called '%s'", import->run->method);
     if (import->run->no_velocities) add_note(notes, "velocities are unknown: there are no columns vx, vy and omega");
+    if (import->rows.rounded[0] != '\0') add_note(notes, "numbers are rounded to float32: %s", import->rows.rounded);
     if (import->rows.ignored[0] != '\0') add_note(notes, "unknown columns are left out: %s", import->rows.ignored);
     add_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
 }
@@ -303,6 +320,18 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
     if (input) import.path = path = "standard input";
     char *text =
         input ? file_read_input(MAX_SIZE, &import.size, error) : file_read(path, MAX_SIZE, &import.size, error);
+    static const struct {
+        const char *begin, *kind;
+    } others[] = {{"\x89HDF", "HDF5"},
+                  {"PK\3\4", "a zip archive, as .npz and .xlsx are"},
+                  {"\x1f\x8b", "compressed"},
+                  {"\x93NUMPY", ".npy of NumPy"},
+                  {"PAR1", "Parquet"}};
+    for (size_t i = 0; text != NULL && i < sizeof others / sizeof *others; i++)
+        if (strncmp(text, others[i].begin, strlen(others[i].begin)) == 0) {
+            free(text);
+            return error_input(error, path, "is %s; only CSV can be imported", others[i].kind), NULL;
+        }
     bool done = text != NULL && (import.size > 0 || error_input(error, path, "the file is empty")) &&
                 (strlen(text) == import.size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
                 make_run(&import, text, error);

@@ -142,14 +142,16 @@ typedef struct CsvRows {
     const char *first;    /* the first row, */
     int first_line;       /* and its number */
     char ignored[128];    /* columns that mean nothing, separated by ", " */
+    char rounded
+        [128]; /* the first number that has more digits than a float32: "0.50000001 in line 5 is stored as 0.5" */
 } CsvRows;
 
 typedef struct CsvRow {
     int line;
     int64_t frame, body;
-    float state[6];  /* x, y, angle, vx, vy, omega; the last three 0 if absent */
-    double time;     /* s, 0 if absent */
-    bool not_finite; /* a number of the state is NaN or infinite */
+    float state[6];          /* x, y, angle, vx, vy, omega; the last three 0 if absent */
+    double time, time_digit; /* s, 0 if absent; one in its last digit */
+    bool not_finite;         /* a number of the state is NaN or infinite */
 } CsvRow;
 
 /* Reads the header at `text`, which is line `line` of the file and stays the caller's. */
@@ -177,5 +179,6 @@ typedef struct CsvImport {
     int *row_counts;              /* of each body */
     int64_t end, *ends;           /* the first frame that is not finite, and of each body; INT64_MAX: none */
     int ended;                    /* a body that is not finite in frame `end` */
+    double step;                  /* s, that the times must have */
     Trajectory *run;
 } CsvImport;

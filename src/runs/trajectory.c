@@ -147,6 +147,7 @@ static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     to->dt = from->dt * (float)step;
     to->bomb = from->bomb;
     trajectory_judge(to, from->verdict, frame >= 0 && kept < to->frames ? kept : -1, from->verdict_body);
+    to->fixed_guessed = from->fixed_guessed;
     to->no_velocities = from->no_velocities;
     to->no_contacts = from->no_contacts;
     to->no_impulses = from->no_impulses;
@@ -288,7 +289,7 @@ bool trajectory_different_worlds(const Trajectory *a, const Trajectory *b, char 
         if (memcmp(&p, &q, sizeof p) != 0)
             return snprintf(what, size, "size of body %d: %.9g x %.9g and %.9g x %.9g m", body, (double)p.x,
                             (double)p.y, (double)q.x, (double)q.y) > 0;
-        if (a->fixed[body] != b->fixed[body])
+        if (a->fixed[body] != b->fixed[body] && !a->fixed_guessed && !b->fixed_guessed)
             return snprintf(what, size, "body %d: %s and %s", body, a->fixed[body] ? "static" : "dynamic",
                             b->fixed[body] ? "static" : "dynamic") > 0;
     }

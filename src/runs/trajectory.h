@@ -45,6 +45,7 @@ typedef struct Trajectory {
     float *mass;                        /* [N] kg; NaN, in all or none: unknown; of static ones: any */
     BodyName *name;                     /* [N]; NULL: no body has a name */
     uint8_t *fixed;                     /* [N] 1: static */
+    bool fixed_guessed;                 /* nothing states `fixed`: files do not have it (trajectory_guess_fixed()) */
     Vec2 *position;                     /* [T, N]; NaN while the body does not exist, as in the next three */
     float *angle;                       /* [T, N] */
     Vec2 *velocity;                     /* [T, N] m/s */

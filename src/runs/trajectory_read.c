@@ -269,6 +269,7 @@ static bool read_bodies(Trajectory *t, NpzFile *file, const char *path, Error *e
     } else {
         if ((t->fixed = calloc(bodies + 1, sizeof *t->fixed)) == NULL) return error_memory(error, path);
         trajectory_guess_fixed(t);
+        t->fixed_guessed = true;
     }
     if (npz_has(file, "mass")) {
         if ((t->mass = npz_read(file, "mass", NPZ_FLOAT32, 1, per_body, error)) == NULL) return false;

@@ -65,7 +65,7 @@ static bool begin_npz(TrajectoryStream *stream, Error *error) {
                                                [ARRAY_BOMB] = &head->bomb,
                                                [ARRAY_CAMERA] = &head->camera_center,
                                                [ARRAY_SIZE] = head->size,
-                                               [ARRAY_FIXED] = head->fixed,
+                                               [ARRAY_FIXED] = head->fixed_guessed ? NULL : head->fixed,
                                                [ARRAY_MASS] = trajectory_has_masses(head) ? head->mass : NULL,
                                                [ARRAY_BODY_NAME] = head->name};
     stream->npz = npz_stream_create(stream->path, RUN_ARRAYS, error);

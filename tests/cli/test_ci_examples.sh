@@ -94,6 +94,10 @@ says "::error title=twinbox compare::"
 grep -q '^    differs: home.png: 400 pixels differ' summary.md || fail "the summary: $(cat summary.md)"
 [ -s mine/twinbox-report/report.html ] || fail "no report"
 action 0 "--tolerance 1"
+mkdir -p mine/twinbox-report
+touch mine/twinbox-report/results.json # of an earlier run
+action 2 "--help"
+says "these options compare nothing: --help"
 # Options are split at spaces, unless quoted; no pattern becomes the names of files.
 png "mine/the mask.png" 20 20 0 3 4 255
 action 0 '--tolerance 1 --mask "the mask.png"'

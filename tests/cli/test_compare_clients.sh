@@ -62,7 +62,20 @@ PYTHON
     printf '#!/bin/sh\nexec /usr/bin/python3 -B -m pytest -p no:cacheprovider "$@"\n' >bin/pytest
     printf '#!/bin/sh\n[ "$1" = install ] && [ -e "$2/pyproject.toml" ]\n' >bin/pip
     chmod +x bin/pytest bin/pip
-    export PYTEST_PLUGINS=pytest_twinbox PYTHONPATH=$PWD/twinbox/golden/pytest:$PWD/plots PYTHONDONTWRITEBYTECODE=1
+    # What the build makes for pip: a wheel is also a folder of modules with entry points.
+    set -- "$(dirname "$twinbox")"/clients/pytest_twinbox-*.whl
+    export PYTHONPATH=$1:$PWD/plots PYTHONDONTWRITEBYTECODE=1
+    /usr/bin/python3 - "$1" <<'PYTHON' || fail "RECORD of the wheel"
+import base64, hashlib, sys, zipfile
+wheel = zipfile.ZipFile(sys.argv[1])
+record = next(name for name in wheel.namelist() if name.endswith("/RECORD"))
+listed = {}
+for line in wheel.read(record).decode().split():
+    name, listed[name], size = line.split(",")
+assert sorted(listed) == sorted(wheel.namelist()) and len(listed) == 5, listed
+for name in set(listed) - {record}:
+    assert listed[name] == "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(wheel.read(name)).digest()).decode().rstrip("="), name
+PYTHON
     blocks pytest
     example 0 bash sh.1
     GREY=50 example 1 pytest
@@ -201,16 +214,28 @@ def test_help():
 @pytest.mark.twinbox_compare(tolerance=3)
 def test_named():
     return Picture()
+
+@pytest.mark.twinbox_compare("--tolerance", 3)
+def test_number():
+    return Picture()
+
+@pytest.mark.twinbox_compare
+def test_photo(tmp_path):
+    (tmp_path / "a.jpg").write_bytes(b"\\xff\\xd8")
+    return str(tmp_path / "a.jpg")
 PYTHON
     GREY=50 example 1 pytest --twinbox-accept kinds
     says "no picture was compared"
-    says "2 failed, 10 passed, 1 skipped" # one.custom, test_named
+    says "not tolerance="
+    says "twinbox_compare takes options as texts, not 3"
+    says "a.jpg, which is no PNG file"
+    says "4 failed, 10 passed, 1 skipped" # one.custom, test_named, test_number, test_photo
     equal "pictures of test_sign" "$(find expected/kinds -iname 'test_sign*.png' | tr A-Z a-z | sort -u | wc -l)" 6
     GREY=50 example 1 pytest kinds
-    says "3 failed, 9 passed, 1 skipped"
+    says "5 failed, 9 passed, 1 skipped"
     says "these options compare nothing: --help"
     GREY=51 example 1 pytest kinds
-    says "12 failed, 1 skipped"
+    says "14 failed, 1 skipped"
     cat >kinds/test_claims.py <<'PYTHON'
 import pytest
 
@@ -231,7 +256,8 @@ test_npm() {
     picture expected/home.png 50
     picture actual/home.png 50
     mkdir node_modules
-    ln -s ../twinbox/golden/npm node_modules/twinbox-compare
+    tar xzf "$(dirname "$twinbox")"/clients/twinbox-compare-*.tgz -C node_modules || fail "the tarball"
+    mv node_modules/package node_modules/twinbox-compare
     ln -s ../node_modules/twinbox-compare/twinbox-compare.js bin/twinbox-compare
     printf '#!/bin/sh\n[ "$1" = install ] && [ -e "$3/package.json" ]\n' >bin/npm
     printf '#!/bin/sh\nexec "$@"\n' >bin/npx
@@ -250,6 +276,8 @@ test_npm() {
     TWINBOX=$folder/bin/twinbox PATH=$(dirname "$(command -v node)") node twinbox/golden/npm/twinbox-compare.js --version >out 2>err
     equal "exit status of --version" $? 0
     says "twinbox "
+    PATH=$path node -e 'require("twinbox-compare").compare("expected", "actual", ["--help"]).catch((error) => console.log(error.message))' >out
+    equal "a promise of nothing" "$(cat out)" "these options compare nothing: --help"
     example 2 twinbox-compare expected none
     complains "none"
     rm bin/npm bin/npx

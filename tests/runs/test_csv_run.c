@@ -44,6 +44,48 @@ TEST(a_small_file_is_read) {
     assert_true(has_note("the scene is called 'file'") && has_note("units are m, s and rad; y points up"));
 }
 
+/* Quotes, blank last lines, and numbers as determinism logs have them: the bits of a float32, in hexadecimal. */
+TEST(quotes_and_bits_are_read) {
+    OWN(Trajectory) *run = read_ok("# size: 0,1,1\n\"frame\", \"body\" ,\"x\",y,\"an\"\"gle\",angle,time\n"
+                                   "0,0,\"0x1.000002p-1\",-0X1P-3,,0.25,0x0p0\n1,0,0x1.000002p-1,1,,0.25,0x1p-1\n\n \n",
+                                   &defaults);
+    assert_true(run->frames == 2 && run->dt == 0.5F && run->position[0].y == -0.125F);
+    assert_true(run->position[0].x == nextafterf(0.5F, 1) && !has_note("rounded"));
+}
+
+/* Only digits that a float32 does not have are told: it is 0.1 in one digit, and 0.100000001 in nine. */
+TEST(what_is_rounded_is_told) {
+    static const char *const numbers[] = {"0.1",       "0.100000001", "1e-3",
+                                          "123456789", "0.50000001",  "0.1000000000000000055"};
+    for (int i = 0; i < 6; i++) {
+        const char *row = printed("# dt: 1\n# size: 0,1,1\nframe,body,x,y,angle\n0,0,%s,0,0\n", numbers[i]);
+        trajectory_destroy(read_ok(row, &defaults));
+        if (has_note("numbers are rounded to float32: ") != (i >= 3)) fail_msg("%s", numbers[i]);
+    }
+    assert_true(has_note("0.1000000000000000055 in line 4 is stored as 0.100000001"));
+}
+
+/* Two runs of unstated bodies: one rests in one of them. That is a difference, not another world. */
+TEST(a_body_that_rests_in_one_run_is_not_static) {
+    TrajectoryDifference difference;
+    const char *path = temporary_path("rests.npz");
+    OWN(Trajectory) *moves = read_ok(HEAD ROWS, &defaults),
+                    *made = read_ok(HEAD "0,0,0,-0.5,0\n0,1,0,3,0\n1,0,0,-0.5,0\n1,1,0,3,0\n", &defaults);
+    assert_ok(trajectory_write(made, path, &error), error);
+    OWN(Trajectory) *rests = trajectory_read(path, &error);
+    assert_ok(rests != NULL, error);
+    assert_true(rests->fixed[1] && !moves->fixed[1]);
+    trajectory_compare(rests, moves, &difference);
+    assert_true(!difference.equal && difference.frame == 1 && difference.body == 1 && difference.what[0] == '\0');
+    assert_near(difference.rollout_mse, 1.0 / 4, 1e-12); /* 1 m, of one body in one of two frames */
+}
+
+TEST(a_given_step_may_contradict_times) {
+    OWN(Trajectory) *run = read_ok("# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n0.5,1,0,0,0,0\n",
+                                   &(CsvRunOptions){.name = "file", .dt = 0.25F});
+    assert_true(run->dt == 0.25F && has_note("dt is 0.25 s, as given; the times of the file rise by 0.5 s"));
+}
+
 /* Line ends of Windows, a byte order mark, blanks, another order of columns and rows, no last line end. */
 TEST(what_other_programs_write_is_read) {
     OWN(Trajectory) *run = read_ok("\xef\xbb\xbf# size: 0,20,1\r\n#size:1, 1, 2\r\n# made by hand\r\n"
@@ -146,7 +188,7 @@ static const struct {
     {"# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n", "a column time with more than one frame"},
     {"# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n0,1,0,0,0,0\n", "the times do not rise"},
     {"# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n0.1,1,0,0,0,0\n1,2,0,0,0,0\n",
-     "run.csv:4: error: time 0.1 s does not fit to equal steps: frame 1 is due at 0.5 s"},
+     "run.csv:4: error: time 0.1 s does not fit to equal steps of 0.5 s: frame 1 is due at 0.5 s"},
     {"# dt: 0\n" HEAD, "run.csv:1: error: dt: expected a time in seconds"},
     {"# size: 0,0,1\n" HEAD, "run.csv:1: error: size: expected BODY,WIDTH,HEIGHT"},
     {"# size: 0,1,1,fixed\n" HEAD, "run.csv:1: error: size: expected BODY,WIDTH,HEIGHT"},
@@ -154,7 +196,19 @@ static const struct {
     {"# size: 1,5,5\n" HEAD ROWS, "run.csv: error: body 1 has two sizes"},
     {"# bomb: 7\n" HEAD ROWS, "run.csv: error: the bomb is body 7, which has no size"},
     {"# camera: 0,0,-1,1\n" HEAD ROWS, "the camera's window must be finite and not negative"},
-    {"# size: 0,1,1\nframe;body;x;y;angle\n", "run.csv:2: error: the column 'frame' is missing"},
+    {"# size: 0,1,1\nframe;body;x;y;angle\n",
+     "run.csv:2: error: the fields are separated by semicolons; expected commas"},
+    {"# size: 0,1,1\nframe,body,x,\"y\n", "run.csv:2:14: error: this quote is not closed"},
+    {"# size: 0,1,1\nframe,body,x,\"y\"z\n", "run.csv:2:14: error: expected a comma after the closing quote"},
+    {HEAD ROWS "\n2,0,0,0,0\n", "run.csv:9: error: the line is empty"},
+    {HEAD "0,0,0,-0.5,0\n0,1,0x1.8q,3,0\n", "run.csv:6:5: error: x: '0x1.8q' is not a finite number"},
+    {"# dt: 1/120\n# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n0.0167,1,0,0,0,0\n",
+     "run.csv:5: error: time 0.0167 s does not fit to equal steps of 0.00833333 s: frame 1 is due at 0.00833333 s"},
+    {"# dt: 1\n# size: 0,1,1,static\n# size: "
+     "1,1,1\nframe,body,x,y,angle\n0,0,0,0,0\n0,1,0,0,0\n1,0,0,0.1,0\n1,1,0,0,0\n",
+     "run.csv:7: error: body 0 is static, but moves"},
+    {"\x89HDF\r\n\x1a\n", "run.csv: error: is HDF5; only CSV can be imported"},
+    {"PK\3\4", "run.csv: error: is a zip archive"},
     {"# size: 0,1,1\nframe,body,x,y,theta\n", "run.csv:2: error: the column 'angle' is missing"},
     {"# size: 0,1,1\nframes,body,x,y,angle\n", "run.csv:2:1: error: unknown column 'frames': did you mean 'frame'?"},
     {"# size: 0,1,1\nframe,body,x,y,angle,x\n", "run.csv:2:22: error: the column 'x' appears twice"},
