@@ -15,6 +15,7 @@
 #include "pixels/type.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -43,6 +44,8 @@ static const Option option_table[] = {
      OPTION_PATH(Options, figure.scene)},
     {"--bodies", 0, "A,B,...", "strip: show the part of the world with these bodies",
      OPTION_READ(read_bodies, Options, figure)},
+    {"--labels", 0, "KIND", "strip: in boxes that are large enough: mass (kg), number, name, or none (default)",
+     OPTION_ENUM(Options, figure.labels, look_labels_names)},
     {"--width", 0, "column|page|MM", "Width: 85 mm, 174 mm (default) or 40 to 400 mm",
      OPTION_READ(read_width, Options, figure.width), .least = FIGURE_WIDTH_MIN, .most = FIGURE_WIDTH_MAX, .group = 1},
     {"--height", 0, "MM", "strip: height of the page, 20 to 240 mm (default: as high as its cells)",
@@ -173,6 +176,7 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     if (figure->body_count > 0 && figure->view.width > 0)
         return error_input(error, "--bodies", "cannot be combined with --camera");
     if (figure->body_count > 0 && !kind->takes_bodies) return figure_refuse("--bodies", kind, error);
+    if (figure->labels != LOOK_NO_LABELS && !kind->takes_labels) return figure_refuse("--labels", kind, error);
     if (figure->view.width > 0 && !kind->takes_view) return figure_refuse("--camera", kind, error);
     if (options->view_from != NULL && !kind->takes_view) return figure_refuse("--view-from", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||
@@ -192,13 +196,15 @@ static bool figure_draw_and_write(const FigureKind *kind, const Options *options
     return ok;
 }
 
-/* A chart of the scene of a run, if its file is found by its name. */
+/* A chart of the scene of a run, if its file is found by its name and has a family of launches. */
 static void next_chart(const char *scene) {
     char path[TRAJECTORY_NAME_SIZE + 8];
     snprintf(path, sizeof path, "%s.yaml", scene);
     const char *found = access(path, R_OK) == 0 ? path : scene;
-    if (access(installed_path(found), R_OK) == 0)
+    Scene *file = access(installed_path(found), R_OK) == 0 ? scene_read(installed_path(found), &(Error){0}) : NULL;
+    if (file != NULL && file->bomb.present && launch_has_family(file))
         next_print((const char *const[]){"chart", found, "--quick", "-o", next_path(scene, "-chart").text, NULL});
+    scene_destroy(file);
 }
 
 static bool read_and_draw(const FigureKind *kind, Options *options, Error *error) {

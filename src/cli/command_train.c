@@ -171,7 +171,9 @@ static bool pair_net_run(const TrainRequest *request, Error *error) {
         printf("%s%d parameters -> %s\n", interrupt_requested() ? "stopped early; " : "",
                network_parameter_count(network), request->output);
         printf("verdict: held-out error %.6f, %.4g of the constant predictor's%s\n", score.test, share(&score),
-               share(&score) < 1 ? "" : ": no better than the constant");
+               share(&score) < 1   ? ""
+               : share(&score) > 1 ? ": worse than the constant"
+                                   : ": no better than the constant");
     }
     network_destroy(network);
     dataset_destroy(dataset);

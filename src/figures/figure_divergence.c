@@ -180,7 +180,11 @@ static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Erro
         const Pen pen = line_pen(d, i);
         for (int k = 0; k < d->frames; k++) {
             const int count = gather_points(d, &plot, d->distance[i], k, places);
-            sketch_path(sketch, places, count, &pen);
+            if (count > 1) sketch_path(sketch, places, count, &pen);
+            /* A frame alone has no line. */
+            if (count == 1)
+                plot_mark(sketch, places[0], &(PlotStyle){.symbol = METHOD_CIRCLE, .colour = d->colours[i].light.fill},
+                          0.8, 0);
             k += count;
         }
     }

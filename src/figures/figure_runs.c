@@ -304,6 +304,8 @@ static bool lay_out_cells(Strip *strip, Error *error) {
         window.height = fmax(window.height, window.width / (width / height));
     }
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
+    strip->cells.labels = spec->labels;
+    strip->cells.label_least = FIGURE_POINTS_MIN * spec->dpi / 72;
     if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
     const double used = strip->left + PAGE_EDGE + strip->count * strip->cells.width + (strip->count - 1) * strip_gap;
     strip->start = (spec->width - used) / 2 + strip->left;
@@ -371,7 +373,9 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
 
 static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
-    if (!run_colours(spec, strip.colours, error) || !run_check_worlds(spec, error)) return false;
+    if (!run_colours(spec, strip.colours, error) || !run_check_worlds(spec, error) ||
+        !look_check(&(RenderLook){.labels = spec->labels}, spec->runs, spec->run_count, error))
+        return false;
     for (int i = 0; i < spec->body_count; i++)
         if (spec->bodies[i] >= spec->runs[0]->bodies)
             return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
@@ -425,6 +429,7 @@ const FigureKind figure_strip = {
     .takes_moments = true,
     .takes_height = true,
     .takes_bodies = true,
+    .takes_labels = true,
     .draw = strip_draw,
     .caption = strip_caption,
 };

@@ -52,6 +52,8 @@ typedef struct RunCells {
     Camera camera;
     int columns, rows; /* pixels */
     Still *still;
+    LookLabels labels;  /* in boxes; none, unless set */
+    double label_least; /* pixels */
 } RunCells;
 
 /* Chooses the largest size that fits into width x height mm. Free the cells also after a failure. */

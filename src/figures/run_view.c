@@ -114,7 +114,7 @@ void run_cells_free(RunCells *cells) {
 
 Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, const RunColours *colours, StillParts parts,
                         Error *error) {
-    const StillShot shot = {run, frame, colours->light, parts, cells->camera};
+    const StillShot shot = {run, frame, colours->light, parts, cells->camera, cells->labels, cells->label_least};
     Image *image = image_create(cells->columns, cells->rows, error);
     if (image == NULL || still_draw(cells->still, &shot, image, error)) return image;
     image_destroy(image);

@@ -97,11 +97,12 @@ static bool draw_label(const Picture *picture, int panel, int run, int body, con
     const double side = 2 * fmin(shape->half_width, shape->half_height);
     const double most = LABEL_CIRCLE * side / sqrt(ems * ems + LABEL_CAP * LABEL_CAP);
     const Rect *rect = &picture->layout.panels[panel];
-    if (!(most >= LABEL_LEAST) || !(shape->x > rect->left && shape->x < rect->right) ||
-        !(shape->y > rect->top && shape->y < rect->bottom))
-        return false;
-    const Font font = font_pick(FONT_SEMIBOLD, most);
+    const double least = fmax(picture->label_least, LABEL_LEAST);
+    const Font font = font_pick(FONT_SEMIBOLD, fmax(most, least));
     const int width = font_width(&font, text), height = (int)ceil(LABEL_CAP * font.pixels);
+    if (!(most >= least || width * width + height * height <= side * side) ||
+        !(shape->x > rect->left && shape->x < rect->right) || !(shape->y > rect->top && shape->y < rect->bottom))
+        return false;
     const int left = (int)rint(shape->x - width / 2.0), baseline = (int)rint(shape->y + height / 2.0);
     if (left < rect->left || left + width > rect->right || baseline - height < rect->top || baseline > rect->bottom)
         return false;

@@ -152,6 +152,15 @@ void card_plan(Picture *picture) {
     }
 }
 
+/* The verdict of a run without figures behind what happened, as in pages (player/time.js): up to " (", or to "; " unless a count
+   of boxes follows. */
+static void short_verdict(const Trajectory *run, char *text, size_t size) {
+    size_t length = 0;
+    for (const char *at; *(at = run->verdict + length) != '\0' && strncmp(at, " (", 2) != 0; length++)
+        if (strncmp(at, "; ", 2) == 0 && strncmp(at + 2 + strspn(at + 2, "0123456789"), " of ", 4) != 0) break;
+    snprintf(text, size, "%.*s", (int)length, run->verdict);
+}
+
 static void draw_end(const Card *card) {
     static const char *const heads[] = {"at the end", "largest", "> 1 mm at"};
     const Picture *picture = card->picture;
@@ -172,7 +181,11 @@ static void draw_end(const Card *card) {
     for (int run = 0; run < picture->count; run++) {
         baseline = row_baseline(card, first, run) + scaled(card, 0.02);
         caption_method(picture, run, title, note);
-        add_run(card, run, title, baseline, run != base ? columns[0] - column : card->right);
+        short_verdict(picture->runs[run], text, sizeof text);
+        const int right = run != base && picture->count > 1 ? columns[0] - column : card->right,
+                  up = text[0] != '\0' ? scaled(card, NOTES_DROP / 2) : 0;
+        add_run(card, run, title, baseline - up, right);
+        if (up > 0) add_left(card, &picture->layout.axis, text, card->names, baseline + 2 * up / 3, right);
         if (run == base) continue;
         const CardRow *row = &picture->card_rows[run];
         const double distances[] = {row->last, row->largest};

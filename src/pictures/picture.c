@@ -130,8 +130,7 @@ static Layout choose_grid(const Picture *picture, const CameraFrame *frame, int 
     for (int columns = 1; columns <= count; columns++) {
         const Layout layout = layout_make(width, height, count, columns, rows);
         const Rect *panel = &layout.panels[0];
-        if (width_of(panel) < caption_least_width(picture, false) || height_of(panel) <= 0)
-            continue;
+        if (width_of(panel) < caption_least_width(picture, false) || height_of(panel) <= 0) continue;
         const bool whole = width_of(panel) >= caption_least_width(picture, true);
         const double scale = scale_in(&layout, frame), worth = scale / (whole ? GAIN : GAIN_WITH_CUT_NAMES);
         if (worth <= usual_scale || worth <= largest) continue;

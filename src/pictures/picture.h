@@ -287,6 +287,7 @@ typedef struct Picture {
     int frames; /* of the longest run */
     Layout layout;
     Camera camera;           /* for a panel whose upper left corner is (0, 0) */
+    double label_least;      /* pixels: letters of labels that are smaller are not drawn; 0: LABEL_LEAST */
     double grid_scale;       /* pixels per metre used to choose the grid; constant while the camera moves */
     double largest_distance; /* m, over the whole run */
     const char *title;       /* as in RenderOptions; must outlive the picture */

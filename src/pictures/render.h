@@ -118,6 +118,8 @@ typedef struct StillShot {
     BodyColors colours; /* of the bodies */
     StillParts parts;
     Camera camera; /* for the whole image */
+    LookLabels labels;
+    double label_least; /* pixels: smaller letters are not drawn */
 } StillShot;
 
 typedef struct Still Still;

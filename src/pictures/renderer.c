@@ -184,7 +184,12 @@ void still_destroy(Still *still) {
 
 bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error) {
     /* A picture of one panel without margins, in the requested colours. */
-    Picture picture = {.count = 1, .frames = shot->run->frames, .camera = shot->camera, .theme = theme_get(LOOK_LIGHT)};
+    Picture picture = {.count = 1,
+                       .frames = shot->run->frames,
+                       .camera = shot->camera,
+                       .theme = theme_get(LOOK_LIGHT),
+                       .look.labels = shot->labels,
+                       .label_least = shot->label_least};
     picture.layout.panels[0] = (Rect){0, 0, still->on_white->width, still->on_white->height};
     picture.runs[0] = shot->run;
     picture.colours[0].light = shot->colours;

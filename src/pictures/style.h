@@ -38,7 +38,9 @@ static const double LABEL_EMS = 0.64,
                     LABEL_CAP = 0.73;     /* width of a digit and height of capitals / size of the letters */
 static const int LABEL_DIGITS = 2;        /* shorter texts have the size of one with so many */
 static const double LABEL_MEASURED = 100; /* pixels, size of the letters of which the width of a name is known */
-static const double LABEL_LEAST = 10;     /* pixels, size of the letters; smaller ones cannot be read */
+static const double LABEL_LEAST =
+    9; /* pixels, size of the letters: the smallest that the font has. Where they fit into the
+                                        box's own circle, they are drawn in smaller boxes, too */
 static const double LABEL_DARK_FROM =
     0.22; /* luminance (of colours squared) from which dark text has more contrast than light */
 static const double RED_LIGHT = 0.2126, GREEN_LIGHT = 0.7152, BLUE_LIGHT = 0.0722; /* of sRGB: ITU-R BT.709 */

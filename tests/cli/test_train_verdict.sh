@@ -9,9 +9,9 @@ run 0 dataset single.yaml -o pairs.npz --bomb-x=-2:2:0.5
 
 # Random weights are no better than always predicting the mean; 20 steps of Levenberg-Marquardt are.
 run 0 train pairs.npz -o net.npz --iterations 0
-says "of the constant predictor's: no better than the constant"
+says "of the constant predictor's: worse than the constant"
 run 0 train pairs.npz -o net.npz --optimizer lm --iterations 20
-equal "no better than the constant" "$(grep -c 'no better' out)" 0
+equal "worse than the constant" "$(grep -c 'worse' out)" 0
 share=$(sed -nE 's/^verdict: held-out error [0-9.]+, ([0-9.]+) of the constant predictor.s$/\1/p' out)
 awk -v share="$share" 'BEGIN { exit !(share > 0 && share < 1) }' || fail "share of the constant's error: '$share'"
 # The last line of the table and the verdict have the same error (training that ends at its best).

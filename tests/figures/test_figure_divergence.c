@@ -4,6 +4,7 @@
 #include "figures/plot.h"
 #include "figures/sketch.h"
 #include "figures/run_figure.h"
+#include "pixels/type.h"
 
 #define STACK SOURCE_DIR "/scenes/stack.yaml"
 
@@ -41,6 +42,29 @@ TEST(growth_by_a_factor_is_a_straight_line) {
     }
     assert_texts(&sketch, "pair-net vs engine", "largest distance (m)", "time (s)", "0.0", "1.0");
     free_drawn(&sketch, runs, 2);
+}
+
+/* One frame that differs is a mark at its time, and the label of the axis is on the page. */
+TEST(a_frame_alone_is_drawn) {
+    Trajectory *runs[] = {run_make("engine", 61), run_make("pair-net", 61)};
+    run_position(runs[1], 30, SECOND_BOX)->y += 0.5F;
+    FigureSpec spec = spec_of(runs, 2);
+    Sketch none, drawn;
+    spec.width = FIGURE_WIDTH_MIN;
+    draw_kind(&drawn, "divergence", &spec);
+    const SketchMark *label = NULL, *dot = NULL;
+    for (size_t i = 0; i < drawn.mark_count; i++) {
+        const SketchMark *mark = &drawn.marks[i];
+        if (mark->kind == MARK_TEXT && strcmp(drawn.texts + mark->text, "largest distance (m)") == 0) label = mark;
+        if (mark->kind == MARK_PATH && mark->closed && mark->count > 8) dot = mark;
+    }
+    assert_true(label != NULL && dot != NULL);
+    const double half = type_width("largest distance (m)", spec.points) / 2;
+    assert_true(label->at.y - half > 0 && label->at.y + half < drawn.height);
+    sketch_free(&drawn);
+    *run_position(runs[1], 30, SECOND_BOX) = *run_position(runs[0], 30, SECOND_BOX);
+    assert_refused(figure_kind("divergence", &error)->draw(&none, &spec, &error), "never diverges");
+    for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
 }
 
 TEST(a_plot_places_decades_evenly) {

@@ -29,6 +29,29 @@ TEST(every_run_has_a_row_and_every_moment_a_column) {
     free_drawn(&sketch, runs, 2);
 }
 
+/* Pixels of the images that are light where a box without a label is dark, or dark where it is light. */
+static int count_changed(const Sketch *plain, const Sketch *labelled) {
+    const Image *a = nth_mark(plain, MARK_IMAGE, 0)->image, *b = nth_mark(labelled, MARK_IMAGE, 0)->image;
+    int count = 0;
+    for (int i = 0; i < 4 * a->width * a->height; i++) count += abs(a->pixels[i] - b->pixels[i]) > 60;
+    return count;
+}
+
+TEST(boxes_have_labels) {
+    Trajectory *run = run_make("engine", 31);
+    FigureSpec spec = spec_of(&run, 1);
+    spec.moments = 1;
+    Sketch plain, labelled;
+    draw_kind(&plain, "strip", &spec);
+    spec.labels = LOOK_NUMBERS;
+    draw_kind(&labelled, "strip", &spec);
+    assert_true(count_changed(&plain, &labelled) > 100);
+    sketch_free(&labelled);
+    spec.labels = LOOK_NAMES;
+    expect_kind_refused("strip", &spec, "no body of run 1 (engine) has one");
+    free_drawn(&plain, &run, 1);
+}
+
 TEST(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run) {
     Trajectory *runs[] = {run_make("engine", 121), run_make("engine", 61)};
     FigureSpec spec = spec_of(runs, 2);

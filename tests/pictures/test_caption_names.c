@@ -167,6 +167,24 @@ TEST_WITH(a_caption_of_the_options_is_whole_or_refused, make, destroy) {
     assert_refused(picture_check(panels, 6, &options, &error), "--caption", "lines in panels of this size");
 }
 
+/* What happened, without figures behind it: counts of boxes stay. */
+TEST_WITH(the_end_card_has_the_verdicts, make, destroy) {
+    static const char *const verdicts[][2] = {{"collapses; 8 of 10 fell (most: 2 m)", "collapses; 8 of 10 fell"},
+                                              {"settles at 3 s; slides by 5 m", "settles at 3 s"}};
+    const RenderOptions options = {.width = 1280, .height = 720, .end_card = true};
+    Picture picture;
+    OWN(Drawing) drawing = {0};
+    for (int i = 0; i < 2; i++) trajectory_judge(runs[i], verdicts[i][0], 3, -1);
+    assert_ok(picture_plan(&picture, panels, 2, 1280, 720, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
+    card_draw(&picture, (Moment){MOMENT_END, 11, 0, 1, 1}, &drawing);
+    for (int i = 0; i < 2; i++) {
+        assert_true(has_text(&drawing, &picture.layout.axis, verdicts[i][1]));
+        assert_false(has_text(&drawing, &picture.layout.axis, verdicts[i][0]));
+    }
+    picture_free(&picture);
+}
+
 TEST(room_is_shared_fairly) {
     const int widths[] = {10, 50, 20, 90};
     assert_true(caption_fair_width(widths, 4, 170) >= 90);

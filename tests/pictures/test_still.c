@@ -15,7 +15,7 @@ static Image *shoot(const Trajectory *run, int frame, uint32_t fill, StillParts 
     Error error = {0};
     Still *still = still_create(SIDE, SIDE, &error);
     Image *image = image_sized(SIDE, SIDE);
-    const StillShot shot = {run, frame, {fill, fill, fill}, parts, camera};
+    const StillShot shot = {run, frame, {fill, fill, fill}, parts, camera, LOOK_NO_LABELS, 0};
     assert_ok(still != NULL && still_draw(still, &shot, image, &error), error);
     still_destroy(still);
     return image;

@@ -89,8 +89,8 @@ function box_label(run, body) {
   const text = view.labels === "name" ? named[body] : String(view.labels === "mass" ? Number(mass[body].toPrecision(3)) : body);
   if (text === "") return null;
   const most = LABEL_CIRCLE * eye.scale * min(...size[body]) / hypot(label_ems(text), LABEL_CAP);
-  if (!(most >= LABEL_LEAST)) return null;
-  const font = font_of(600, most), wide = text_width(font, text), high = ceil(LABEL_CAP * font.em);
+  const font = font_of(600, max(most, LABEL_LEAST)), wide = text_width(font, text), high = ceil(LABEL_CAP * font.em);
+  if (!(most >= LABEL_LEAST || hypot(wide, high) <= eye.scale * min(...size[body]))) return null;
   const {x, y} = place(pose(run, now, body)), start = rint(x - wide / 2), baseline = rint(y + high / 2);
   if (start < left || start + wide > left + width || baseline - high < top || baseline > top + height) return null;
   const [red, green, blue] = channels(body_colours(run, body).fill).map(part => part / 255);

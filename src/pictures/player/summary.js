@@ -20,7 +20,8 @@ function parting(run) {
   if (!compared) return why && `cannot be compared (${cut(why, 200)})`;
   if (visible >= 0) return `parts from ${names[0]} at ${seconds(visible).toFixed(2)} s`;
   if (may_yet_part(run)) return "";
-  return differs ? `stays with ${names[0]}` : `equals ${names[0]}, bit for bit`;
+  const most = distances.reduce((largest, metres) => metres > largest ? metres : largest, 0);
+  return differs ? `stays within ${metric(most, "m")} of ${names[0]}` : `equals ${names[0]}, bit for bit`;
 }
 
 /* One for each panel, in its colour: who stands, who fell, when it parts from the first. */
