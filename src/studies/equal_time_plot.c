@@ -204,11 +204,10 @@ static uint32_t colour_of(double ratio) {
 
 static double linear(uint32_t channel) { return pow(channel / 255.0, 2.2); }
 
-/* White where it has a contrast of at least 3.5 (WCAG 2), else black. */
+/* White or black, whichever has more contrast (WCAG 2): at least the root of 21. */
 static uint32_t ink_on(uint32_t rgb) {
-    const double lightest = 1.05 / 3.5 - 0.05;
     const double luminance = 0.2126 * linear(rgb >> 16) + 0.7152 * linear(rgb >> 8 & 255) + 0.0722 * linear(rgb & 255);
-    return luminance < lightest ? 0xFFFFFF : 0x000000;
+    return 1.05 / (luminance + 0.05) > (luminance + 0.05) / 0.05 ? 0xFFFFFF : 0x000000;
 }
 
 static void draw_box(Sketch *sketch, PlotBox box, uint32_t colour, uint32_t line) {
