@@ -164,6 +164,11 @@ CsvShown csv_show(const char *text) {
     return shown;
 }
 
+bool csv_is_computed(const char *text) {
+    double number;
+    return *text != '\0' && strchr("=+-@'", *text) != NULL && !parse_double(text, &number);
+}
+
 void csv_put(FILE *file, const char *text, bool quoted) {
     if (!quoted && text[strcspn(text, ",\"\r\n")] == '\0') {
         fputs(text, file);

@@ -45,6 +45,10 @@ CsvShown csv_show(const char *text);
 /* Writes a field, in quotes if it needs them or `quoted` is set. */
 void csv_put(FILE *file, const char *text, bool quoted);
 
+/* Whether a spreadsheet takes the text for a formula, or its first apostrophe for its own. Texts of tables that it does
+   are written behind an apostrophe, which it takes for "this is text", and read without. */
+bool csv_is_computed(const char *text);
+
 /* Rows of structs, read from and written to CSV files. The module that writes a file declares its layout
    once, as a constant beside the row's struct; writers and readers share it:
 

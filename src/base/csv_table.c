@@ -41,12 +41,21 @@ static bool check_row(const char *where, const CsvLayout *layout, const void *ro
     return true;
 }
 
+/* Far more than any row of numbers and names takes. */
+enum { ROW_MAX_SIZE = 1200 };
+
 static void print_row(FILE *file, const CsvLayout *layout, const void *row) {
     for (int i = 0; i < layout->column_count; i++) {
         const CsvColumn *column = &layout->columns[i];
         switch (column->kind) {
         case CSV_TEXT:
-        case CSV_NAME: csv_put(file, text_of(column, row), column->quoted); break;
+        case CSV_NAME: {
+            char apart[ROW_MAX_SIZE];
+            const char *text = text_of(column, row);
+            snprintf(apart, sizeof apart, "'%s", text);
+            csv_put(file, csv_is_computed(text) ? apart : text, column->quoted);
+            break;
+        }
         case CSV_WORD: csv_put(file, column->words[integer_of(column, row)], false); break;
         case CSV_INTEGER: fprintf(file, "%d", integer_of(column, row)); break;
         default:
@@ -87,9 +96,6 @@ bool csv_table_write(const char *path, const CsvLayout *layout, const void *rows
     return file_write_text(path, print_table, &all, error);
 }
 
-/* Far more than any row of numbers and names takes. */
-enum { ROW_MAX_SIZE = 1200 };
-
 size_t csv_plain_length(const char *text) {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
     enum { AFTER_CONTROLS = 0xA1 };
@@ -123,6 +129,7 @@ static bool refuse_cell(const CsvCell *cell, Error *error, const char *what) {
 static bool read_text(const CsvCell *cell, const char **member, Error *error) {
     const char *text = cell_text(cell);
     const bool name = cell->column->kind == CSV_NAME;
+    text += *text == '\'' && csv_is_computed(text + 1);
     const size_t most = name ? CSV_NAME_SIZE - 1 : (size_t)cell->column->maximum;
     char what[64];
     snprintf(what, sizeof what, "is longer than %zu bytes", most);

@@ -310,6 +310,10 @@ char *talk_line(Talk *talk, size_t most, double until) {
     }
     char *line = talk->unread + talk->begin;
     talk->begin = (size_t)(end + 1 - talk->unread);
+    if (memchr(line, '\0', (size_t)(end - line)) != NULL) {
+        talk_failed(talk, "has written a NUL byte in a line of text");
+        return NULL;
+    }
     if (end > line && end[-1] == '\r') end--;
     *end = '\0';
     return line;

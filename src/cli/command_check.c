@@ -86,10 +86,22 @@ static void print_bodies(FILE *out, const Scene *scene) {
 
 /* Where the engine's lengths do not fit the scene: shares of the smallest side of a box. */
 typedef struct Fit {
-    double side; /* m; INFINITY: no box */
-    double slop; /* of that, what contacts leave uncorrected */
-    double step; /* of that, how far a box at rest falls in a step before its contact is felt */
+    double side;              /* m; INFINITY: no box */
+    double slop;              /* of that, what contacts leave uncorrected */
+    double step;              /* of that, how far a box at rest falls in a step before its contact is felt */
+    double apart, moved, far; /* m: positions as float32, the motion of a body in a step, there; `far` from 0 */
 } Fit;
+
+/* The body that loses the largest share of its motion, as stated or after a fall by `side`, to the rounding of its
+   position. */
+static void find_rounding(Fit *fit, const BodyDef *body, double dt, double pull) {
+    const double speed = vec2_distance(body->velocity, vec2(0, 0));
+    const float far = fmaxf(fabsf(body->position.x), fabsf(body->position.y));
+    const double apart = (double)(nextafterf(far, INFINITY) - far),
+                 moved = dt * (speed > 0 ? speed : sqrt(pull * fit->side));
+    if (moved > 0 && apart * fit->moved >= fit->apart * moved)
+        fit->apart = apart, fit->moved = moved, fit->far = (double)far;
+}
 
 static Fit find_fit(const Scene *scene) {
     const double dt = (double)scene->dt, pull = vec2_distance(scene->gravity, vec2(0, 0));
@@ -97,13 +109,18 @@ static Fit find_fit(const Scene *scene) {
     for (int i = 0; i < scene->body_count; i++)
         if (!scene->bodies[i].fixed)
             side = fmin(side, fmin((double)scene->bodies[i].size.x, (double)scene->bodies[i].size.y));
-    return (Fit){side, (double)CONTACT_SLOP / side, pull * dt * dt / side};
+    Fit fit = {.side = side, .slop = (double)CONTACT_SLOP / side, .step = pull * dt * dt / side, .moved = 1};
+    for (int i = 0; i < scene->body_count; i++)
+        if (!scene->bodies[i].fixed) find_rounding(&fit, &scene->bodies[i], dt, pull);
+    const BodyDef bomb = scene_bomb_body(scene);
+    if (scene->bomb.present) find_rounding(&fit, &bomb, dt, pull);
+    return fit;
 }
 
-static bool check_fits(const Fit *fit) {
-    const double most = 0.05;
-    return fit->slop <= most && fit->step <= most;
-}
+static const double SMALL = 0.05; /* as a share of a side, or of a motion */
+static bool check_rounding(const Fit *fit) { return fit->apart / 2 <= SMALL * fit->moved; }
+
+static bool check_fits(const Fit *fit) { return fit->slop <= SMALL && fit->step <= SMALL; }
 
 static void print_fit(FILE *out, const Scene *scene) {
     const Fit fit = find_fit(scene);
@@ -113,6 +130,12 @@ static void print_fit(FILE *out, const Scene *scene) {
             "    size: of the smallest side, %.3g m, contacts leave %.3g%% as overlap (slop, %g m), and a box falls by "
             "%.3g%% in a step: make the scene larger, or dt shorter\n",
             fit.side, 100 * fit.slop, (double)CONTACT_SLOP, 100 * fit.step);
+    if (!check_rounding(&fit))
+        fprintf(
+            out,
+            "    rounding: %.6g m from 0, positions are %.3g m apart (float32), and a body moves by %.3g m in a step: "
+            "make dt longer, or move the scene towards 0\n",
+            fit.far, fit.apart, fit.moved);
     if (fit.side < (double)CONTACT_THIN)
         fprintf(out,
                 "    thin: boxes under %g m that lie on one another can change places with the engine, which has "
@@ -241,6 +264,13 @@ static void write_result(JsonWriter *json, const void *context) {
         json_put_number(json, "smallest_side", fit.side);
         json_put_number(json, "slop", fit.slop);
         json_put_number(json, "step", fit.step);
+        json_end(json);
+    }
+    if (!json_put_absent(json, "rounding", check_rounding(&fit))) {
+        json_begin_object(json, "rounding", JSON_ONE_LINE);
+        json_put_number(json, "from_0", fit.far);
+        json_put_number(json, "apart", fit.apart);
+        json_put_number(json, "moved", fit.moved);
         json_end(json);
     }
     if (!json_put_absent(json, "bomb", !scene->bomb.present)) put_bomb(json, scene, checked->misses);

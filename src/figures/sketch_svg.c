@@ -49,7 +49,7 @@ static bool write_glyphs(FILE *file, const Sketch *sketch) {
 
 /* Characters not allowed in XML and bytes that are not UTF-8 become '?'. */
 static void write_escaped(FILE *file, const char *text) {
-    while (*text != '\0') {
+    for (const char *begin = text; *text != '\0';) {
         const char *from = text;
         unsigned code = utf8_next(&text);
         switch (code) {
@@ -57,7 +57,9 @@ static void write_escaped(FILE *file, const char *text) {
         case '<': fputs("&lt;", file); break;
         case '"': fputs("&quot;", file); break;
         default:
-            if (code < ' ' || code == 0xFFFD || code >= 0xFFFE)
+            if (code == '>' && from - begin >= 2 && from[-1] == ']' && from[-2] == ']') /* ends a CDATA section only */
+                fputs("&gt;", file);
+            else if (code < ' ' || code == 0xFFFD || code >= 0xFFFE)
                 fputc('?', file);
             else
                 fwrite(from, 1, (size_t)(text - from), file);

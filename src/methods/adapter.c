@@ -134,17 +134,19 @@ static void print_hello(FILE *out, const void *context) {
 }
 
 static bool read_hello(Adapter *adapter, const MethodDescription *method, const char *line) {
-    char key[32], form[16] = "json", answers[16] = "states", message[200] = "";
+    char key[32], form[16] = "", answers[16] = "", message[TALK_WHY_SIZE - 8] = "";
     ProgramName program = {"", ""};
     double number = 0;
     const char *at = line;
     for (bool first = true; line_take_key(&at, first, key, sizeof key); first = false)
-        if (strcmp(key, "twinbox") == 0   ? !line_take_number(&at, &number)
-            : strcmp(key, "name") == 0    ? !line_take_text(&at, program.name, sizeof program.name)
-            : strcmp(key, "version") == 0 ? !line_take_text(&at, program.version, sizeof program.version)
-            : strcmp(key, "form") == 0    ? !line_take_text(&at, form, sizeof form)
-            : strcmp(key, "answers") == 0 ? !line_take_text(&at, answers, sizeof answers)
-            : strcmp(key, "error") == 0   ? !line_take_text(&at, message, sizeof message)
+        if (strcmp(key, "twinbox") == 0 ? number != 0 || !line_take_number(&at, &number)
+            : strcmp(key, "name") == 0
+                ? program.name[0] != '\0' || !line_take_text(&at, program.name, sizeof program.name, false)
+            : strcmp(key, "version") == 0
+                ? program.version[0] != '\0' || !line_take_text(&at, program.version, sizeof program.version, false)
+            : strcmp(key, "form") == 0    ? form[0] != '\0' || !line_take_text(&at, form, sizeof form, false)
+            : strcmp(key, "answers") == 0 ? answers[0] != '\0' || !line_take_text(&at, answers, sizeof answers, false)
+            : strcmp(key, "error") == 0   ? message[0] != '\0' || !line_take_text(&at, message, sizeof message, true)
                                           : true)
             return adapter_not_understood(adapter, "its first line", line);
     if (!line_take_end(&at)) return adapter_not_understood(adapter, "its first line", line);
@@ -157,14 +159,14 @@ static bool read_hello(Adapter *adapter, const MethodDescription *method, const 
         control_in_text(program.version) != 0)
         return adapter_failed(adapter, "does not say its name and version: '%.60s'", line);
     adapter->binary = strcmp(form, "binary") == 0;
-    if (!adapter->binary && strcmp(form, "json") != 0)
+    if (!adapter->binary && form[0] != '\0' && strcmp(form, "json") != 0)
         return adapter_failed(adapter, "wants the form '%s'; known: json, binary", form);
-    const bool states = strcmp(answers, "states") == 0;
+    const bool states = answers[0] == '\0' || strcmp(answers, "states") == 0;
     if (!states && strcmp(answers, "impulses") != 0)
         return adapter_failed(adapter, "answers '%s'; known: states, impulses", answers);
     if (!states && adapter->binary) return adapter_failed(adapter, "wants the form 'binary'; impulses have: json");
     if (states != method->whole_scenes)
-        return adapter_failed(adapter, "answers %s, which '%s:PROGRAM' takes", answers,
+        return adapter_failed(adapter, "answers %s, which '%s:PROGRAM' takes", states ? "states" : "impulses",
                               states ? "exec" : "exec-solver");
     pthread_mutex_lock(&lock);
     Note *note = find_note(adapter->key);

@@ -84,8 +84,9 @@ bool adapter_failed(Adapter *adapter, const char *format, ...) PRINTF_LIKE(2, 3)
 bool adapter_not_understood(Adapter *adapter, const char *what, const char *line);
 
 /* JSON of one line, as far as answers have it: base/json.h is not for threads. line_take_key begins with the "{" or the
-   "," before a key, and ends behind its ":"; it is false at the end of the object, and if there is no key. */
-bool line_take_text(const char **at, char *text, size_t size);
+   "," before a key, and ends behind its ":"; it is false at the end of the object, and if there is no key. A text that
+   does not fit into `size` is refused, or cut, with "...". */
+bool line_take_text(const char **at, char *text, size_t size, bool cut);
 bool line_take_number(const char **at, double *number);
 bool line_take_key(const char **at, bool first, char *key, size_t size);
 bool line_take_end(const char **at);

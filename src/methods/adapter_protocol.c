@@ -74,8 +74,9 @@ static bool take_escape(const char **at, uint32_t *character) {
     return true;
 }
 
-bool line_take_text(const char **at, char *text, size_t size) {
+bool line_take_text(const char **at, char *text, size_t size, bool cut) {
     size_t length = 0;
+    bool full = false;
     if (!take(at, '"')) return false;
     for (; **at != '"';) {
         char bytes[4] = {**at};
@@ -86,11 +87,14 @@ bool line_take_text(const char **at, char *text, size_t size) {
             if (!take_escape(at, &character)) return false;
             count = utf8_put(bytes, character);
         }
-        if (length + count >= size) return false;
+        full = full || length + count >= size;
+        if (full && !cut) return false;
+        if (full) continue;
         memcpy(text + length, bytes, count);
         length += count;
     }
     text[length] = '\0';
+    if (full) strcpy(text + utf8_cut(text, size - sizeof "..."), "...");
     ++*at;
     return true;
 }
@@ -106,7 +110,7 @@ bool line_take_number(const char **at, double *number) {
 }
 
 bool line_take_key(const char **at, bool first, char *key, size_t size) {
-    return take(at, first ? '{' : ',') && line_take_text(at, key, size) && take(at, ':');
+    return take(at, first ? '{' : ',') && line_take_text(at, key, size, false) && take(at, ':');
 }
 
 bool line_take_end(const char **at) {
@@ -299,7 +303,7 @@ static bool check_place(Adapter *adapter, double scene, double frame) {
 }
 
 static bool take_line(Adapter *adapter, const AnswerForm *form, int items, const char *line, Answer *answer) {
-    char key[32], message[200] = "";
+    char key[32], message[TALK_WHY_SIZE - 8] = "";
     bool found = false;
     const char *at = line;
     for (bool first = true; line_take_key(&at, first, key, sizeof key); first = false) {
@@ -307,12 +311,13 @@ static bool take_line(Adapter *adapter, const AnswerForm *form, int items, const
             if (found || !take_numbers(adapter, form, items, &at))
                 return found ? adapter_not_understood(adapter, "its answer", line) : false;
             found = true;
-        } else if (strcmp(key, "scene") == 0     ? !line_take_number(&at, &answer->scene)
-                   : strcmp(key, "frame") == 0   ? !line_take_number(&at, &answer->frame)
-                   : strcmp(key, "problem") == 0 ? !line_take_number(&at, &answer->problem)
-                   : strcmp(key, "ns") == 0      ? !line_take_number(&at, &answer->ns)
-                   : strcmp(key, "error") == 0   ? !line_take_text(&at, message, sizeof message)
-                                                 : true) {
+        } else if (strcmp(key, "scene") == 0     ? answer->scene != -1 || !line_take_number(&at, &answer->scene)
+                   : strcmp(key, "frame") == 0   ? answer->frame != -1 || !line_take_number(&at, &answer->frame)
+                   : strcmp(key, "problem") == 0 ? answer->problem != -1 || !line_take_number(&at, &answer->problem)
+                   : strcmp(key, "ns") == 0      ? answer->ns != -1 || !line_take_number(&at, &answer->ns)
+                   : strcmp(key, "error") == 0
+                       ? message[0] != '\0' || !line_take_text(&at, message, sizeof message, true)
+                       : true) {
             return adapter_not_understood(adapter, "its answer", line);
         }
     }

@@ -225,7 +225,7 @@ static bool split(CsvRows *rows, Fields *fields, Error *error) {
     fields->line[used] = '\0';
     rows->at += length + (rows->at[length] == '\n');
     for (char *next = fields->line; next != NULL;) {
-        char *field = next + strspn(next, " \t"), *end = field;
+        char *field = next + strspn(next, " \t"), *end;
         const int column = fields->column[fields->count % FIELDS_MAX] = (int)(next - fields->line) + 1;
         const bool quoted = *field == '"';
         if (fields->count == FIELDS_MAX)

@@ -74,6 +74,24 @@ TEST(each_kind_fills_its_member) {
     assert_true(isnan(rows[1].optional));
 }
 
+/* No spreadsheet computes a name; read back, it is the same. Numbers stay numbers. */
+TEST(names_are_no_formulas) {
+    static const char *const texts[] = {"=1+1", "@SUM(A1)", "+a", "-2-3", "'=x", "-0.5", "a=1"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        const Row row = {.text = texts[i], .name = "", .word = RED};
+        const char *path = temporary_path("names.csv");
+        assert_ok(csv_table_write(path, &all, &row, 1, &error), error);
+        size_t size;
+        FREED char *written = read_whole(path, &size);
+        const char *field = strchr(written, '\n') + 1;
+        assert_int_equal(*field == '\'', i < 5);
+        CsvTable table;
+        assert_ok(csv_table_read(&table, path, &all, &error), error);
+        assert_string_equal(((const Row *)table.rows)->text, texts[i]);
+        csv_table_free(&table);
+    }
+}
+
 TEST(columns_are_found_by_name) {
     CsvTable table =
         read_good(&all, "optional,word,more,more,text,integer,number,single,name\n1,green,,\"x;y\",t,1,2,3,n\n");

@@ -61,6 +61,10 @@ if kind == "escapes":
     say('{"error": "no \\"lib\\" in C:\\\\x\\/\\u00fc \\ud83d\\ude00"}\n')
 if kind == "lone":
     say('{"error": "\\ud83d"}\n')
+if kind == "doubled":
+    say('{"twinbox": 1, "name": "fall", "name": "rise", "version": "1"}\n')
+if kind == "wordy":
+    say(json.dumps({"error": "much " * 200}) + "\n")
 if kind == "garbage":
     say("Loading the engine...\n")
     sleep_for_ever()
@@ -121,6 +125,10 @@ for line in sys.stdin:
         text = json.dumps(answer)
         if kind == "comma":
             text = text.replace(".", ",")
+        if kind == "again" and frame == 5:
+            text = '{"frame": 5, ' + text[1:]
+        if kind == "nul" and frame == 5:
+            text += "\0, and more"
         if kind == "slow":
             time.sleep(0.3)
         say(text + ("\r\n" if kind == "crlf" else "\n"))

@@ -119,4 +119,14 @@ says "    size: of the smallest side, 0.05 m, contacts leave 20% as overlap (slo
 sed 's/0.05]/0.5]/; s/0.025]/0.25]/' thin.yaml >thick.yaml
 run 0 check thick.yaml -o thick.png
 equal "lines about the size" "$(grep -c size: out)" 0
+# A motion that float32 cannot hold at x = 100 m, where positions are 2^-17 m apart.
+for dt in 1e-5 1e-3; do
+    printf '%s\n' 'gravity: [0, 0]' "dt: $dt" 'iterations: 10' 'frames: 100' 'bodies:' \
+        '  - {mass: 1, size: [1, 1], position: [100, 0], velocity: [0.3, 0]}' >slide.yaml
+    run 0 check slide.yaml
+    mv out $dt.out
+done
+grep -q '    rounding: 100 m from 0, positions are 7.63e-06 m apart (float32), and a body moves by 3e-06 m in a step: ' 1e-5.out ||
+    fail "no word about rounding: $(<1e-5.out)"
+! grep rounding 1e-3.out || fail "0.3 mm are enough"
 finish

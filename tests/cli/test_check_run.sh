@@ -113,7 +113,7 @@ says "not compared: the verdict, \""
 says "report -> report/report.html"
 equal "files" "$(ls report | tr '\n' ' ')" "junit.xml report.html results.json run.html "
 /usr/bin/python3 - <<'PYTHON' || fail "the files of a report"
-import json, re, xml.etree.ElementTree as tree
+import json, re, numpy, xml.etree.ElementTree as tree
 suite = tree.parse("report/junit.xml").getroot()
 assert suite.get("tests") == "1" and suite.get("failures") == "1"
 case, failure = suite[0], suite[0][0]
@@ -124,6 +124,11 @@ assert "\ncause: the solver\n" in suite.find("system-out").text
 results = json.load(open("report/results.json"))
 assert not results["passed"] and results["tolerance_angle"] == 0.001 and results["frames_equal"] == 4
 assert [other["what"] for other in results["not_compared"]] == ["verdict"]
+one, other = numpy.load("struck.npz"), numpy.load("momentum.npz")
+same = numpy.all([numpy.all((one[key] == other[key]) | numpy.isnan(one[key]), axis=tuple(range(1, one[key].ndim)))
+                  for key in ("position", "angle", "velocity", "angular_velocity")], axis=0)
+near = numpy.all(~(abs(one["angle"] - other["angle"]) > 0.001), axis=1) # and all are within 100 m
+assert (results["frames_equal"], results["frames_within"]) == (sum(same), sum(near & ~same)) and sum(near & ~same) > 0
 link = re.search(r"run\.html#t=([\d.]+)&amp;body=(\d+)", open("report/report.html").read())
 beyond = results["beyond"]
 assert beyond["frame"] > results["first"]["frame"]

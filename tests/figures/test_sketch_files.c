@@ -191,6 +191,9 @@ TEST(an_svg_has_its_words) {
     assert_ok(svg != NULL, error);
     assert_non_null(strstr(svg, ">a &lt; b &amp; &quot;c&quot; ?? ±</text>"));
     assert_non_null(strstr(svg, "<title>Something &lt;new></title>"));
+    strcpy(sketch.title, "]]> > ]>");
+    FREED char *other = sketch_as_svg(&sketch, &white, &size, &error);
+    assert_non_null(strstr(other, "<title>]]&gt; > ]></title>")); /* else no XML */
     assert_non_null(strstr(svg, "@font-face{font-family:Inter;src:url(data:font/otf;base64,T1RUTwA"));
     assert_non_null(
         strstr(svg, "font-family=\"Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif\""));

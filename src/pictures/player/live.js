@@ -19,7 +19,8 @@ const is_settled = run => has_failed(run) || run.next?.shown === launched || run
 let link_problem = "", page_problem = "";
 function show_problems() {
   const found = [page_problem, link_problem, ...live_runs().map(run => run.problem ?? "")].filter(text => text);
-  tell(ui.problem, [...new Set(found)].join(" "));
+  // A link may have characters that turn the order of the others.
+  tell(ui.problem, [...new Set(found)].join(" ").replace(/[\p{Cc}\p{Cf}\p{Zl}\p{Zp}]/gu, "?"));
   ui.problem.hidden = found.length === 0;
 }
 
