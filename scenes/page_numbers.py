@@ -4,9 +4,11 @@
     NAME = STUDY/TABLE COLUMN WHERE... [/ STUDY/TABLE COLUMN WHERE...] [as FORMAT]
 
 WHERE is COLUMN=TEXT, and one row must match all of them; a value with spaces is in quotes. The column "rows" counts those that
-match. With a slash the number is a quotient. FORMAT: "digits N" (significant ones, default 2), "percent", or "text", as it is."""
+match. With a slash the number is a quotient. FORMAT: "digits N" (significant ones, default 2), "percent", "text", as it is, or "range":
+median, least and most of all rows that match."""
 import csv
 import shlex
+import statistics
 
 
 class Refusal(Exception):
@@ -22,7 +24,7 @@ def read_table(path, where=""):
         raise Refusal(f"{where}{path}: {error.strerror}") from None
 
 
-def read_value(text, studies, where):
+def read_value(text, studies, where, many=False):
     table, column, *conditions = shlex.split(text)
     rows = read_table(studies / table, f"{where}: ")
     wanted = dict(condition.split("=", 1) for condition in conditions)
@@ -32,6 +34,8 @@ def read_value(text, studies, where):
     found = [row for row in rows if all(row[key] == value for key, value in wanted.items())]
     if column == "rows":
         return str(len(found)), table.split("/")[0]
+    if many and found and all(row[column] for row in found):
+        return [float(row[column]) for row in found], table.split("/")[0]
     if len(found) != 1 or found[0][column] == "":
         raise Refusal(f"{where}: {len(found)} rows of {table} match{' and the value is empty' if len(found) == 1 else ''}")
     return found[0][column], table.split("/")[0]
@@ -47,7 +51,10 @@ def read_number(line, studies, place):
     """(name, its text, the study that has it) of a line."""
     name, rest = (part.strip() for part in line.split("=", 1))
     rest, _, form = rest.partition(" as ")
-    values = [read_value(part, studies, f"{place}: {name}") for part in rest.split(" / ")]
+    values = [read_value(part, studies, f"{place}: {name}", form == "range") for part in rest.split(" / ")]
+    if form == "range":
+        median, least, most = (show(find(values[0][0]), 2) for find in (statistics.median, min, max))
+        return name, f"{median} ({least} to {most})", values[0][1]
     if form == "text":
         return name, values[0][0], values[0][1]
     number = float(values[0][0]) / (float(values[1][0]) if len(values) == 2 else 1)

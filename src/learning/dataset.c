@@ -54,21 +54,40 @@ static bool choose_launches(const DatasetOptions *options, const Scene *scene, c
     return ok && launches_check(scene, out, each, error);
 }
 
-/* Fills the launch tables. A fifth of each scene's launches, at least one, is held out; that is drawn first, so that it
-   does not depend on later draws. */
-static bool fill_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
-    const int each = launches_each(options);
+/* Holds out a fifth of each scene's launches. NULL with error set when memory is short, else the generator. */
+static gsl_rng *draw_split(const Dataset *dataset, uint64_t seed, uint8_t *test, Error *error) {
+    const int each = dataset->launches / dataset->scene_count;
     gsl_set_error_handler_off(); /* its default aborts */
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
-    Launch *launches = malloc((size_t)each * sizeof *launches);
     int *order = malloc((size_t)each * sizeof *order);
-    bool ok = (generator != NULL && launches != NULL && order != NULL) || error_memory(error, "dataset");
-    if (ok) gsl_rng_set(generator, (unsigned long)options->seed);
-    for (int scene = 0; ok && scene < dataset->scene_count; scene++) {
+    if (generator == NULL || order == NULL) {
+        if (generator != NULL) gsl_rng_free(generator);
+        free(order);
+        return error_memory(error, "dataset"), NULL;
+    }
+    gsl_rng_set(generator, (unsigned long)seed);
+    memset(test, 0, (size_t)dataset->launches * sizeof *test);
+    for (int scene = 0; scene < dataset->scene_count; scene++) {
         for (int i = 0; i < each; i++) order[i] = i;
         gsl_ran_shuffle(generator, order, (size_t)each, sizeof *order);
-        for (int i = 0; i < each / 5; i++) dataset->launch_test[scene * each + order[i]] = 1;
+        for (int i = 0; i < each / 5; i++) test[scene * each + order[i]] = 1;
     }
+    free(order);
+    return generator;
+}
+
+bool dataset_split(const Dataset *dataset, uint64_t seed, uint8_t *test, Error *error) {
+    gsl_rng *generator = draw_split(dataset, seed, test, error);
+    if (generator != NULL) gsl_rng_free(generator);
+    return generator != NULL;
+}
+
+/* Fills the launch tables. The split is drawn first, so that it does not depend on later draws. */
+static bool fill_launches(Dataset *dataset, const DatasetOptions *options, Scene *const *scenes, Error *error) {
+    const int each = launches_each(options);
+    gsl_rng *generator = draw_split(dataset, options->seed, dataset->launch_test, error);
+    Launch *launches = calloc((size_t)each, sizeof *launches);
+    bool ok = generator != NULL && (launches != NULL || error_memory(error, "dataset"));
     for (int scene = 0; ok && scene < dataset->scene_count; scene++) {
         ok = choose_launches(options, scenes[scene], generator, launches, error);
         for (int i = 0; ok && i < each; i++) {
@@ -81,7 +100,6 @@ static bool fill_launches(Dataset *dataset, const DatasetOptions *options, Scene
     }
     if (generator != NULL) gsl_rng_free(generator);
     free(launches);
-    free(order);
     return ok;
 }
 
@@ -238,7 +256,7 @@ static bool record_launch(void *context, int i, Error *error) {
     if (!ok || every == 1) return ok;
     /* Drops and frees the other rows now: those of many launches would exceed memory. */
     size_t kept = 0;
-    for (size_t row = 0; row < rows->count; row += every) rows->rows[kept++] = rows->rows[row];
+    for (size_t row = (size_t)i % every; row < rows->count; row += every) rows->rows[kept++] = rows->rows[row];
     rows->count = kept;
     PairRow *smaller = realloc(rows->rows, (kept + 1) * sizeof *smaller);
     if (smaller != NULL) rows->rows = smaller;
@@ -345,7 +363,8 @@ Dataset *dataset_subset(const Dataset *dataset, const bool *keep, Error *error) 
     if (!dataset_make_launches(subset, dataset->launches) || !dataset_make_rows(subset, kept, dataset->context != NULL))
         return error_memory(error, "dataset"), dataset_destroy(subset), NULL;
     memcpy(subset->launch_block, dataset->launch_block,
-           (size_t)(dataset->launch_test + dataset->launches - (uint8_t *)dataset->launch_block));
+           (size_t)(subset->launch_test - (uint8_t *)subset->launch_block));
+    memcpy(subset->launch_test, dataset->launch_test, (size_t)dataset->launches); /* of a view, elsewhere */
     DatasetArrays to, from;
     const int count = dataset_arrays(subset, &to);
     dataset_arrays(dataset, &from);

@@ -72,7 +72,9 @@ typedef struct DatasetOptions {
     PairView view;
     PairTarget target;
     DatasetLabels labels;
-    int every;     /* keep every n-th row of a launch, from the first on; 0 or 1: all */
+    /* Keep every n-th row of a launch; 0 or 1: all. From row (launch mod n) on: with the first of each launch, which is
+       its first blow, blows would be too many. */
+    int every;
     bool context;  /* record the context; for TARGET_PAIR */
     uint64_t seed; /* of the random launches and of the 80/20 split by launch */
 } DatasetOptions;
@@ -83,6 +85,10 @@ typedef struct DatasetOptions {
    requests a stop. */
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
+
+/* Another split of the same launches: test[launches] as launch_test of a recording with this seed. False with error set
+   when memory is short. */
+bool dataset_split(const Dataset *dataset, uint64_t seed, uint8_t *test, Error *error);
 
 /* Arrays for so many launches, zero, and for so many rows, not zeroed; view and target are set. False when memory is
    short. */

@@ -248,7 +248,15 @@ bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss
         trainer->best_loss = train_loss;
     }
     if (is_scored(trainer->iteration)) report_score(trainer);
-    trainer->finished = !progress_report(trainer->progress, trainer->iteration, trainer->options->iterations) ||
+    /* The weights that are kept are of the lowest train loss: the held-out rows decide only when the training ends. */
+    const int patience = trainer->options->patience, asked_every = patience < 10 ? patience : 10;
+    if (patience > 0 && trainer->iteration % asked_every == 0) {
+        const double held = loss_value(trainer->loss, trainer->test, NULL, trainer->now);
+        if (trainer->iteration == 0 || held <= 0.999 * trainer->held_best)
+            trainer->held_best = held, trainer->held_at = trainer->iteration;
+    }
+    trainer->finished = (patience > 0 && trainer->iteration - trainer->held_at >= patience) ||
+                        !progress_report(trainer->progress, trainer->iteration, trainer->options->iterations) ||
                         trainer->iteration == trainer->options->iterations;
     return true;
 }

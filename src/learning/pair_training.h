@@ -24,7 +24,8 @@ typedef struct TrainingOptions {
     int widths[NETWORK_MAX_LAYERS + 1]; /* first 10, last 2 or 6 */
     const char *optimizer;              /* a name of the optimiser table: adam, bfgs, gd, lm */
     int iterations;                     /* full-batch steps */
-    uint64_t seed;                      /* of the initial weights */
+    int patience;  /* ends when the held-out error has not fallen by 0.1% in so many steps; 0: never before the last */
+    uint64_t seed; /* of the initial weights */
     /* Names; NULL selects the first unless stated: */
     const char *hidden;            /* activation of the hidden layers: sigmoid, tanh, relu */
     const char *output_activation; /* sigmoid, linear; NULL: sigmoid for two outputs, linear for six */

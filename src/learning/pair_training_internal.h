@@ -104,7 +104,9 @@ typedef struct Trainer {
     int scored;                           /* the last iteration whose score was reported */
     double loss_now, best_loss;           /* including the laws' terms */
     double *now, *best;                   /* [parameters] of the last visit and of the lowest train loss */
-    bool finished;                        /* all iterations done, or cancelled by progress */
+    double held_best;                     /* the lowest held-out loss that was asked for, and when */
+    int held_at;
+    bool finished; /* all iterations done, cancelled by progress, or out of patience */
 } Trainer;
 
 typedef struct Optimizer {

@@ -18,23 +18,25 @@
 #include <stdlib.h>
 
 const PaperSize paper_whole_size = {
-    .data = {.swept = "-5:5:0.4",
-             .mixed = "-5:5:0.8",
-             .fine = "-5:5:0.1",
-             .finest = "-5:5:0.025",
-             .paper = "-5:5:0.05",
+    .data = {.swept = "-5:5:0.05",
+             .mixed = "-5:5:0.1",
              .transfer = "-5:5:0.5",
-             .random = 26,
-             .mixed_random = 13,
-             .impulse_every = 11,
-             .finest_every = 23},
+             .random = 201,
+             .mixed_random = 100,
+             .every = 17,
+             .dense_every = 3,
+             .impulse_every = 173,
+             .impulse_dense_every = 31},
+    .splits = 8,
+    .scored_splits = 5,
+    .constant_splits = 100,
     .iterations = 2000,
     .rate_launches = 20,
     .closed_launches = 5,
     .repetitions = 7,
     .sampling = {.after = 6, .rest = 30},
-    .seeds = 3,
-    .law_iterations = 500,
+    .seeds = 5,
+    .law_iterations = 300,
     .transfer_iterations = 300,
     .weights = {0.01, 0.1, 1, 10},
     .launches = {1, 2, 4, 8, 16},
@@ -46,20 +48,22 @@ const PaperSize paper_whole_size = {
 const PaperSize paper_quick_size = {
     .data = {.swept = "-5:5:1",
              .mixed = "-5:5:2",
-             .fine = "-5:5:0.5",
-             .finest = "-5:5:0.5",
-             .paper = "-5:5:0.5",
              .transfer = "-5:5:2",
              .random = 11,
              .mixed_random = 5,
-             .impulse_every = 11,
-             .finest_every = 11},
+             .every = 17,
+             .dense_every = 11,
+             .impulse_every = 173,
+             .impulse_dense_every = 113},
+    .splits = 2,
+    .scored_splits = 2,
+    .constant_splits = 3,
     .iterations = 100,
     .rate_launches = 2,
     .closed_launches = 1,
     .repetitions = 3,
     .sampling = {.after = 20, .rest = 120},
-    .seeds = 3,
+    .seeds = 2,
     .law_iterations = 30,
     .transfer_iterations = 30,
     .weights = {1},
@@ -95,27 +99,36 @@ bool launched_begin(Launched *launched, const char *path, int count, Error *erro
 }
 
 static bool write_tables(const PaperPlan *plan, Error *error) {
-    static const CsvLayout *const layouts[] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
-                                               &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
-                                               &system_score_layout};
+    static const CsvLayout *const layouts[] = {
+        &paper_score_layout,       &paper_trained_layout, &paper_constant_layout, &paper_rate_layout,
+        &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout, &system_score_layout};
     const char *folder = plan->options->folder;
     const PaperSize *size = plan->size;
-    const double values[] = {(double)plan->options->seed, plan->network_count, size->iterations,
-                             size->data.random,           size->rate_launches, size->closed_launches};
-    char numbers[sizeof values / sizeof *values][24], path[CSV_PATH_SIZE];
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-        snprintf(numbers[i], sizeof numbers[i], "%.0f", values[i]);
-    const FactRow facts[] = {{"quick", plan->options->quick ? "on" : "off"},
-                             {"seed", numbers[0]},
-                             {"networks", numbers[1]},
-                             {"iterations", numbers[2]},
-                             {"launches_swept", size->data.swept},
-                             {"launches_swept_finely", size->data.fine},
-                             {"launches_swept_most_finely", size->data.finest},
-                             {"launches_swept_as_in_the_paper", size->data.paper},
-                             {"launches_random", numbers[3]},
-                             {"launches_rated", numbers[4]},
-                             {"launches_in_closed_loop", numbers[5]}};
+    const struct {
+        const char *key;
+        double value;
+    } numbers[] = {{"seed", (double)plan->options->seed},
+                   {"networks", plan->network_count},
+                   {"splits", size->splits},
+                   {"splits_rated_and_in_closed_loop", size->scored_splits},
+                   {"splits_of_the_constant", size->constant_splits},
+                   {"seeds_of_laws_and_transfer", size->seeds},
+                   {"iterations", size->iterations},
+                   {"launches_random", size->data.random},
+                   {"rows_kept_one_in", size->data.every},
+                   {"rows_kept_one_in_dense", size->data.dense_every},
+                   {"rows_of_impulses_kept_one_in", size->data.impulse_every},
+                   {"rows_of_impulses_kept_one_in_dense", size->data.impulse_dense_every},
+                   {"launches_rated", size->rate_launches},
+                   {"launches_in_closed_loop", size->closed_launches}};
+    enum { NUMBERS = sizeof numbers / sizeof *numbers, WORDS = 2 };
+    char texts[NUMBERS][24], path[CSV_PATH_SIZE];
+    FactRow facts[WORDS + NUMBERS] = {{"quick", plan->options->quick ? "on" : "off"},
+                                      {"launches_swept", size->data.swept}};
+    for (int i = 0; i < NUMBERS; i++) {
+        snprintf(texts[i], sizeof texts[i], "%.0f", numbers[i].value);
+        facts[WORDS + i] = (FactRow){numbers[i].key, texts[i]};
+    }
     return piece_tables_write(plan->pieces, folder, layouts, sizeof layouts / sizeof *layouts, NULL, 0, error) &&
            csv_table_path(path, folder, &paper_fact_layout, error) &&
            csv_table_write(path, &paper_fact_layout, facts, sizeof facts / sizeof *facts, error);

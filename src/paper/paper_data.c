@@ -13,13 +13,15 @@
 #include "studies/piece_tables.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A value beyond these limits is an error in the file. */
 #define ERROR_MOST 1e30
 #define TIME_MOST 1e12 /* us */
 #define STEPS_MOST 1e9
-#define SEED_MOST 1e10 /* --seed is below 2^32 */
+#define SEED_MOST 1e10      /* --seed is below 2^32 */
+#define SHARE_MOST 1.000001 /* and what its sum rounds to */
 
 /* Enough for every integer that is written. */
 enum { INTEGER_DIGITS = 10, VALUE_SIZE = 256 };
@@ -36,12 +38,13 @@ static const char *const rate_definition_names[RATE_DEFINITIONS + 1] = {"range",
 
 static const CsvColumn score_columns[] = {
     CSV_MEMBER(ScoreRow, network, CSV_NAME),
+    CSV_MEMBER(ScoreRow, seed, CSV_NUMBER, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
     CSV_MEMBER(ScoreRow, target, CSV_WORD, .words = pair_target_names),
     CSV_MEMBER(ScoreRow, optimizer, CSV_WORD, .words = paper_optimizer_words),
     CSV_MEMBER(ScoreRow, iteration, CSV_NUMBER, .maximum = 1e9, .digits = INTEGER_DIGITS),
-    CSV_MEMBER(ScoreRow, test, CSV_OPTIONAL, .maximum = ERROR_MOST),
-    CSV_MEMBER(ScoreRow, train, CSV_OPTIONAL, .maximum = ERROR_MOST),
-    CSV_MEMBER(ScoreRow, constant, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    {"test_range2", CSV_OPTIONAL, .offset = offsetof(ScoreRow, test), .maximum = ERROR_MOST},
+    {"train_range2", CSV_OPTIONAL, .offset = offsetof(ScoreRow, train), .maximum = ERROR_MOST},
+    {"constant_range2", CSV_OPTIONAL, .offset = offsetof(ScoreRow, constant), .maximum = ERROR_MOST},
 };
 
 static const CsvColumn trained_columns[] = {
@@ -58,17 +61,33 @@ static const CsvColumn trained_columns[] = {
     CSV_MEMBER(TrainedRow, scale, CSV_NAME),
     CSV_MEMBER(TrainedRow, optimizer, CSV_NAME),
     CSV_MEMBER(TrainedRow, loss, CSV_NAME),
+    CSV_MEMBER(TrainedRow, seed, CSV_NUMBER, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
     CSV_MEMBER(TrainedRow, iterations, CSV_OPTIONAL, .maximum = 1e9, .digits = INTEGER_DIGITS),
     CSV_MEMBER(TrainedRow, parameters, CSV_OPTIONAL, .maximum = 1e9, .digits = INTEGER_DIGITS),
-    CSV_MEMBER(TrainedRow, test, CSV_OPTIONAL, .maximum = ERROR_MOST),
-    CSV_MEMBER(TrainedRow, train, CSV_OPTIONAL, .maximum = ERROR_MOST),
-    CSV_MEMBER(TrainedRow, constant, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    {"test_range2", CSV_OPTIONAL, .offset = offsetof(TrainedRow, test), .maximum = ERROR_MOST},
+    {"train_range2", CSV_OPTIONAL, .offset = offsetof(TrainedRow, train), .maximum = ERROR_MOST},
+    {"constant_range2", CSV_OPTIONAL, .offset = offsetof(TrainedRow, constant), .maximum = ERROR_MOST},
     CSV_MEMBER(TrainedRow, ratio, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    {"ratio_single", CSV_OPTIONAL, .offset = offsetof(TrainedRow, ratio_of[0]), .maximum = ERROR_MOST},
+    {"ratio_stack", CSV_OPTIONAL, .offset = offsetof(TrainedRow, ratio_of[1]), .maximum = ERROR_MOST},
+    CSV_MEMBER(TrainedRow, largest, CSV_OPTIONAL, .maximum = SHARE_MOST),
     CSV_MEMBER(TrainedRow, accuracy, CSV_OPTIONAL, .maximum = 1),
+};
+
+static const CsvColumn constant_columns[] = {
+    CSV_MEMBER(ConstantRow, target, CSV_WORD, .words = pair_target_names),
+    CSV_MEMBER(ConstantRow, seed, CSV_NUMBER, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
+    CSV_MEMBER(ConstantRow, rows, CSV_NUMBER, .maximum = STEPS_MOST, .digits = INTEGER_DIGITS),
+    {"test_range2", CSV_NUMBER, .offset = offsetof(ConstantRow, test), .maximum = ERROR_MOST},
+    {"train_range2", CSV_NUMBER, .offset = offsetof(ConstantRow, train), .maximum = ERROR_MOST},
+    {"single_range2", CSV_NUMBER, .offset = offsetof(ConstantRow, test_of[0]), .maximum = ERROR_MOST},
+    {"stack_range2", CSV_NUMBER, .offset = offsetof(ConstantRow, test_of[1]), .maximum = ERROR_MOST},
+    CSV_MEMBER(ConstantRow, largest, CSV_NUMBER, .maximum = SHARE_MOST),
 };
 
 static const CsvColumn rate_columns[] = {
     CSV_MEMBER(RateRow, network, CSV_NAME),
+    CSV_MEMBER(RateRow, seed, CSV_OPTIONAL, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
     CSV_MEMBER(RateRow, scene, CSV_WORD, .words = paper_scene_names),
     CSV_MEMBER(RateRow, definition, CSV_WORD, .words = rate_definition_names),
     CSV_MEMBER(RateRow, phase, CSV_WORD, .words = paper_phase_words),
@@ -82,6 +101,7 @@ static const CsvColumn rate_columns[] = {
 
 static const CsvColumn closed_loop_columns[] = {
     CSV_MEMBER(ClosedLoopRow, network, CSV_NAME),
+    CSV_MEMBER(ClosedLoopRow, seed, CSV_OPTIONAL, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
     CSV_MEMBER(ClosedLoopRow, scene, CSV_WORD, .words = paper_scene_names),
     CSV_MEMBER(ClosedLoopRow, frames_until_apart, CSV_OPTIONAL, .maximum = CLOSED_LOOP_FRAMES),
     CSV_MEMBER(ClosedLoopRow, penetration_max, CSV_OPTIONAL, .maximum = ERROR_MOST),
@@ -96,8 +116,9 @@ static const CsvColumn law_columns[] = {
     CSV_MEMBER(LawRow, laws, CSV_WORD, .words = paper_law_words),
     CSV_MEMBER(LawRow, weight, CSV_OPTIONAL, .maximum = 1e12),
     CSV_MEMBER(LawRow, seed, CSV_OPTIONAL, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
-    CSV_MEMBER(LawRow, test, CSV_OPTIONAL, .maximum = ERROR_MOST),
-    CSV_MEMBER(LawRow, constant, CSV_OPTIONAL, .minimum = 1e-30, .maximum = ERROR_MOST),
+    {"test_deviation2", CSV_OPTIONAL, .offset = offsetof(LawRow, test), .maximum = ERROR_MOST},
+    {"constant_deviation2", CSV_OPTIONAL, .offset = offsetof(LawRow, constant), .minimum = 1e-30,
+     .maximum = ERROR_MOST},
     {"momentum", CSV_OPTIONAL, .offset = offsetof(LawRow, violation[LAW_MOMENTUM]), .maximum = ERROR_MOST},
     {"energy", CSV_OPTIONAL, .offset = offsetof(LawRow, violation[LAW_ENERGY]), .maximum = ERROR_MOST},
     {"approach", CSV_OPTIONAL, .offset = offsetof(LawRow, violation[LAW_APPROACH]), .maximum = ERROR_MOST},
@@ -109,8 +130,8 @@ static const CsvColumn transfer_columns[] = {
     CSV_MEMBER(TransferRow, seed, CSV_NUMBER, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
     CSV_MEMBER(TransferRow, launches, CSV_NUMBER, .minimum = 1, .maximum = PAPER_MAX_LAUNCHES,
                .digits = INTEGER_DIGITS),
-    CSV_MEMBER(TransferRow, error, CSV_OPTIONAL, .maximum = 1e6),
-    CSV_MEMBER(TransferRow, constant, CSV_OPTIONAL, .maximum = 1e6),
+    {"error_m_s", CSV_OPTIONAL, .offset = offsetof(TransferRow, error), .maximum = 1e6},
+    {"constant_m_s", CSV_OPTIONAL, .offset = offsetof(TransferRow, constant), .maximum = 1e6},
 };
 
 static const CsvColumn fact_columns[] = {
@@ -122,13 +143,12 @@ static const CsvColumn fact_columns[] = {
 
 const CsvLayout paper_score_layout = LAYOUT("table1", score_columns, ScoreRow, PAPER_MAX_ROWS);
 const CsvLayout paper_trained_layout = LAYOUT("networks", trained_columns, TrainedRow, PAPER_MAX_NETWORKS);
+const CsvLayout paper_constant_layout = LAYOUT("constants", constant_columns, ConstantRow, PAPER_MAX_ROWS);
 const CsvLayout paper_rate_layout = LAYOUT("rates", rate_columns, RateRow, PAPER_MAX_ROWS);
 const CsvLayout paper_closed_loop_layout = LAYOUT("closed_loop", closed_loop_columns, ClosedLoopRow, PAPER_MAX_LOOPS);
 const CsvLayout paper_law_layout = LAYOUT("laws", law_columns, LawRow, PAPER_MAX_ROWS);
 const CsvLayout paper_transfer_layout = LAYOUT("transfer", transfer_columns, TransferRow, PAPER_MAX_ROWS);
 const CsvLayout paper_fact_layout = LAYOUT("study", fact_columns, FactRow, PAPER_MAX_ROWS);
-
-const double target_aims[PAIR_TARGETS] = {[TARGET_PAIR] = 0.4, [TARGET_NET] = 0.4, [TARGET_IMPULSE] = 0.1};
 
 const struct PublishedScore published_scores[PUBLISHED_SCORES] = {
     {0, 0.105798, 0.106044},   {10, 0.051244, 0.051222},   {50, 0.015246, 0.015388},
@@ -153,8 +173,8 @@ void paper_datasets_free(PaperDatasets *datasets) {
 }
 
 /* The dataset of `count` scenes from `first` on, with launches of bomb_x, if not NULL: recorded before, or now. */
-static const Dataset *record(PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
-                             Error *error) {
+static const Dataset *find_or_record(PaperDatasets *datasets, int first, int count, const char *bomb_x,
+                                     DatasetOptions options, Error *error) {
     const char *scenes[PAPER_SCENES];
     /* Ranges are constants of this program and always valid. */
     if (bomb_x != NULL) parse_range(bomb_x, DATASET_MAX_LAUNCHES, &options.bomb_x);
@@ -180,36 +200,82 @@ static const Dataset *record(PaperDatasets *datasets, int first, int count, cons
     return stored->dataset;
 }
 
-const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
+/* One thread records; another that needs the same dataset waits. */
+static const Dataset *record(PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
+                             Error *error) {
+    const Dataset *dataset;
+#pragma omp critical(paper_record)
+    dataset = find_or_record(datasets, first, count, bomb_x, options, error);
+    return dataset;
+}
+
+static const Dataset *dataset_of(PaperDatasets *datasets, const PaperNetwork *network, int every, Error *error) {
     const PaperDataSize *size = datasets->size;
-    DatasetOptions options = {.view = network->view, .target = network->target, .labels = network->labels};
-    const char *const ranges[PAPER_DATA] = {[DATA_SWEPT] = size->swept,
-                                            [DATA_MIXED] = size->mixed,
-                                            [DATA_FINE] = size->fine,
-                                            [DATA_FINEST] = size->finest,
-                                            [DATA_PAPER] = size->paper};
+    DatasetOptions options = {
+        .view = network->view, .target = network->target, .labels = network->labels, .every = every};
+    const char *const ranges[PAPER_DATA] = {
+        [DATA_SWEPT] = size->swept, [DATA_DENSE] = size->swept, [DATA_MIXED] = size->mixed};
     if (network->data == DATA_RANDOM) options.random = size->random;
     if (network->data == DATA_MIXED) options.random = size->mixed_random;
-    if (network->target == TARGET_IMPULSE)
-        options.every = network->data == DATA_FINEST ? size->finest_every : size->impulse_every;
     return record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
 }
 
+const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
+    const PaperDataSize *size = datasets->size;
+    const bool dense = network->data == DATA_DENSE, impulse = network->target == TARGET_IMPULSE;
+    const int every = dense ? size->dense_every : size->every,
+              impulse_every = dense ? size->impulse_dense_every : size->impulse_every;
+    return dataset_of(datasets, network, impulse ? impulse_every : every, error);
+}
+
+const Dataset *paper_dataset_whole(PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
+    return dataset_of(datasets, network, network->target == TARGET_IMPULSE ? datasets->size->every : 1, error);
+}
+
+bool split_begin(SplitDataset *split, const Dataset *whole, uint64_t seed, Error *error) {
+    *split = (SplitDataset){.test = NULL};
+    if (whole == NULL) return false;
+    split->test = malloc((size_t)whole->launches * sizeof *split->test);
+    if (split->test == NULL) return error_memory(error, "paper");
+    split->dataset = *whole;
+    split->dataset.launch_test = split->test;
+    if (dataset_split(whole, seed, split->test, error)) return true;
+    split_free(split);
+    return false;
+}
+
+void split_free(SplitDataset *split) {
+    free(split->test);
+    split->test = NULL;
+}
+
 bool paper_laws_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
-    const Dataset *dataset = record(&plan->datasets, 0, PAPER_TRAINING_SCENES, plan->size->data.swept,
-                                    (DatasetOptions){.context = true}, error); /* with the pairs' context */
+    const PaperDataSize *size = plan->datasets.size;
+    const DatasetOptions options = {.context = true, .every = size->every}; /* with the pairs' context */
+    const Dataset *whole = record(&plan->datasets, 0, PAPER_TRAINING_SCENES, size->swept, options, error);
+    SplitDataset split;
     LawRow row;
-    return dataset != NULL && law_study_run(dataset, &part->laws, &row, progress, error) &&
-           piece_tables_print(lines, &paper_law_layout, -1, &row, error);
+    if (!split_begin(&split, whole, part->laws.seed, error)) return false;
+    const bool ok = law_study_run(&split.dataset, &part->laws, &row, progress, error) &&
+                    piece_tables_print(lines, &paper_law_layout, -1, &row, error);
+    split_free(&split);
+    return ok;
 }
 
 bool paper_transfer_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
+    const PaperDataSize *size = plan->datasets.size;
+    SplitDataset splits[TRANSFER_SCENES] = {{.test = NULL}};
     const Dataset *data[TRANSFER_SCENES];
     TransferRow row;
-    for (int i = 0; i < TRANSFER_SCENES; i++) {
-        data[i] = record(&plan->datasets, i, 1, plan->size->data.transfer, (DatasetOptions){0}, error);
-        if (data[i] == NULL) return false;
+    bool ok = true;
+    for (int i = 0; ok && i < TRANSFER_SCENES; i++) {
+        const Dataset *whole =
+            record(&plan->datasets, i, 1, size->transfer, (DatasetOptions){.every = size->every}, error);
+        ok = split_begin(&splits[i], whole, part->transfer.seed, error);
+        data[i] = &splits[i].dataset;
     }
-    return transfer_study_run(data, &part->transfer, &row, progress, error) &&
-           piece_tables_print(lines, &paper_transfer_layout, -1, &row, error);
+    ok = ok && transfer_study_run(data, &part->transfer, &row, progress, error) &&
+         piece_tables_print(lines, &paper_transfer_layout, -1, &row, error);
+    for (int i = 0; i < TRANSFER_SCENES; i++) split_free(&splits[i]);
+    return ok;
 }

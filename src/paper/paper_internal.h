@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study as a list of parts, its pieces (runs/pieces.h): trained networks, their scores, the outlook, the systems.
-   Each uses all threads by itself.
+   Trainings take one thread each; scores, which follow, use all.
 
      paper_plan_make(&plan, &options, &error);
      plan.parts[0].write(&plan, &plan.parts[0], lines, &progress, &error); */
@@ -25,17 +25,9 @@ enum { PAPER_PATH_SIZE = 4096, PAPER_DATASETS_MAX = 32 };
    ten inputs made of differences of positions (3.1), one hidden layer of ten, two outputs, sigmoids throughout, outputs
    scaled to [0, 1] (3.2), the sweep of launches (3.3). */
 
-/* Recorded launches of the single box and of the stack. DATA_PAPER has the paper's 201 places; the baseline has fewer,
-   to keep the study short. */
-typedef enum PaperData {
-    DATA_SWEPT,
-    DATA_RANDOM,
-    DATA_MIXED,
-    DATA_FINE,
-    DATA_FINEST,
-    DATA_PAPER,
-    PAPER_DATA
-} PaperData;
+/* Recorded launches of the single box and of the stack: 201 of each, at the paper's places, random, or half of both;
+   and the first with more of their rows. */
+typedef enum PaperData { DATA_SWEPT, DATA_RANDOM, DATA_MIXED, DATA_DENSE, PAPER_DATA } PaperData;
 
 /* Words are those of learning/pair_training.h. Zero-initialised members are the baseline's: swept, labels by the
    engine, relative, pair, sigmoid, mse. */
@@ -66,10 +58,11 @@ static inline bool network_takes_steps(PairTarget target, PairView view) {
 
 /* Launches of each scene. */
 typedef struct PaperDataSize {
-    const char *swept, *mixed, *fine, *finest, *paper, *transfer; /* m: "-5:5:0.05" */
-    int random, mixed_random;                                     /* launches drawn at random, in addition */
-    /* Only every so many rows of single impulses are kept: there are ten times as many as of others. */
-    int impulse_every, finest_every;
+    const char *swept, *mixed, *transfer; /* m: "-5:5:0.05" */
+    int random, mixed_random;             /* launches drawn at random, in addition */
+    /* Only every so many rows of a launch are kept, to save time, and every so many of DATA_DENSE; of single impulses,
+       of which there are ten times as many. All are prime: they share no factor with the pairs of a resting stack. */
+    int every, dense_every, impulse_every, impulse_dense_every;
 } PaperDataSize;
 
 typedef struct StoredDataset {
@@ -92,8 +85,21 @@ bool paper_datasets_begin(PaperDatasets *datasets, const char *scenes, const Pap
                           Error *error);
 void paper_datasets_free(PaperDatasets *datasets);
 
-/* The dataset of a network, owned by `datasets`. NULL with error set. */
+/* The dataset of a network, owned by `datasets`. NULL with error set. May be called by several threads. */
 const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error);
+
+/* The same with all rows; of single impulses, with every so many as the others are thinned. */
+const Dataset *paper_dataset_whole(PaperDatasets *datasets, const PaperNetwork *network, Error *error);
+
+/* A view of a dataset with another split by launch. */
+typedef struct SplitDataset {
+    Dataset dataset; /* its arrays are those of the whole, but for launch_test */
+    uint8_t *test;   /* owned */
+} SplitDataset;
+
+/* As dataset_split(). NULL datasets fail: their error is set. */
+bool split_begin(SplitDataset *split, const Dataset *whole, uint64_t seed, Error *error);
+void split_free(SplitDataset *split);
 
 /* Sizes of the whole study, and of the quick one, which runs every part briefly. */
 
@@ -101,7 +107,10 @@ enum { PAPER_WEIGHTS = 5, PAPER_LAUNCHES = 8 };
 
 typedef struct PaperSize {
     PaperDataSize data;
-    int iterations; /* of every training, at most */
+    int splits;          /* of launches, each with first weights by the same seed: of every network */
+    int scored_splits;   /* of them, the first: rated, and used as the solver */
+    int constant_splits; /* of the constant predictor, which costs nothing */
+    int iterations;      /* of every training, at most */
     int rate_launches, closed_launches, repetitions;
     Sampling sampling;
     int seeds, law_iterations, transfer_iterations; /* of the outlook */
@@ -157,11 +166,12 @@ typedef bool PaperWrite(PaperPlan *plan, const PaperPart *part, FILE *lines, con
 
 struct PaperPart {
     char name[PIECE_NAME_SIZE];
-    double weight; /* about the seconds on two cores */
-    bool timed;
+    double weight;       /* about the seconds on two cores */
+    bool alone, timed;   /* as in PieceInfo */
     bool needs_networks; /* the trained ones, all of them */
     PaperWrite *write;
-    int index; /* of the plan's network, for paper_training_write; of the scene, for scores */
+    int index;     /* of the plan's network, for paper_training_write; of the scene, for scores; of the target */
+    uint64_t seed; /* of the split and the weights of a network */
     LawStudy laws;
     TransferStudy transfer;
 };
@@ -169,7 +179,7 @@ struct PaperPart {
 /* paper_plan_free(), also after a failure. Parts point into it: it stays where it was made. */
 struct PaperPlan {
     PiecePlan plan;
-    PaperPart *parts; /* [count] the first train networks[network_count] */
+    PaperPart *parts; /* [count] the first train networks[network_count], each in all splits */
     size_t count, capacity;
     const PaperOptions *options;
     const PaperSize *size;
@@ -184,15 +194,18 @@ struct PaperPlan {
 bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error);
 void paper_plan_free(PaperPlan *plan);
 
-/* What the parts do. Trains a network, writes networks_folder/NAME.npz, its lines of table1 and networks, and a note of
-   the file's hash. A training that is stopped fails: the name is of a whole training. */
+/* What the parts do. Trains a network on one split, writes networks_folder/NAME-SEED.npz, its lines of table1 and
+   networks, and a note of the file's hash. A training that is stopped fails: the name is of a whole training. */
 PaperWrite paper_training_write;
 
-/* networks_folder/NAME.npz of network i. */
-bool paper_network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE], Error *error);
+/* A table of always predicting the mean, on all rows of the paper's launches. */
+PaperWrite paper_constants_write;
 
-/* *there: whether networks_folder/NAME.npz is the network of these lines. False with error set if the system cannot
-   tell. */
+/* networks_folder/NAME-SEED.npz of network i. */
+bool paper_network_path(const PaperPlan *plan, int i, uint64_t seed, char path[PAPER_PATH_SIZE], Error *error);
+
+/* *there: whether networks_folder/NAME-SEED.npz is the network of these lines. False with error set if the system
+   cannot tell. */
 bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error);
 
 /* In one scene, on launches that none was trained on: the table rates of every network and of the warm start alone; the

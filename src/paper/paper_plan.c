@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of the study, in the order in which they are done. Their weights are about the seconds on two cores. */
+/* The parts of the study. Trainings take a thread each, and wait for none; scores, which use all threads or take times,
+   follow. Weights are about the seconds on one core, and of scores on two. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
@@ -28,33 +29,40 @@ static PaperPart *add_part(PaperPlan *plan, double weight, PaperWrite *write, Er
 
 /* The trainings, which come first, and the scores of all networks in each scene. */
 static bool add_networks(PaperPlan *plan, Error *error) {
-    /* Of 2000 iterations; and of recording and scoring. */
-    static const double of_data[PAPER_DATA] = {
-        [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
-    const double around = 0.1;
+    const double around = 0.1, swept = 3; /* recording and scoring; 2000 iterations */
     const PaperSize *size = plan->size, *whole = &paper_whole_size;
-    for (int i = 0; i < plan->network_count; i++) {
-        const PaperNetwork *network = &plan->networks[i];
-        double weight = of_data[network->data];
+    for (int i = 0; i < plan->network_count * size->splits; i++) {
+        const PaperNetwork *network = &plan->networks[i / size->splits];
+        double weight = size == whole ? swept : swept / 20;
         if (strcmp(network->optimizer, "lm") == 0) weight *= 35;
         if (strcmp(network->optimizer, "bfgs") == 0) weight *= 3;
         if (pair_views[network->view].by_contact) weight *= network->target == TARGET_POINTS ? 8 : 4;
+        if (network->data == DATA_DENSE) weight *= 5;
+        const uint64_t seed = plan->options->seed + (uint64_t)(i % size->splits);
         PaperPart *part = add_part(plan, around + weight * network->iterations / 2000, paper_training_write, error,
-                                   "network-%s", network->name);
+                                   "network-%s-%llu", network->name, (unsigned long long)seed);
         if (part == NULL) return false;
-        part->index = i;
+        part->index = i / size->splits;
+        part->seed = seed;
+    }
+    for (int target = 0; target < TARGET_POINTS; target++) {
+        PaperPart *part = add_part(plan, size == whole ? 6 : 0.2, paper_constants_write, error, "constant-%s",
+                                   pair_target_names[target]);
+        if (part == NULL) return false;
+        part->index = target;
     }
     for (int i = 0; i < 2 * PAPER_SCENES; i++) {
         const int scene = i / 2;
         const bool closed = i % 2 == 1;
         const double launches = closed ? (double)size->closed_launches / whole->closed_launches
                                        : (double)size->rate_launches / whole->rate_launches;
-        const double weight =
-            (scene < PAPER_TRAINING_SCENES ? 2 : 10) * launches * plan->network_count / paper_network_count;
+        const double weight = (scene < PAPER_TRAINING_SCENES ? 2 : 10) * launches * plan->network_count /
+                              paper_network_count * size->scored_splits;
         PaperPart *part = add_part(plan, weight, closed ? paper_closed_loop_write : paper_rates_write, error, "%s-%s",
                                    closed ? "closed-loop" : "rates", paper_scene_names[scene]);
         if (part == NULL) return false;
         part->timed = closed;
+        part->alone = true;
         part->needs_networks = true;
         part->index = scene;
     }
@@ -63,7 +71,7 @@ static bool add_networks(PaperPlan *plan, Error *error) {
 
 /* laws NULL: the labels. */
 static bool add_laws(PaperPlan *plan, const char *laws, double law_weight, Error *error) {
-    const double weight = laws == NULL ? 0.1 : 2.0 * plan->size->law_iterations / paper_whole_size.law_iterations;
+    const double weight = laws == NULL ? 0.1 : 1.5 * plan->size->law_iterations / paper_whole_size.law_iterations;
     for (int seed = 0; seed < (laws == NULL ? 1 : plan->size->seeds); seed++) {
         PaperPart *part = add_part(plan, weight, paper_laws_write, error, "laws-%s-%g-%d",
                                    laws == NULL ? "engine" : laws, law_weight, seed);
@@ -87,7 +95,7 @@ static bool add_outlook(PaperPlan *plan, Error *error) {
         for (int seed = 0; seed < size->seeds; seed++)
             for (int n = 0; n < PAPER_LAUNCHES && size->launches[n] > 0; n++) {
                 const int launches = size->launches[n];
-                PaperPart *part = add_part(plan, share * (launches + 2 * transfer), paper_transfer_write, error,
+                PaperPart *part = add_part(plan, 0.1 * share * (launches + 2 * transfer), paper_transfer_write, error,
                                            "transfer-%d-%d-%d", transfer, seed, launches);
                 if (part == NULL) return false;
                 part->transfer = (TransferStudy){transfer == 1, plan->options->seed + (uint64_t)seed, launches,
@@ -104,7 +112,7 @@ static bool add_systems(PaperPlan *plan, Error *error) {
         PaperPart *part = add_part(plan, size->system_launches * run * length, system_scores_write, error, "systems-%s",
                                    paper_scene_names[i]);
         if (part == NULL) return false;
-        part->timed = true;
+        part->alone = part->timed = true;
         part->index = i;
     }
     return true;
@@ -115,7 +123,7 @@ static void describe(void *context, int64_t piece, PieceInfo *info) {
     const PaperPart *part = &plan->parts[piece];
     memcpy(info->name, part->name, sizeof info->name);
     info->weight = part->weight;
-    info->alone = true;
+    info->alone = part->alone;
     info->timed = part->timed;
 }
 
@@ -128,7 +136,7 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
 static bool ready(void *context, int64_t piece) {
     const PaperPlan *plan = context;
     bool done = true;
-    for (int i = 0; done && plan->parts[piece].needs_networks && i < plan->network_count; i++)
+    for (int i = 0; done && plan->parts[piece].needs_networks && i < plan->network_count * plan->size->splits; i++)
         done = pieces_find(plan->pieces, i, &done, &(Error){0}) && done;
     return done;
 }
@@ -137,7 +145,8 @@ static bool whole(void *context, int64_t piece, const char *results, size_t size
     const PaperPlan *plan = context;
     (void)size;
     *there = true;
-    return piece >= plan->network_count || paper_training_whole(plan, &plan->parts[piece], results, there, error);
+    return piece >= plan->network_count * plan->size->splits ||
+           paper_training_whole(plan, &plan->parts[piece], results, there, error);
 }
 
 bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error) {

@@ -110,10 +110,31 @@ enum { SOLVERS = sizeof solvers / sizeof *solvers };
 typedef struct Scores {
     const PaperPlan *plan;
     Launched launched;
-    PairRates *rates;   /* [network_count + 1]; the last is the warm start's */
+    int networks;       /* of all scored splits: those of the first network first */
+    PairRates *rates;   /* [networks + 1]; the last is the warm start's */
     RunLog *converged;  /* [launches] */
-    ClosedLoop *closed; /* [network_count + SOLVERS] */
+    ClosedLoop *closed; /* [networks + SOLVERS] */
 } Scores;
+
+static bool begin_scores(Scores *scores, const PaperPlan *plan, int scene, int launches, Error *error) {
+    *scores = (Scores){.plan = plan, .networks = plan->network_count * plan->size->scored_splits};
+    return launched_begin(&scores->launched, plan->datasets.scenes[scene], launches, error);
+}
+
+/* Of scored network i; and which split it is of, from 0. */
+static const PaperNetwork *network_of(const Scores *scores, int i) {
+    return &scores->plan->networks[i / scores->plan->size->scored_splits];
+}
+
+static int split_of(const Scores *scores, int i) { return i % scores->plan->size->scored_splits; }
+
+static uint64_t seed_of(const Scores *scores, int i) {
+    return scores->plan->options->seed + (uint64_t)split_of(scores, i);
+}
+
+static bool path_of(const Scores *scores, int i, char path[PAPER_PATH_SIZE], Error *error) {
+    return paper_network_path(scores->plan, i / scores->plan->size->scored_splits, seed_of(scores, i), path, error);
+}
 
 static bool sample_launch(void *context, int i, Error *error) {
     Scores *scores = context;
@@ -123,27 +144,27 @@ static bool sample_launch(void *context, int i, Error *error) {
 
 static bool rate_network(void *context, int i, Error *error) {
     Scores *scores = context;
-    const PaperPlan *plan = scores->plan;
     char path[PAPER_PATH_SIZE];
-    const bool warm = i == plan->network_count;
-    if (!warm && !paper_network_path(plan, i, path, error)) return false;
+    const bool warm = i == scores->networks;
+    if (!warm && !path_of(scores, i, path, error)) return false;
     return pair_rates_measure(warm ? NULL : path, scores->launched.scene, scores->launched.states,
-                              scores->launched.count, &plan->size->sampling, &scores->rates[i], error);
+                              scores->launched.count, &scores->plan->size->sampling, &scores->rates[i], error);
 }
 
 bool paper_rates_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
-    Scores scores = {.plan = plan};
+    Scores scores;
     const Launched *launched = &scores.launched;
-    const int networks = plan->network_count;
-    if (!launched_begin(&scores.launched, plan->datasets.scenes[part->index], plan->size->rate_launches, error))
-        return false;
+    if (!begin_scores(&scores, plan, part->index, plan->size->rate_launches, error)) return false;
+    const int networks = scores.networks;
     scores.rates = calloc((size_t)networks + 1, sizeof *scores.rates);
     const ParallelWork sampling = {sample_launch, &scores}, rating = {rate_network, &scores};
     bool ok = (scores.rates != NULL || error_memory(error, "rates")) &&
               parallel_for(&sampling, launched->count, "sampled launches", NULL, error) &&
               parallel_for(&rating, networks + 1, "rated networks", progress, error);
     for (int i = 0; ok && i <= networks; i++) {
-        RateRow row = {.network = i < networks ? plan->networks[i].name : "warm-start", .scene = part->index};
+        RateRow row = {.network = i < networks ? network_of(&scores, i)->name : "warm-start",
+                       .seed = i < networks ? (double)seed_of(&scores, i) : NAN,
+                       .scene = part->index};
         for (int k = 0; k < launched->count; k++) row.unconverged += launched->states[k].unconverged;
         for (row.definition = 0; ok && row.definition < RATE_DEFINITIONS; row.definition++)
             for (row.phase = 0; ok && row.phase < RATE_PHASES; row.phase++) {
@@ -157,15 +178,15 @@ bool paper_rates_write(PaperPlan *plan, const PaperPart *part, FILE *lines, cons
 }
 
 /* Of a network, or of the solvers behind them. */
-static bool method_of(const PaperPlan *plan, int i, Method *method, Error *error) {
+static bool method_of(const Scores *scores, int i, Method *method, Error *error) {
     char path[PAPER_PATH_SIZE];
-    if (i >= plan->network_count) return method_parse(method, solvers[i - plan->network_count], error);
-    const char *name = plan->networks[i].target == TARGET_POINTS ? "contact-net" : "pair-net";
-    return paper_network_path(plan, i, path, error) && method_with_network(method, name, path, error);
+    if (i >= scores->networks) return method_parse(method, solvers[i - scores->networks], error);
+    const char *name = network_of(scores, i)->target == TARGET_POINTS ? "contact-net" : "pair-net";
+    return path_of(scores, i, path, error) && method_with_network(method, name, path, error);
 }
 
-static bool is_closed(const PaperPlan *plan, int i) {
-    return i >= plan->network_count || network_takes_steps(plan->networks[i].target, plan->networks[i].view);
+static bool is_closed(const Scores *scores, int i) {
+    return i >= scores->networks || network_takes_steps(network_of(scores, i)->target, network_of(scores, i)->view);
 }
 
 static bool log_launch(void *context, int i, Error *error) {
@@ -177,17 +198,16 @@ static bool close_method(void *context, int i, Error *error) {
     Scores *scores = context;
     const Launched *launched = &scores->launched;
     Method method;
-    if (!is_closed(scores->plan, i)) return true;
-    return method_of(scores->plan, i, &method, error) &&
+    if (!is_closed(scores, i)) return true;
+    return method_of(scores, i, &method, error) &&
            closed_loop_run(&method, launched->launches, scores->converged, launched->count, &scores->closed[i], error);
 }
 
 bool paper_closed_loop_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress,
                              Error *error) {
-    Scores scores = {.plan = plan};
-    if (!launched_begin(&scores.launched, plan->datasets.scenes[part->index], plan->size->closed_launches, error))
-        return false;
-    const int methods = plan->network_count + SOLVERS, launches = scores.launched.count;
+    Scores scores;
+    if (!begin_scores(&scores, plan, part->index, plan->size->closed_launches, error)) return false;
+    const int methods = scores.networks + SOLVERS, launches = scores.launched.count;
     scores.closed = calloc((size_t)methods, sizeof *scores.closed);
     scores.converged = calloc((size_t)launches, sizeof *scores.converged);
     const ParallelWork logging = {log_launch, &scores}, closing = {close_method, &scores};
@@ -197,21 +217,25 @@ bool paper_closed_loop_write(PaperPlan *plan, const PaperPart *part, FILE *lines
               sample_launch(&scores, 0, error);
     /* Times are taken one after the other. */
     for (int i = 0; ok && i < methods; i++) {
-        if (!is_closed(plan, i)) continue;
+        if (!is_closed(&scores, i)) continue;
         const ClosedLoop *closed = &scores.closed[i];
-        ClosedLoopRow row = {.network =
-                                 i < plan->network_count ? plan->networks[i].name : solvers[i - plan->network_count],
+        const bool network = i < scores.networks;
+        ClosedLoopRow row = {.network = network ? network_of(&scores, i)->name : solvers[i - scores.networks],
+                             .seed = network ? (double)seed_of(&scores, i) : NAN,
                              .scene = part->index,
                              .frames_until_apart = closed->frames_until_apart,
                              .penetration_max = closed->penetration_max,
                              .momentum_error = closed->momentum_error,
                              .energy_ratio = closed->energy_ratio,
-                             .unconverged = closed->unconverged};
+                             .unconverged = closed->unconverged,
+                             .us_step = NAN,
+                             .us_step_engine = NAN};
         Method method;
-        ok = method_of(plan, i, &method, error) &&
-             closed_loop_time(&method, &scores.launched.states[0], plan->size->repetitions, &row.us_step,
-                              &row.us_step_engine, error) &&
-             piece_tables_print(lines, &paper_closed_loop_layout, -1, &row, error);
+        ok = (network && split_of(&scores, i) > 0) ||
+             (method_of(&scores, i, &method, error) &&
+              closed_loop_time(&method, &scores.launched.states[0], plan->size->repetitions, &row.us_step,
+                               &row.us_step_engine, error));
+        ok = ok && piece_tables_print(lines, &paper_closed_loop_layout, -1, &row, error);
     }
     for (int i = 0; scores.converged != NULL && i < launches; i++) run_log_free(&scores.converged[i]);
     free(scores.converged);

@@ -10,7 +10,7 @@
 #include "methods/pair.h"
 #include "scenes/scenes.h"
 
-enum { PAPER_MAX_ROWS = 5000, PAPER_MAX_NETWORKS = 200, PAPER_MAX_LOOPS = 240, PAPER_MAX_LAUNCHES = 1 << 20 };
+enum { PAPER_MAX_ROWS = 20000, PAPER_MAX_NETWORKS = 2000, PAPER_MAX_LOOPS = 2000, PAPER_MAX_LAUNCHES = 1 << 20 };
 enum { LAUNCHED_MAX = 64, SYSTEM_SCORES_MAX = 400, SYSTEM_NAME_SIZE = 64 };
 
 enum { PAPER_SCENES = 4, PAPER_TRAINING_SCENES = 2 };
@@ -21,19 +21,33 @@ extern const char *const paper_scene_names[PAPER_SCENES + 1];
 enum { PAPER_OPTIMIZERS = 4 };
 extern const char *const paper_optimizer_words[PAPER_OPTIMIZERS + 1]; /* adam, gd, bfgs, lm */
 
-/* networks.csv: a trained network; the texts are those of a PaperNetwork. */
+/* networks.csv: a network trained on one split; the texts are those of a PaperNetwork. All errors of a network and of
+   the constant (the mean of its training rows) are in the paper's units: means of squares, each output in its range
+   over the training rows. So ratios of networks that were trained in other units compare. */
 typedef struct TrainedRow {
     const char *network, *factor, *value, *inputs, *data, *labels;
     int target; /* PairTarget */
     const char *layers, *hidden, *output, *scale, *optimizer, *loss;
+    double seed; /* of the split by launch, and of the first weights */
     double iterations, parameters, test, train, constant;
-    double ratio;    /* test over constant */
-    double accuracy; /* share of test rows whose outputs are all within 5% of their range */
+    double ratio;                           /* test over constant */
+    double ratio_of[PAPER_TRAINING_SCENES]; /* on the test rows of one scene */
+    double largest;                         /* share of the test error that its ten largest rows make */
+    double accuracy;                        /* share of test rows whose outputs are all within 5% of their range */
 } TrainedRow;
 
-/* table1.csv: mean squared errors of normalised outputs during a training. */
+/* constants.csv: always predicting the mean of the training rows, in the units of networks.csv, on all rows. */
+typedef struct ConstantRow {
+    int target; /* PairTarget */
+    double seed, rows, test, train;
+    double test_of[PAPER_TRAINING_SCENES];
+    double largest;
+} ConstantRow;
+
+/* table1.csv: errors during a training, in the units of networks.csv: of the networks that are trained in them. */
 typedef struct ScoreRow {
     const char *network;
+    double seed;
     int target; /* PairTarget */
     int optimizer;
     double iteration, test, train, constant; /* constant: the constant predictor's */
@@ -42,9 +56,6 @@ typedef struct ScoreRow {
 /* The paper's Table 1: mean squared errors after so many iterations. */
 enum { PUBLISHED_SCORES = 6 };
 extern const struct PublishedScore { double iteration, test, train; } published_scores[PUBLISHED_SCORES];
-
-/* For each target: the highest test error, over the constant predictor's, that its best network may have; 0: no aim. */
-extern const double target_aims[PAIR_TARGETS];
 
 /* rates.csv: shares of right predictions by definition, of a network and of what costs less (pair_rates_measure). */
 typedef enum RateDefinition { RATE_RANGE, RATE_ABSOLUTE, RATE_BODIES, RATE_DEFINITIONS } RateDefinition;
@@ -60,6 +71,7 @@ enum { RATE_PHASES = PHASES + 1, RATE_ALL = PHASES };
 
 typedef struct RateRow {
     const char *network;
+    double seed;    /* of its split; NAN of the warm start */
     int scene;      /* of paper_scene_names */
     int definition; /* RateDefinition */
     int phase;      /* Phase, or RATE_ALL */
@@ -70,15 +82,17 @@ typedef struct RateRow {
 /* closed_loop.csv: a network in place of the solver (studies/closed_loop.h). */
 typedef struct ClosedLoopRow {
     const char *network; /* or a solver, as on the command line */
+    double seed;         /* of its split; NAN of a solver */
     int scene;           /* of paper_scene_names */
-    double frames_until_apart, penetration_max, momentum_error, energy_ratio, us_step, us_step_engine, unconverged;
+    double frames_until_apart, penetration_max, momentum_error, energy_ratio, unconverged;
+    double us_step, us_step_engine; /* NAN but of the first split: all have the same cost */
 } ClosedLoopRow;
 
 /* laws.csv: a training with laws in the loss; or the labels by themselves. */
 typedef struct LawRow {
     int laws; /* of paper_law_words */
     double weight, seed;
-    double test, constant;  /* mean squared error on the test rows, and the constant predictor's */
+    double test, constant;  /* mean squares of the standardised outputs on the test rows, and the constant's */
     double violation[LAWS]; /* means over the test rows (laws_measure), in the laws' units */
 } LawRow;
 
@@ -122,5 +136,5 @@ typedef struct FactRow {
     const char *key, *value;
 } FactRow;
 
-extern const CsvLayout paper_trained_layout, paper_score_layout, paper_rate_layout, paper_closed_loop_layout,
-    paper_law_layout, paper_transfer_layout, system_score_layout, paper_fact_layout;
+extern const CsvLayout paper_trained_layout, paper_constant_layout, paper_score_layout, paper_rate_layout,
+    paper_closed_loop_layout, paper_law_layout, paper_transfer_layout, system_score_layout, paper_fact_layout;

@@ -17,8 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const data_names[PAPER_DATA] = {
-    "swept", "random", "mixed", "swept finely", "swept most finely", "swept as in the paper"};
+static const char *const data_names[PAPER_DATA] = {"swept", "random", "mixed", "swept, more rows"};
 
 #define SEARCHED(form) \
     { .name = "layers-" form, .factor = "layers", .value = form, .layers = form }
@@ -41,7 +40,6 @@ const PaperNetwork paper_networks[] = {
     {.name = "target-impulse", .factor = "target", .value = "impulse", .target = TARGET_IMPULSE, .quick = true},
     {.name = "data-random", .factor = "data", .value = "random", .data = DATA_RANDOM},
     {.name = "data-mixed", .factor = "data", .value = "mixed", .data = DATA_MIXED},
-    {.name = "data-paper", .factor = "data", .value = "201 launches", .data = DATA_PAPER},
     {.name = "labels-reference",
      .factor = "labels",
      .value = "reference",
@@ -75,7 +73,8 @@ const PaperNetwork paper_networks[] = {
     {.name = "best-pair",
      .factor = "best",
      .value = "pair",
-     .data = DATA_FINE,
+     .data = DATA_DENSE,
+     .iterations = 1000,
      .view = PAIR_NEIGHBOURS,
      .layers = "32-12-6-2",
      .hidden = "tanh",
@@ -83,7 +82,8 @@ const PaperNetwork paper_networks[] = {
     {.name = "best-net",
      .factor = "best",
      .value = "net",
-     .data = DATA_FINE,
+     .data = DATA_DENSE,
+     .iterations = 1000,
      .view = PAIR_NEIGHBOURS,
      .target = TARGET_NET,
      .layers = "32-12-6-2",
@@ -92,7 +92,8 @@ const PaperNetwork paper_networks[] = {
     {.name = "best-impulse",
      .factor = "best",
      .value = "impulse",
-     .data = DATA_FINEST,
+     .data = DATA_DENSE,
+     .iterations = 1000,
      .view = PAIR_CONTACT,
      .target = TARGET_IMPULSE,
      .layers = "20-21-2",
@@ -101,7 +102,6 @@ const PaperNetwork paper_networks[] = {
     {.name = "contact-net",
      .factor = "contact-net",
      .value = "contact-net",
-     .data = DATA_FINE,
      .view = PAIR_NEIGHBOURS,
      .target = TARGET_POINTS,
      .layers = "32-24-12-4",
@@ -121,41 +121,111 @@ PaperNetwork paper_network(int i) {
     if (network.scale == NULL) network.scale = strcmp(network.output, "linear") == 0 ? "standard" : "minmax";
     if (network.optimizer == NULL) network.optimizer = "adam";
     if (network.loss == NULL) network.loss = "mse";
-    if (network.iterations == 0) network.iterations = 2000;
+    /* A step of Levenberg-Marquardt costs as much as 35 of the others, and passes hundreds of them. */
+    if (network.iterations == 0) network.iterations = strcmp(network.optimizer, "lm") == 0 ? 100 : 2000;
     return network;
 }
 
-/* The share of test rows for which all outputs are within 5% of their range over the training rows; NaN without test
-   rows. The paper does not define the accuracy of its gate (section 3: 90%); this is a guess. False with error set when
-   memory is short. */
-static bool find_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error) {
-    const double near_share = 0.05; /* of the outputs' range */
-    const int outputs = network->widths[network->layers], inputs = network->widths[0];
-    double near[PAIR_CHANGES];
-    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[PAIR_CHANGES];
-    if (scratch == NULL) return error_memory(error, "paper");
+/* Errors in the units of networks.csv. */
+enum { LARGEST = 10, ROW_KINDS = PAPER_TRAINING_SCENES + 1, TRAIN_ROWS = PAPER_TRAINING_SCENES };
+
+typedef struct RowErrors {
+    double network[ROW_KINDS], constant[ROW_KINDS], rows[ROW_KINDS]; /* sums: test rows of a scene; training rows */
+    double largest[LARGEST];                                         /* of the network's test rows, falling */
+    double right;                                                    /* test rows */
+} RowErrors;
+
+/* network: NULL: none, the mean in its place. The paper does not define the accuracy of its gate (section 3: 90%):
+   here all outputs of a right row are within 5% of their range. False with error set when memory is short. */
+static bool find_errors(const Network *network, const Dataset *dataset, int outputs, RowErrors *errors, Error *error) {
+    const double near_share = 0.05;
+    const int inputs = dataset_inputs(dataset);
+    double mean[PAIR_CHANGES] = {0}, range[PAIR_CHANGES];
+    float output[PAIR_CHANGES], *scratch = NULL;
+    *errors = (RowErrors){.right = 0};
+    if (network != NULL && (scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch)) == NULL)
+        return error_memory(error, "paper");
     for (int k = 0; k < outputs; k++) {
-        double least = INFINITY, most = -INFINITY;
+        double least = INFINITY, most = -INFINITY, count = 0;
         for (int64_t row = 0; row < dataset->rows; row++) {
             if (dataset_is_test(dataset, row)) continue;
-            least = fmin(least, (double)dataset_target(dataset, row, outputs, k));
-            most = fmax(most, (double)dataset_target(dataset, row, outputs, k));
+            const double value = (double)dataset_target(dataset, row, outputs, k);
+            least = fmin(least, value);
+            most = fmax(most, value);
+            mean[k] += value;
+            count++;
         }
-        near[k] = near_share * (most - least);
+        mean[k] /= count;
+        range[k] = most > least ? most - least : 1;
     }
-    int64_t rows = 0, right = 0;
     for (int64_t row = 0; row < dataset->rows; row++) {
-        if (!dataset_is_test(dataset, row)) continue;
-        network_predict(network, dataset->inputs + row * inputs, scratch, output);
+        double of_network = 0, of_constant = 0;
         bool is_right = true;
-        for (int k = 0; k < outputs; k++)
-            is_right &= fabs((double)output[k] - (double)dataset_target(dataset, row, outputs, k)) <= near[k];
-        right += is_right;
-        rows++;
+        if (network != NULL) network_predict(network, dataset->inputs + row * inputs, scratch, output);
+        for (int k = 0; k < outputs; k++) {
+            const double target = (double)dataset_target(dataset, row, outputs, k);
+            const double constant = (mean[k] - target) / range[k],
+                         e = network != NULL ? ((double)output[k] - target) / range[k] : constant;
+            of_network += e * e / outputs;
+            of_constant += constant * constant / outputs;
+            is_right &= fabs(e) <= near_share;
+        }
+        const bool test = dataset_is_test(dataset, row);
+        const int kind = test ? dataset->launch_scene[dataset->launch[row]] : TRAIN_ROWS;
+        errors->network[kind] += of_network;
+        errors->constant[kind] += of_constant;
+        errors->rows[kind]++;
+        errors->right += test && is_right;
+        for (int i = 0; test && i < LARGEST; i++) {
+            if (of_network <= errors->largest[i]) continue;
+            memmove(errors->largest + i + 1, errors->largest + i, (size_t)(LARGEST - 1 - i) * sizeof *errors->largest);
+            errors->largest[i] = of_network;
+            break;
+        }
     }
     free(scratch);
-    *accuracy = rows > 0 ? (double)right / (double)rows : NAN;
     return true;
+}
+
+/* The sum over the scenes' test rows. */
+static double of_scenes(const double sums[ROW_KINDS]) {
+    double sum = 0;
+    for (int i = 0; i < PAPER_TRAINING_SCENES; i++) sum += sums[i];
+    return sum;
+}
+
+static double share_of_largest(const RowErrors *errors) {
+    double sum = 0;
+    for (int i = 0; i < LARGEST; i++) sum += errors->largest[i];
+    return sum / of_scenes(errors->network);
+}
+
+bool paper_constants_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress,
+                           Error *error) {
+    const int splits = plan->size->constant_splits, outputs = 2;
+    const PaperNetwork network = {.target = (PairTarget)part->index};
+    const Dataset *dataset = paper_dataset_whole(&plan->datasets, &network, error);
+    bool ok = dataset != NULL;
+    for (int i = 0; ok && i < splits; i++) {
+        SplitDataset split;
+        RowErrors errors;
+        const uint64_t seed = plan->options->seed + (uint64_t)i;
+        ok = split_begin(&split, dataset, seed, error);
+        if (!ok) break;
+        ok = find_errors(NULL, &split.dataset, outputs, &errors, error);
+        split_free(&split);
+        ConstantRow row = {.target = part->index,
+                           .seed = (double)seed,
+                           .rows = of_scenes(errors.rows),
+                           .test = of_scenes(errors.constant) / of_scenes(errors.rows),
+                           .train = errors.constant[TRAIN_ROWS] / errors.rows[TRAIN_ROWS],
+                           .largest = share_of_largest(&errors)};
+        for (int scene = 0; scene < PAPER_TRAINING_SCENES; scene++)
+            row.test_of[scene] = errors.constant[scene] / errors.rows[scene];
+        ok = ok && piece_tables_print(lines, &paper_constant_layout, -1, &row, error) &&
+             (progress_report(progress, i + 1, splits) || error_interrupted(error, "constants", "stopped"));
+    }
+    return ok;
 }
 
 typedef struct Watch {
@@ -179,8 +249,9 @@ Network *whole_training(const Dataset *dataset, const TrainingOptions *options, 
     return error_interrupted(error, "training", "stopped"), NULL;
 }
 
-bool paper_network_path(const PaperPlan *plan, int i, char path[PAPER_PATH_SIZE], Error *error) {
-    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", plan->networks_folder, plan->networks[i].name);
+bool paper_network_path(const PaperPlan *plan, int i, uint64_t seed, char path[PAPER_PATH_SIZE], Error *error) {
+    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s-%llu.npz", plan->networks_folder, plan->networks[i].name,
+                     (unsigned long long)seed);
 }
 
 enum { NOTE_SIZE = 64, NETWORK_MAX_SIZE = 1 << 26 };
@@ -199,17 +270,18 @@ bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const ch
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
     Error reason = {0};
     *there = false;
-    if (!paper_network_path(plan, part->index, path, error)) return false;
+    if (!paper_network_path(plan, part->index, part->seed, path, error)) return false;
     if (print_note(note, path, &reason)) *there = strstr(lines, note) != NULL;
     if (reason.kind == ERROR_NONE || reason.kind == ERROR_INPUT) return true;
     *error = reason;
     return false;
 }
 
-/* Writes the scores of a training. */
+/* Writes the scores of a training, if they are in the units of its table. */
 typedef struct ScoreWriter {
     FILE *lines;
     const PaperNetwork *network;
+    uint64_t seed;
     TrainingScore last;
     bool ok;
     Error *error;
@@ -219,6 +291,7 @@ static void write_score(void *context, const TrainingScore *score) {
     ScoreWriter *writer = context;
     const PaperNetwork *network = writer->network;
     const ScoreRow row = {.network = network->name,
+                          .seed = (double)writer->seed,
                           .target = (int)network->target,
                           .optimizer = csv_word(paper_optimizer_words, network->optimizer),
                           .iteration = score->iteration,
@@ -226,41 +299,44 @@ static void write_score(void *context, const TrainingScore *score) {
                           .train = score->train,
                           .constant = score->constant_test};
     writer->last = *score;
-    writer->ok = writer->ok && piece_tables_print(writer->lines, &paper_score_layout, -1, &row, writer->error);
+    if (strcmp(network->scale, "minmax") == 0 && strcmp(network->loss, "mse") == 0)
+        writer->ok = writer->ok && piece_tables_print(writer->lines, &paper_score_layout, -1, &row, writer->error);
 }
 
 static bool score_and_store(const PaperPlan *plan, const PaperPart *part, const Dataset *dataset, Network *network,
                             int iterations, FILE *lines, Error *error) {
     const PaperNetwork *of = &plan->networks[part->index];
-    TrainingScore score = {0}; /* of the weights that are kept, which are not the last ones */
-    double accuracy = NAN;
-    if (!training_score(dataset, network, of->loss, &score, error) ||
-        !find_accuracy(network, dataset, &accuracy, error))
-        return false;
-    const TrainedRow row = {.network = of->name,
-                            .factor = of->factor,
-                            .value = of->value,
-                            .inputs = pair_views[of->view].name,
-                            .data = data_names[of->data],
-                            .labels = dataset_label_names[of->labels],
-                            .target = (int)of->target,
-                            .layers = of->layers,
-                            .hidden = of->hidden,
-                            .output = of->output,
-                            .scale = of->scale,
-                            .optimizer = of->optimizer,
-                            .loss = of->loss,
-                            .iterations = iterations,
-                            .parameters = network_parameter_count(network),
-                            .test = score.test,
-                            .train = score.train,
-                            .constant = score.constant_test,
-                            .ratio = score.test / score.constant_test,
-                            .accuracy = accuracy};
+    RowErrors errors;
+    if (!find_errors(network, dataset, network->widths[network->layers], &errors, error)) return false;
+    const double rows = of_scenes(errors.rows);
+    TrainedRow row = {.network = of->name,
+                      .factor = of->factor,
+                      .value = of->value,
+                      .seed = (double)part->seed,
+                      .inputs = pair_views[of->view].name,
+                      .data = data_names[of->data],
+                      .labels = dataset_label_names[of->labels],
+                      .target = (int)of->target,
+                      .layers = of->layers,
+                      .hidden = of->hidden,
+                      .output = of->output,
+                      .scale = of->scale,
+                      .optimizer = of->optimizer,
+                      .loss = of->loss,
+                      .iterations = iterations,
+                      .parameters = network_parameter_count(network),
+                      .test = of_scenes(errors.network) / rows,
+                      .train = errors.network[TRAIN_ROWS] / errors.rows[TRAIN_ROWS],
+                      .constant = of_scenes(errors.constant) / rows,
+                      .ratio = of_scenes(errors.network) / of_scenes(errors.constant),
+                      .largest = share_of_largest(&errors),
+                      .accuracy = errors.right / rows};
+    for (int scene = 0; scene < PAPER_TRAINING_SCENES; scene++)
+        row.ratio_of[scene] = errors.network[scene] / errors.constant[scene];
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
-    snprintf(network->command, sizeof network->command, "twinbox paper: %s", of->name);
+    snprintf(network->command, sizeof network->command, "twinbox paper: %s", part->name);
     if (!piece_tables_print(lines, &paper_trained_layout, -1, &row, error) ||
-        !paper_network_path(plan, part->index, path, error) || !network_write(network, path, error) ||
+        !paper_network_path(plan, part->index, part->seed, path, error) || !network_write(network, path, error) ||
         !print_note(note, path, error))
         return false;
     fputs(note, lines);
@@ -269,13 +345,14 @@ static bool score_and_store(const PaperPlan *plan, const PaperPart *part, const 
 
 bool paper_training_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
     const PaperNetwork *of = &plan->networks[part->index];
-    const Dataset *dataset = paper_dataset(&plan->datasets, of, error);
-    if (dataset == NULL) return false;
-    ScoreWriter writer = {lines, of, {0}, true, error};
+    SplitDataset split;
+    if (!split_begin(&split, paper_dataset(&plan->datasets, of, error), part->seed, error)) return false;
+    ScoreWriter writer = {lines, of, part->seed, {0}, true, error};
     TrainingOptions options = {.layers = -1,
                                .optimizer = of->optimizer,
                                .iterations = of->iterations,
-                               .seed = plan->datasets.seed,
+                               .patience = of->iterations / 4,
+                               .seed = part->seed,
                                .hidden = of->hidden,
                                .output_activation = of->output,
                                .scale = of->scale,
@@ -285,9 +362,10 @@ bool paper_training_write(PaperPlan *plan, const PaperPart *part, FILE *lines, c
     /* "10-10-2" */
     for (char *rest = (char *)of->layers; *rest != '\0'; rest += *rest == '-')
         options.widths[++options.layers] = (int)strtol(rest, &rest, 10);
-    Network *network = whole_training(dataset, &options, progress, error);
-    if (network == NULL) return false;
-    const bool ok = writer.ok && score_and_store(plan, part, dataset, network, writer.last.iteration, lines, error);
+    Network *network = whole_training(&split.dataset, &options, progress, error);
+    const bool ok = network != NULL && writer.ok &&
+                    score_and_store(plan, part, &split.dataset, network, writer.last.iteration, lines, error);
     network_destroy(network);
+    split_free(&split);
     return ok;
 }

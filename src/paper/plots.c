@@ -116,7 +116,8 @@ static bool plot_rates(const CsvTable *table, PlotPage *page, Error *error) {
         .legend_left = 13.5,
         .legend_top = 6 + LEGEND_ROW,
         .caption = "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each "
-                   "network: the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: "
+                   "network, a mark for each split of its launches: the constant predictor (bar) and the engine with "
+                   "1, 4 and 10 sweeps (crosses). Grey band: "
                    "the paper's 60 to 91%."};
     return plot_draw(page, &spec, table->csv.path, error);
 }
@@ -130,8 +131,11 @@ static const char *const loss_networks[LOSS_NETWORKS] = {
     "baseline", "target-net", "target-impulse", "optimizer-gd", "optimizer-bfgs", "optimizer-lm",
     "net-gd",   "net-bfgs",   "net-lm",         "impulse-gd",   "impulse-bfgs",   "impulse-lm"};
 
+/* At the paper's iterations, as trainings on other splits end at others. */
 static bool is_shown(const ScoreRow *row) {
-    for (int i = 0; i < LOSS_NETWORKS; i++)
+    bool published = false;
+    for (int i = 0; i < PUBLISHED_SCORES; i++) published |= row->iteration == published_scores[i].iteration;
+    for (int i = 0; published && i < LOSS_NETWORKS; i++)
         if (strcmp(row->network, loss_networks[i]) == 0) return row->target < LOSS_PANELS;
     return false;
 }
@@ -139,12 +143,12 @@ static bool is_shown(const ScoreRow *row) {
 static int compare_rows(const void *first, const void *second) {
     const ScoreRow *a = first, *b = second;
     int order = strcmp(a->network, b->network);
-    if (order == 0) order = a->target - b->target;
+    if (order == 0) order = (a->seed > b->seed) - (a->seed < b->seed);
     return order != 0 ? order : (a->iteration > b->iteration) - (a->iteration < b->iteration);
 }
 
 typedef struct Loss {
-    const ScoreRow *rows; /* [count] sorted: those of one network follow each other */
+    const ScoreRow *rows; /* [count] sorted: those of one training follow each other */
     int count;
     double constant[LOSS_PANELS];
 } Loss;
@@ -158,7 +162,7 @@ static bool loss_point(const void *of, int panel, int series, int i, PlotPoint *
         return i < PUBLISHED_SCORES;
     }
     if (i >= loss->count) return false;
-    *out = (PlotPoint){row->iteration, row->test, 0};
+    *out = (PlotPoint){row->iteration, row->test, row->seed};
     return row->target == panel && row->optimizer == series;
 }
 
@@ -195,7 +199,10 @@ static bool plot_loss(const CsvTable *table, PlotPage *page, Error *error) {
                         .y = plot_range_axis(y, least_error, most_error, false, i == 0 ? "Mean squared error" : NULL)};
     PlotLook looks[LOSS_SERIES] = {
         [PUBLISHED] = plot_look(7, "the paper's Table 1"), [LOSS_CONSTANT] = plot_look_dashed("predicting the mean")};
-    for (int i = 0; i < PAPER_OPTIMIZERS; i++) looks[i] = plot_look(i, optimizers[i]);
+    for (int i = 0; i < PAPER_OPTIMIZERS; i++) {
+        looks[i] = plot_look(i, optimizers[i]);
+        looks[i].seeds = true;
+    }
     looks[PUBLISHED].style.colour = looks[PUBLISHED].style.ink = 0x000000;
     looks[PUBLISHED].above = true;
     const PlotSpec spec = {
@@ -211,9 +218,11 @@ static bool plot_loss(const CsvTable *table, PlotPage *page, Error *error) {
         .legend_columns = 3,
         .legend_left = 13.5,
         .legend_top = 6,
-        .caption = "Mean squared error of the normalised outputs on test rows over training iterations (0: before "
-                   "training), for each reading of the target. Dashed: the constant predictor. The paper's own errors "
-                   "are in each panel, as the paper does not state which target they are for."};
+        .caption =
+            "Mean squared error on test rows, each output in its range over the training rows, over training "
+            "iterations (0: before training), for each reading of the target. Thin: one split each; thick: their "
+            "median. Dashed: the constant predictor on the first split. The paper's own errors "
+            "are in each panel, as the paper does not state which target they are for."};
     return plot_draw(page, &spec, table->csv.path, error);
 }
 

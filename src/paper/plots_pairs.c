@@ -16,11 +16,17 @@
 
 /* A dot plot in two columns, one line per network, grouped by factor. */
 
-enum { HALVES = 2, AIMS = PAIR_TARGETS, FACTORS_CONSTANT, FACTORS_GUIDES, FACTORS_SERIES };
+enum { HALVES = 2, RANGES = PAIR_TARGETS, FACTORS_CONSTANT, FACTORS_GUIDES, FACTORS_SERIES };
+
+/* A network over its splits: its first row, with the median ratio. */
+typedef struct FactorRow {
+    TrainedRow row;
+    double least, most; /* ratios */
+} FactorRow;
 
 typedef struct Factors {
-    TrainedRow *rows; /* [count] grouped by factor, factors in the order of their first rows */
-    double *places;   /* [count] of a row in its half, from 0 downwards */
+    FactorRow *rows; /* [count] grouped by factor, factors in the order of their first rows */
+    double *places;  /* [count] of a row in its half, from 0 downwards */
     int count;
     int begin[HALVES + 1]; /* of each half */
     double span;           /* of the higher half, in rows */
@@ -28,24 +34,55 @@ typedef struct Factors {
 
 static const double group_gap = 0.7; /* in rows */
 
-static bool same_factor(const TrainedRow *a, const TrainedRow *b) { return strcmp(a->factor, b->factor) == 0; }
+static bool same_factor(const FactorRow *a, const FactorRow *b) { return strcmp(a->row.factor, b->row.factor) == 0; }
 
 /* Height of rows [begin, end), in rows. */
-static double span_of(const TrainedRow *rows, int begin, int end) {
+static double span_of(const FactorRow *rows, int begin, int end) {
     double span = 0.3 + (end - begin);
     for (int i = begin + 1; i < end; i++) span += same_factor(&rows[i], &rows[i - 1]) ? 0 : group_gap;
     return span;
 }
 
-/* Groups the rows, and divides the groups so that the higher half is as low as possible. */
-static void place_rows(Factors *factors, const TrainedRow *rows) {
-    TrainedRow *to = factors->rows;
-    const int count = factors->count;
-    for (int i = 0, grouped = 0; i < count; i++) {
+static int row_order(const void *first, const void *second) {
+    const TrainedRow *a = first, *b = second;
+    const int order = strcmp(a->network, b->network);
+    if (order != 0) return order;
+    const int known = !!isnan(a->ratio) - !!isnan(b->ratio); /* unknown ones last */
+    return known != 0 ? known : (a->ratio > b->ratio) - (a->ratio < b->ratio);
+}
+
+/* Puts the splits of each network together, in the order of their networks. rows[row_count] is work space. */
+static void join_splits(Factors *factors, TrainedRow *rows, int row_count) {
+    for (int i = 0; i < row_count; i++) {
         int first = 0;
-        while (!same_factor(&rows[first], &rows[i])) first++;
-        for (int k = i; first == i && k < count; k++)
-            if (same_factor(&rows[k], &rows[i])) to[grouped++] = rows[k];
+        while (strcmp(rows[first].network, rows[i].network) != 0) first++;
+        if (first == i) factors->rows[factors->count++].row = rows[i];
+    }
+    qsort(rows, (size_t)row_count, sizeof *rows, row_order);
+    for (int i = 0; i < factors->count; i++) {
+        FactorRow *row = &factors->rows[i];
+        int begin = 0, end, known;
+        while (strcmp(rows[begin].network, row->row.network) != 0) begin++;
+        for (end = begin; end < row_count && strcmp(rows[end].network, row->row.network) == 0;) end++;
+        for (known = begin; known < end && !isnan(rows[known].ratio);) known++;
+        row->least = known > begin ? rows[begin].ratio : NAN;
+        row->most = known > begin ? rows[known - 1].ratio : NAN;
+        row->row.ratio =
+            known > begin ? (rows[(begin + known - 1) / 2].ratio + rows[(begin + known) / 2].ratio) / 2 : NAN;
+    }
+}
+
+/* Groups the rows, and divides the groups so that the higher half is as low as possible. */
+static void place_rows(Factors *factors) {
+    FactorRow *to = factors->rows;
+    const int count = factors->count;
+    for (int i = 1; i < count; i++) {
+        int at = i; /* behind the last of its factor, if there is one */
+        while (at > 0 && !same_factor(&to[at - 1], &to[i])) at--;
+        if (at == 0) continue;
+        const FactorRow moved = to[i];
+        memmove(&to[at + 1], &to[at], (size_t)(i - at) * sizeof *to);
+        to[at] = moved;
     }
     int *middle = &factors->begin[1];
     *middle = factors->begin[HALVES] = count;
@@ -63,18 +100,17 @@ static void place_rows(Factors *factors, const TrainedRow *rows) {
                                  : factors->places[i - 1] + 1 + (same_factor(&to[i], &to[i - 1]) ? 0 : group_gap);
 }
 
-/* The aims are higher than a dot, so that they can be seen behind it. Two points of each row: of its guide. */
+/* Two points of each row: of its guide, and of its range. */
 static bool factors_point(const void *of, int half, int series, int i, PlotPoint *out) {
     const Factors *factors = of;
-    const int index = series == FACTORS_GUIDES ? i / 2 : i;
+    const int index = series >= RANGES ? i / 2 : i;
     if (series == FACTORS_CONSTANT) return plot_upright(out, i, 1);
     if (index < factors->begin[half] || index >= factors->begin[half + 1]) return false;
-    const TrainedRow *row = &factors->rows[index];
-    *out = (PlotPoint){series == AIMS ? target_aims[row->target] : row->ratio, factors->places[index], index};
+    const FactorRow *row = &factors->rows[index];
+    *out = (PlotPoint){row->row.ratio, factors->places[index], index};
     if (series == FACTORS_GUIDES) out->x = i % 2 == 0 ? -INFINITY : INFINITY;
-    if (series == FACTORS_GUIDES) return !isnan(row->ratio);
-    if (series == AIMS) return strcmp(row->factor, "best") == 0 && target_aims[row->target] > 0;
-    return row->target == series;
+    if (series == RANGES) out->x = i % 2 == 0 ? row->least : row->most;
+    return series >= RANGES ? !isnan(row->row.ratio) : row->row.target == series;
 }
 
 static bool draw_factors(const Factors *factors, PlotPage *page, const char *path, Error *error) {
@@ -84,8 +120,11 @@ static bool draw_factors(const Factors *factors, PlotPage *page, const char *pat
                  bottom = 17.5, top = 6, points = 6.5;
     const double height = bottom + factors->span * row_height + top;
     PlotTicks none = {0};
-    PlotRange range = {target_aims[TARGET_IMPULSE], 1};
-    for (int i = 0; i < factors->count; i++) plot_range_include(&range, factors->rows[i].ratio);
+    PlotRange range = {0.1, 1};
+    for (int i = 0; i < factors->count; i++) {
+        plot_range_include(&range, factors->rows[i].least);
+        plot_range_include(&range, factors->rows[i].most);
+    }
     PlotPanel panels[HALVES];
     const PlotGrid grid = {FIGURE_PAGE_WIDTH,        height, left, half_width - left - width, bottom, top, HALVES, 1,
                            .gap = half_width - width};
@@ -97,10 +136,9 @@ static bool draw_factors(const Factors *factors, PlotPage *page, const char *pat
         if (factors->begin[half] == factors->begin[half + 1]) panels[half].box.width = 0;
         panels[half].y.ticks = &none;
     }
-    PlotLook looks[FACTORS_SERIES] = {
-        [AIMS] = {"aim for the best", {.symbol = PLOT_UPRIGHT, .colour = 0}, .marks = true},
-        [FACTORS_CONSTANT] = plot_look_dashed("predicting the mean"),
-        [FACTORS_GUIDES] = plot_look_guide()};
+    PlotLook looks[FACTORS_SERIES] = {[RANGES] = {"range over the splits", {.colour = PLOT_GREY}, .line = 2.5},
+                                      [FACTORS_CONSTANT] = plot_look_dashed("predicting the mean"),
+                                      [FACTORS_GUIDES] = plot_look_guide()};
     for (int i = 0; i < PAIR_TARGETS; i++) looks[i] = plot_look_marks(i, names[i]);
     const PlotSpec spec = {
         .width = FIGURE_PAGE_WIDTH,
@@ -117,8 +155,8 @@ static bool draw_factors(const Factors *factors, PlotPage *page, const char *pat
         .legend_top = 6,
         .caption =
             "Test error of every network over that of the constant predictor (dashed: 1), by the factor in which "
-            "it differs from the baseline. On the right: the number of parameters. Upright bars: the aims for "
-            "the best networks, 0.4 for the targets pair and net and 0.1 for impulse."};
+            "it differs from the baseline: median over splits of the launches, and range. Errors are means of squares, "
+            "each output in its range over the training rows. On the right: the number of parameters."};
     if (!plot_draw(page, &spec, path, error)) return false;
     /* Left of the plot the factor, right of it the number of parameters. */
     for (int half = 0; half < HALVES; half++) {
@@ -127,7 +165,7 @@ static bool draw_factors(const Factors *factors, PlotPage *page, const char *pat
             plot_text(&page->sketch, (Point){from + numbers_right, page->sketch.height - top / 2}, TEXT_RIGHT, points,
                       "parameters");
         for (int i = factors->begin[half]; i < factors->begin[half + 1]; i++) {
-            const TrainedRow *row = &factors->rows[i];
+            const TrainedRow *row = &factors->rows[i].row;
             const double y = bottom + (factors->span - factors->places[i]) * row_height;
             const bool alone = row->value[0] == '\0' || strcmp(row->factor, row->value) == 0;
             char text[2 * CSV_NAME_SIZE + 4];
@@ -146,12 +184,12 @@ static bool draw_factors(const Factors *factors, PlotPage *page, const char *pat
 
 bool plot_factors(const CsvTable *table, PlotPage *page, Error *error) {
     const size_t count = (size_t)table->count;
-    Factors factors = {.rows = malloc(count * sizeof *factors.rows),
-                       .places = malloc(count * sizeof *factors.places),
-                       .count = table->count};
+    Factors factors = {
+        .rows = malloc(count * sizeof *factors.rows), .places = malloc(count * sizeof *factors.places), .count = 0};
     bool drawn = factors.rows != NULL && factors.places != NULL;
     if (drawn) {
-        place_rows(&factors, table->rows);
+        join_splits(&factors, table->rows, table->count);
+        place_rows(&factors);
         drawn = draw_factors(&factors, page, table->csv.path, error);
     } else {
         error_memory(error, table->csv.path);
@@ -282,7 +320,8 @@ bool plot_closed_loop(const CsvTable *table, PlotPage *page, Error *error) {
         .legend_top = 2.7,
         .caption =
             "Networks and solvers in closed loop. Left: frames until a body is 0.1 m from its place in the converged "
-            "run (600, dashed: never). Right: time of a step over that of the engine with its own solver (dashed: "
+            "run (600, dashed: never), a mark for each split on which a network was trained. Right: time of a step "
+            "over that of the engine with its own solver (dashed: "
             "equal)."};
     if (!plot_draw(page, &spec, table->csv.path, error)) return false;
     for (int i = 0, next = 0; i < loop.count; i++) {

@@ -54,6 +54,30 @@ TEST(same_bits_for_any_threads_and_interruptions) {
     assert_memory_equal(whole.parameters, parts.parameters, (size_t)whole.layout.parameters * sizeof(float));
 }
 
+/* Boxes that are moved by noise are other examples: other weights. */
+TEST(noise_is_trained_on) {
+    OWN(GnsNet) some, none;
+    float noise = 0.05f;
+    for (int i = 0; i < 2; i++, noise = 0) {
+        Scene *scenes[] = {small_scene()};
+        const GnsTraining training = {.width = 16,
+                                      .rounds = 1,
+                                      .steps = 3,
+                                      .batch = 1,
+                                      .launches = 1,
+                                      .radius = 0.6f,
+                                      .noise = noise,
+                                      .rate = 0.002,
+                                      .seed = 3,
+                                      .scenes = scenes,
+                                      .scene_count = 1,
+                                      .command = "noise",
+                                      .state_path = temporary_path(i == 0 ? "some.part" : "none.part")};
+        assert_ok(gns_training_run(&training, i == 0 ? &some : &none, NULL, &error), error);
+    }
+    assert_memory_not_equal(some.parameters, none.parameters, (size_t)some.layout.parameters * sizeof(float));
+}
+
 typedef struct Recorded {
     GnsExamples examples;
     GnsExample example;

@@ -8,6 +8,13 @@
 
 static Scene *scene;
 
+/* Of the form with the engine in the first round. */
+static void keep_score(void *context, const SainScore *score) {
+    if (score->form == 0 && score->round == 0) *(SainScore *)context = *score;
+}
+
+static SainScore scored;
+
 static bool train(void *context, const char *path, const Progress *progress, Error *error) {
     SainNetworks *networks = context;
     const SainTraining training = {.scenes = &scene,
@@ -19,7 +26,9 @@ static bool train(void *context, const char *path, const Progress *progress, Err
                                    .saved = 3,
                                    .seed = 4,
                                    .command = "test",
-                                   .state_path = path};
+                                   .state_path = path,
+                                   .on_score = keep_score,
+                                   .context = &scored};
     const bool ok = sain_training_run(&training, networks, progress, error);
     if (!ok) sain_networks_destroy(networks);
     return ok;
@@ -44,6 +53,23 @@ TEST(an_interrupted_training_has_the_same_bits) {
     assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);
     assert_true(train_in_parts(train, &resumed, temporary_path("resumed.part"), 5, 4) > 2);
     assert_same(&whole, &resumed);
+
+    /* Without a correction its error is the correction itself: that of launches which were not trained on. */
+    for (int held_out = 0; held_out < 2; held_out++) {
+        const SainLaunches launches = {
+            .scenes = &scene, .scene_count = 1, .launches = 1, .rounds = held_out ? 1 : 2, .held_out = held_out == 1};
+        OWN(RecordedSteps) steps = {0};
+        SainSamples samples = {.form = scored.form};
+        assert_ok(sain_launches_record(&launches, &steps, NULL, &error), error);
+        assert_ok(sain_samples_add(&samples, &steps, true, &error), error);
+        double sum = 0;
+        for (size_t i = 0; i < samples.count; i++)
+            for (int o = 0; o < SAIN_OUTPUTS; o++)
+                sum += (double)samples.items[i].target[o] * (double)samples.items[i].target[o];
+        const double error_without = sqrt(sum / (double)samples.count);
+        assert_true((fabs(error_without - scored.held_out.without) < 1e-9) == (held_out == 1));
+        sain_samples_free(&samples);
+    }
     scene_destroy(scene);
 }
 

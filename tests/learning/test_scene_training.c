@@ -53,7 +53,7 @@ TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
         assert_int_equal(one->round, i);
         assert_int_equal(one->samples, two->samples);
         assert_true(one->train == two->train && one->held_out == two->held_out && one->momentum == two->momentum);
-        assert_true(isfinite(one->train) && isfinite(one->held_out));
+        assert_true(isfinite(one->train) && isfinite(one->held_out) && one->held_out != one->train);
         assert_true(one->momentum == scores[0].items[0].momentum && one->momentum > 0);
     }
     assert_true(scores[0].items[1].samples > scores[0].items[0].samples);

@@ -68,6 +68,36 @@ TEST(rows_are_the_recorded_poses) {
     scene_destroy(scene);
 }
 
+static void keep_score(void *context, const SubspaceScore *score, double loss) {
+    (void)loss;
+    *(SubspaceScore *)context = *score;
+}
+
+/* Errors are those of the network on the launches for scoring, not on those that it was trained on. */
+TEST(scores_are_of_held_out_launches) {
+    scene = short_scene();
+    SubspaceScore told, found[2];
+    SubspaceTraining training = small(temporary_path("scored.part"));
+    training.on_score = keep_score;
+    training.context = &told;
+    OWN(SubspaceNet) *net = subspace_train(scene, &training, NULL, &error);
+    assert_ok(net != NULL, error);
+    for (int held_out = 0; held_out < 2; held_out++) {
+        Launch launches[SUBSPACE_HELD_OUT];
+        const int count = held_out ? SUBSPACE_HELD_OUT : training.launches;
+        PoseRows rows;
+        assert_ok((held_out ? launches_for_scoring : launches_for_training)(scene, count, launches, &error), error);
+        assert_ok(subspace_record(&rows, scene, launches, count, NULL, &error), error);
+        const SubspacePredictor *last = &net->predictors[net->shape.predictor_count - 1];
+        assert_ok(subspace_score(net, last, &rows, &found[held_out], &error), error);
+        pose_rows_free(&rows);
+    }
+    assert_near(told.net.rms, found[1].net.rms, 0);
+    assert_near(told.floor.rms, found[1].floor.rms, 0);
+    assert_true(told.net.rms != found[0].net.rms);
+    scene_destroy(scene);
+}
+
 TEST(too_few_frames_are_refused) {
     scene = short_scene();
     scene->frames = 20;

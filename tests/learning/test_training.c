@@ -94,6 +94,68 @@ TEST(linear_problems_are_solved) {
     }
 }
 
+/* Row i of a launch has x = i mod 4 in its inputs, and y = x^2 in training, so 0, 1, 4, 9: mean 3.5 (the middle is 4.5),
+   variance 12.25. Held-out rows have y = x^2 + 3.5. A layer of linear outputs fits the line 3 x - 1 with the squares
+   1, 1, 1, 1; its held-out errors are those of +-1 - 3.5, of squares 6.25 or 20.25; those of the mean 3.5 are y. */
+TEST(errors_constant_and_split_are_those_of_the_closed_form) {
+    OWN(Dataset) *dataset = make_dataset(1000);
+    for (int r = 0; r < 1000; r++) {
+        const float x = (float)(r / 5 % 4);
+        for (int i = 0; i < PAIR_INPUTS; i++) dataset->inputs[r * PAIR_INPUTS + i] = x;
+        for (int k = 0; k < PAIR_CHANGES; k++) dataset->changes[r * PAIR_CHANGES + k] = x * x + (r % 5 == 4 ? 3.5f : 0);
+    }
+    const double variance = 12.25;
+    const TrainingOptions options = {
+        .layers = 1, .widths = {PAIR_INPUTS, PAIR_CHANGES}, .optimizer = "lm", .iterations = 100};
+    Scores scores;
+    OWN(Network) *network = train(dataset, options, &scores);
+    const TrainingScore *last = last_score(&scores);
+    assert_near(network->output_mean[0], 3.5, 1e-6);
+    assert_near(last->train * variance, 1, 1e-4);
+    assert_near(last->constant_train, 1, 1e-6);
+    assert_near(last->test * variance, (6.25 + 20.25) / 2, 1e-3);
+    assert_near(last->constant_test * variance, (0 + 1 + 16 + 81) / 4.0, 1e-3);
+
+    /* Another split by launch: a fifth of them, drawn with the seed. */
+    dataset->scene_count = 1;
+    uint8_t test[5];
+    bool differ = false;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        assert_ok(dataset_split(dataset, seed, test, &(Error){0}), error);
+        assert_int_equal(test[0] + test[1] + test[2] + test[3] + test[4], 1);
+        differ |= test[4] == 0;
+    }
+    assert_true(differ);
+}
+
+/* Labels of held-out rows are the opposite of those trained on, so the first step raises their error; and it ends a
+   training after its patience. */
+TEST(a_training_ends_when_its_held_out_error_does_not_fall) {
+    OWN(Dataset) *dataset = make_dataset(1000);
+    for (int r = 0; r < 1000; r++)
+        for (int k = 0; k < PAIR_CHANGES; k++)
+            dataset->changes[r * PAIR_CHANGES + k] = dataset->inputs[r * PAIR_INPUTS + k] * (r % 5 == 4 ? -1.0f : 1.0f);
+    TrainingOptions options = {
+        .layers = 1, .widths = {PAIR_INPUTS, PAIR_CHANGES}, .optimizer = "gd", .iterations = 500, .patience = 40};
+    Scores scores;
+    OWN(Network) *start = NULL;
+    {
+        TrainingOptions none = options;
+        none.iterations = 0;
+        start = train(dataset, none, &scores);
+    }
+    for (int p = 0; p < network_parameter_count(start); p++) start->weights[0][p] = 0;
+    options.start = start;
+    OWN(Network) *network = train(dataset, options, &scores);
+    assert_int_equal(last_score(&scores)->iteration, 40);
+    for (int r = 0; r < 1000; r++)
+        for (int k = 0; k < PAIR_CHANGES; k++)
+            dataset->changes[r * PAIR_CHANGES + k] = dataset->inputs[r * PAIR_INPUTS + k];
+    options.patience = 200; /* the error falls for long */
+    OWN(Network) *longer = train(dataset, options, &scores);
+    assert_true(last_score(&scores)->iteration > 200);
+}
+
 TEST(networks_name_their_inputs_and_outputs) {
     OWN(Dataset) *dataset = make_taught_dataset(100);
     Scores scores;

@@ -203,4 +203,38 @@ TEST(an_empty_problem_is_seen) {
     sain_answers_free(&answers);
 }
 
+/* A box of 4 kg, moving at (3, 0), strikes one of 1 kg at rest from the left, and the engine gives them (2, 0) and (4, 0):
+   of the light box's row the numbers that no symmetry tells. */
+TEST(a_pair_has_its_inputs_by_hand) {
+    static Problem p;
+    p = (Problem){
+        .problem = {.body_count = 2, .contact_count = 1, .bomb = -1, .bodies = p.bodies, .contacts = p.contacts}};
+    for (int i = 0; i < 2; i++)
+        p.bodies[i] = (ProblemBody){.position = {(float)i, 0},
+                                    .size = {1, 1},
+                                    .inv_mass = i == 0 ? 0.25f : 1,
+                                    .inv_inertia = i == 0 ? 1.5f : 6,
+                                    .velocity = {i == 0 ? 3.0f : 0, 0}};
+    p.contacts[0] = (ContactPoint){.a = 0, .b = 1, .normal = {1, 0}, .friction = 0.2f};
+    p.engine[0].linear.x = 2;
+    p.engine[1].linear.x = 4;
+    OWN(SainView) view = {0};
+    assert_true(sain_view_make(&view, &p.problem, p.engine, SAIN_WITH_ENGINE));
+    assert_int_equal(view.row_count, 2);
+    const SainBody *body = &view.bodies[1];
+    const struct {
+        int first;
+        Vec2 value;
+    } vectors[] = {{2, {1, 0}}, {15, {3, 0}}, {18, {-2, 0}}, {21, {-1, 0}}, {24, {4, 0}}};
+    assert_int_equal(body->body, 1);
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        const Vec2 expected = sain_into_frame(body, vectors[i].value);
+        const float unit = i == 0 ? 1 : body->pace, *x = &view.pair_inputs[vectors[i].first * 2 + body->first];
+        assert_near(x[0] * unit, expected.x, 1e-4);
+        assert_near(x[2] * unit, expected.y, 1e-4);
+    }
+    assert_near(view.pair_inputs[6 * 2 + body->first], 0.2, 1e-6);
+    assert_near(view.pair_inputs[8 * 2 + body->first], 1 / 1.25, 1e-6);
+}
+
 RUN_TESTS(NULL, NULL)

@@ -30,7 +30,7 @@ static int factors_between(const PaperNetwork *a, const PaperNetwork *b, char na
                    {"scaling", strcmp(a->output, b->output) != 0 || strcmp(a->scale, b->scale) != 0},
                    {"optimizer", strcmp(a->optimizer, b->optimizer) != 0},
                    {"loss", strcmp(a->loss, b->loss) != 0},
-                   {"iterations", a->iterations != b->iterations}};
+                   {"iterations", strcmp(a->optimizer, b->optimizer) == 0 && a->iterations != b->iterations}};
     int count = 0;
     names[0] = '\0';
     for (size_t i = 0; i < sizeof factors / sizeof *factors; i++) {
@@ -43,7 +43,7 @@ static int factors_between(const PaperNetwork *a, const PaperNetwork *b, char na
 
 TEST(one_factor_is_varied_at_a_time) {
     const PaperNetwork baseline = paper_network(0);
-    int checked = 0;
+    int checked = 0; /* a training with lm takes fewer steps, which cost more */
     assert_string_equal(baseline.name, "baseline");
     for (int i = 1; i < paper_network_count; i++) {
         PaperNetwork network = paper_network(i), other = baseline;
@@ -84,7 +84,7 @@ TEST(networks_that_differ_in_several_things_are_counted) {
         counts[differences > 1 ? 2 : differences]++;
     }
     assert_int_equal(counts[0], 1);
-    assert_int_equal(counts[1], 28);
+    assert_int_equal(counts[1], 27);
     assert_int_equal(counts[2], sizeof several / sizeof *several);
 }
 
@@ -98,20 +98,19 @@ static double weigh(bool quick, double *trainings) {
     *trainings = 0;
     for (size_t i = 0; i < plan.count; i++) {
         sum += plan.parts[i].weight;
-        if (i < (size_t)plan.network_count) *trainings += plan.parts[i].weight;
+        if (i < (size_t)(plan.network_count * plan.size->splits)) *trainings += plan.parts[i].weight;
     }
     paper_plan_free(&plan);
     *trainings /= sum;
     return sum;
 }
 
-/* The time left follows from the weights, which are about seconds: those of the help, under a minute and some twenty
-   minutes. In the quick study, trainings took 12 of 25 s, measured as processor time. */
+/* The time left follows from the weights, which are about seconds of a core, and of scores those of two. */
 TEST(weights_are_the_seconds_of_the_help) {
     double trainings;
-    assert_in_range((int)weigh(true, &trainings), 15, 60);
-    assert_true(trainings > 0.3 && trainings < 0.7);
-    assert_in_range((int)weigh(false, &trainings), 600, 1200);
+    assert_in_range((int)weigh(true, &trainings), 10, 60);
+    assert_true(trainings > 0.1 && trainings < 0.7);
+    assert_in_range((int)weigh(false, &trainings), 1200, 3600);
 }
 
 TEST(names_are_file_names_and_differ) {

@@ -8,8 +8,8 @@
 #include "paper/paper_report.h"
 
 static void make_study(void) {
-    static const char *const tables[] = {"table1", "networks", "rates", "closed_loop",
-                                         "laws",   "transfer", "study", "system_scores"};
+    static const char *const tables[] = {"table1", "networks", "constants", "rates",        "closed_loop",
+                                         "laws",   "transfer", "study",     "system_scores"};
     static const char *const figures[] = {"loop",    "narrow-phase", "data",        "scenes", "loss",
                                           "factors", "rates",        "closed-loop", "laws",   "transfer"};
     Error error = {0};
@@ -33,8 +33,10 @@ TEST(tables_and_captions_are_shown) {
     assert_ok(paper_report_write(folder(), &error), error);
     FREED char *text = text_of(temporary_path("report.md"));
     expect_text(text, "![narrow-phase](figures/narrow-phase.png)\n\nBoxes at 5 µs.\n");
-    expect_text(text, "[transfer.csv](transfer.csv): 12 rows\n\n| start | seed | launches | error | constant |\n"
-                      "|---|---|---|---|---|\n| scratch | 1 | 1 | 4 | 3.5 |\n");
+    expect_text(
+        text,
+        "[transfer.csv](transfer.csv): 12 rows\n\n| start | seed | launches | error\\_m\\_s | constant\\_m\\_s |\n"
+        "|---|---|---|---|---|\n| scratch | 1 | 1 | 4 | 3.5 |\n");
     expect_text(text, "| engine |  |  |  |  | 0 | 0.01 | 0.02 | 0 |");
     /* No character of a field has a meaning to Markdown. */
     expect_text(text, "| note | \\<script\\>alert(1)\\</script\\> of a name");

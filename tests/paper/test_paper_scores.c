@@ -11,11 +11,15 @@ enum { NETWORKS = 2, TABLE_SIZE = 1 << 14 };
 
 static PaperNetwork networks[NETWORKS] = {{.name = "pair-net", .target = TARGET_PAIR},
                                           {.name = "contact-net", .target = TARGET_POINTS}};
-static const PaperSize size = {
-    .rate_launches = 3, .closed_launches = 2, .sampling = {.after = 30, .rest = 200}, .repetitions = 1};
+static const PaperOptions options = {.seed = 1};
+static const PaperSize size = {.scored_splits = 1,
+                               .rate_launches = 3,
+                               .closed_launches = 2,
+                               .sampling = {.after = 30, .rest = 200},
+                               .repetitions = 1};
 static PaperPlan plan = {.size = &size,
+                         .options = &options,
                          .datasets.scenes = {SOURCE_DIR "/scenes/single.yaml"},
-                         .networks_folder = SOURCE_DIR "/scenes/networks",
                          .networks = networks,
                          .network_count = NETWORKS};
 
@@ -55,7 +59,8 @@ TEST(threads_rate_alike) {
     write_table(paper_rates_write, 3, three);
     assert_string_equal(one, three);
     for (int i = 0; i < NETWORKS + 1; i++) {
-        const char *beginning = printed("rates:%s,single,", i < NETWORKS ? networks[i].name : "warm-start");
+        const char *beginning =
+            printed("rates:%s,single,", i < NETWORKS ? printed("%s,1", networks[i].name) : "warm-start,");
         assert_int_equal(count_lines(one, beginning), RATE_DEFINITIONS * RATE_PHASES);
     }
 }
@@ -67,11 +72,11 @@ TEST(threads_close_the_loop_alike) {
     cut_times(one);
     cut_times(three);
     assert_string_equal(one, three);
-    assert_int_equal(count_lines(one, "closed_loop:pair-net,single,"), 1);
-    assert_int_equal(count_lines(one, "closed_loop:contact-net,single,"), 1);
-    assert_int_equal(count_lines(one, "closed_loop:engine:k=10,single,"), 1);
-    assert_int_equal(count_lines(one, "closed_loop:engine:k=100,single,"), 1);
-    assert_int_equal(count_lines(one, "closed_loop:interior,single,600,"), 1); /* one box has no chaos */
+    assert_int_equal(count_lines(one, "closed_loop:pair-net,1,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:contact-net,1,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:engine:k=10,,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:engine:k=100,,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:interior,,single,600,"), 1); /* one box has no chaos */
 }
 
 /* A thread that has yet to be created would be too late for the few pieces. */
@@ -80,6 +85,12 @@ FIXTURE(start_threads) {
 #pragma omp parallel num_threads(3) reduction(+ : running)
     running++;
     assert_true(running > 0);
+    /* Two shipped networks stand for those of split 1. */
+    strcpy(plan.networks_folder, temporary_path("."));
+    for (int i = 0; i < NETWORKS; i++)
+        assert_int_equal(symlink(printed("%s/scenes/networks/%s.npz", SOURCE_DIR, networks[i].name),
+                                 temporary_path(printed("%s-1.npz", networks[i].name))),
+                         0);
 }
 
 RUN_TESTS(start_threads, NULL)

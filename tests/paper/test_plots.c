@@ -84,7 +84,7 @@ TEST(all_are_drawn) {
         "    return '|'.join(' '.join(''.join(e.itertext()).split()) for e in found)\n"
         "for name, wanted in (\n"
         "    ('loss', ('Mean squared error', 'Levenberg-Marquardt', \"the paper's Table 1\", 'Training iteration')),\n"
-        "    ('factors', ('inputs = raw-unturned', 'best = impulse', '494', 'no result', 'aim for the best')),\n"
+        "    ('factors', ('inputs = raw-unturned', 'best = impulse', '494', 'no result', 'range over the splits')),\n"
         "    ('rates', ('Within 0.1 m/s', 'target-impulse', 'engine, 10 sweeps', 'Right at rest (%)')),\n"
         "    ('closed-loop', ('Frames until divergence by 0.1 m (600: never)', 'contact-net', 'pyramid, settled')),\n"
         "    ('laws', ('Friction cone (N s)', 'all four laws', 'Weight in the loss', 'Momentum (kg m/s)')),\n"
@@ -104,40 +104,42 @@ static void expect_refused(const char *table, const char *text, const char *mess
     assert_int_equal(access(temporary_path("figures"), F_OK), -1);
 }
 
-#define TABLE1 "network,target,optimizer,iteration,test,train,constant\n"
+#define TABLE1 "network,target,optimizer,iteration,test_range2,train_range2,constant_range2,seed\n"
 #define NETWORKS                                                                                                 \
     "network,factor,value,target,parameters,ratio,inputs,data,labels,layers,hidden,output,scale,optimizer,loss," \
-    "iterations,test,train,constant,accuracy\n"
-#define NETWORK_END ",,,,,,,,,,,,,,\n"
-#define RATES "network,scene,definition,phase,rate,constant,engine1,engine4,engine10\n"
-#define CLOSED "network,scene,frames_until_apart,us_step,us_step_engine,penetration_max,momentum_error,energy_ratio\n"
-#define CLOSED_END ",,,\n"
-#define LAWS "laws,weight,seed,test,constant,momentum,energy,approach,cone\n"
-#define TRANSFER "start,seed,launches,error,constant\n"
+    "iterations,test_range2,train_range2,constant_range2,accuracy,ratio_single,ratio_stack,largest,seed\n"
+#define NETWORK_END ",,,,,,,,,,,,,,,,,,1\n"
+#define RATES "network,scene,definition,phase,rate,constant,engine1,engine4,engine10,seed\n"
+#define CLOSED \
+    "network,scene,frames_until_apart,us_step,us_step_engine,penetration_max,momentum_error,energy_ratio,seed\n"
+#define CLOSED_END ",,,,1\n"
+#define LAWS "laws,weight,seed,test_deviation2,constant_deviation2,momentum,energy,approach,cone\n"
+#define TRANSFER "start,seed,launches,error_m_s,constant_m_s\n"
 
 TEST(tables_out_of_order_are_refused_with_their_place) {
     expect_refused("table1", "network,target\nbaseline,pair\n",
-                   "table1.csv:1:1: error: the column 'optimizer' is missing");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,ten,1,1,1\n",
+                   "table1.csv:1:1: error: the column 'seed' is missing");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,ten,1,1,1,1\n",
                    "table1.csv:2:20: error: iteration: 'ten' is not");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,,1,1,1\n",
+    expect_refused("table1", TABLE1 "baseline,pair,adam,,1,1,1,1\n",
                    "table1.csv:2:20: error: iteration: the field is empty");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,0,inf,1,1\n",
-                   "table1.csv:2:22: error: test: 'inf' is not a number");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1e999,1,1\n", "table1.csv:2:22: error: test: '1e999' is not");
-    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1,1,-1\n",
-                   "table1.csv:2:26: error: constant: '-1' is less than 0");
-    expect_refused("table1", TABLE1 "baseline,velocity,adam,0,1,1,1\n",
+    expect_refused("table1", TABLE1 "baseline,pair,adam,0,inf,1,1,1\n",
+                   "table1.csv:2:22: error: test_range2: 'inf' is not a number");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1e999,1,1,1\n",
+                   "table1.csv:2:22: error: test_range2: '1e999' is not");
+    expect_refused("table1", TABLE1 "baseline,pair,adam,0,1,1,-1,1\n",
+                   "table1.csv:2:26: error: constant_range2: '-1' is less than 0");
+    expect_refused("table1", TABLE1 "baseline,velocity,adam,0,1,1,1,1\n",
                    "table1.csv:2:10: error: target: 'velocity' is not");
-    expect_refused("table1", TABLE1 "baseline,pair,sgd,0,1,1,1\n",
+    expect_refused("table1", TABLE1 "baseline,pair,sgd,0,1,1,1,1\n",
                    "table1.csv:2:15: error: optimizer: 'sgd' is not one of adam");
     expect_refused("networks", NETWORKS "a,inputs,'; system(1),pair,1,1" NETWORK_END,
                    "networks.csv:2:10: error: value: ''; system(1)' may");
     expect_refused("networks", NETWORKS "a,b,\"`b`\",pair,1,1" NETWORK_END,
                    "networks.csv:2:5: error: value: '`b`' may only");
-    expect_refused("rates", RATES "baseline,single,range,impact,1.5,,,,\n",
+    expect_refused("rates", RATES "baseline,single,range,impact,1.5,,,,,1\n",
                    "rates.csv:2:30: error: rate: '1.5' is greater than 1");
-    expect_refused("rates", RATES "baseline,tower,range,impact,1,,,,\n",
+    expect_refused("rates", RATES "baseline,tower,range,impact,1,,,,,1\n",
                    "rates.csv:2:10: error: scene: 'tower' is not one of");
     expect_refused("closed_loop", CLOSED "baseline,stack,601,1,1" CLOSED_END,
                    "closed_loop.csv:2:16: error: frames_until_apart: '601'");
@@ -168,12 +170,12 @@ TEST(too_many_lines_are_refused) {
         const char *table, *header, *line, *message;
         int most;
     } cases[] = {
-        {"transfer", TRANSFER, "scratch,1,1,1,1\n", "transfer.csv:5002:1: error: the table has more than 5000 rows",
-         5000},
+        {"transfer", TRANSFER, "scratch,1,1,1,1\n", "transfer.csv:20002:1: error: the table has more than 20000 rows",
+         20000},
         {"networks", NETWORKS, "a,a,b,pair,1,1" NETWORK_END,
-         "networks.csv:202:1: error: the table has more than 200 rows", 200},
+         "networks.csv:2002:1: error: the table has more than 2000 rows", 2000},
         {"closed_loop", CLOSED, "a,stack,1,1,1" CLOSED_END,
-         "closed_loop.csv:242:1: error: the table has more than 240 rows", 240},
+         "closed_loop.csv:2002:1: error: the table has more than 2000 rows", 2000},
     };
     for (int i = 0; i < 3; i++) {
         start_afresh();
@@ -199,8 +201,8 @@ TEST(a_missing_table_is_refused) {
 TEST(figures_without_rows_are_left_out) {
     static const struct {
         const char *table, *figure, *text;
-    } cases[] = {{"table1", "loss", TABLE1 "best-pair,pair,adam,0,1,1,1\nbaseline,points,adam,0,1,1,1\n"},
-                 {"rates", "rates", RATES "baseline,single,range,after,1,,,,\nwarm-start,single,range,rest,1,,,,\n"},
+    } cases[] = {{"table1", "loss", TABLE1 "best-pair,pair,adam,0,1,1,1,1\nbaseline,points,adam,0,1,1,1,1\n"},
+                 {"rates", "rates", RATES "baseline,single,range,after,1,,,,,1\nwarm-start,single,range,rest,1,,,,,\n"},
                  {"laws", "laws", LAWS "engine,,,,,1,1,1,1\n"}};
     start_afresh();
     for (int i = 0; i < 3; i++) write_table(cases[i].table, cases[i].text, strlen(cases[i].text));
@@ -224,11 +226,12 @@ TEST(odd_numbers_are_drawn) {
         const char *n = cases[i].number, *rate = cases[i].rate, *divisor = cases[i].divisor;
         char text[1024];
         start_afresh();
-        snprintf(text, sizeof text, TABLE1 "baseline,pair,adam,%s,%s,,%s\n", cases[i].needed, n, n);
+        snprintf(text, sizeof text, TABLE1 "baseline,pair,adam,%s,%s,,%s,1\n", cases[i].needed, n, n);
         write_table("table1", text, strlen(text));
         snprintf(text, sizeof text, NETWORKS "best,best,,pair,%s,%s" NETWORK_END, n, n);
         write_table("networks", text, strlen(text));
-        snprintf(text, sizeof text, RATES "baseline,single,range,rest,%s,%s,%s,%s,%s\n", rate, rate, rate, rate, rate);
+        snprintf(text, sizeof text, RATES "baseline,single,range,rest,%s,%s,%s,%s,%s,1\n", rate, rate, rate, rate,
+                 rate);
         write_table("rates", text, strlen(text));
         snprintf(text, sizeof text, CLOSED "a,single,0,%s,%s" CLOSED_END, n, divisor);
         write_table("closed_loop", text, strlen(text));
