@@ -90,7 +90,7 @@ if command -v dpkg-shlibdeps >/dev/null; then
         "libc6, libdeflate0, libpng16-16, libyaml-0-2, zlib1g"
     dpkg-deb -c "$package" >files
     grep -q './usr/share/doc/twinbox-compare/golden/README.md$' files || fail "the package has no page"
-    grep -q 'rwxr-xr-x .*/npm/twinbox-compare.js$' files || fail "the wrapper cannot be run"
+    for file in twinbox-compare-.*.tgz pytest_twinbox-.*.whl; do grep -q "/twinbox/$file$" files || fail "no $file in the package"; done
     ! grep -q scenes files || fail "the package has scenes"
 fi
 finish
