@@ -157,7 +157,9 @@ void card_plan(Picture *picture) {
 static void short_verdict(const Trajectory *run, char *text, size_t size) {
     size_t length = 0;
     for (const char *at; *(at = run->verdict + length) != '\0' && strncmp(at, " (", 2) != 0; length++)
-        if (strncmp(at, "; ", 2) == 0 && strncmp(at + 2 + strspn(at + 2, "0123456789"), " of ", 4) != 0) break;
+        if (strncmp(at, "; ", 2) == 0 && strncmp(at + 2 + strspn(at + 2, "0123456789"), " of ", 4) != 0 &&
+            strncmp(at + 2 + strspn(at + 2, "0123456789"), " moved ", 7) != 0)
+            break;
     snprintf(text, size, "%.*s", (int)length, run->verdict);
 }
 

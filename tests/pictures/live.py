@@ -20,6 +20,7 @@ ENDED = "player.runs.every(run => run.hash && run.reached === run.frames - 1 && 
 FRAMED = "Object.entries(player.runs[0].framing).every(([key, value]) => player.data.framing[key] === value)"
 HASHES = "player.runs.map(run => run.hash)"
 PROOFS = "document.getElementById('check').textContent.split('= that of the C program').length - 1"
+SHORT = r" \(|; (?!\d+ (?:of|moved) )"  # ends what a verdict says without figures
 PROBLEM = "document.getElementById('problem').textContent"
 BOMB = """(() => {
   const stage = document.getElementById("stage"), box = stage.getBoundingClientRect();
@@ -273,7 +274,7 @@ def check_prediction(checks, browser):
     page.wait(ENDED)
     words = page.run("player.runs[0].ended")
     checks.equal("the answer when the run has ended", page.run("document.getElementById('question').textContent"),
-                 f"You said engine. It {words.split(';')[0]}.")
+                 f"You said engine. It {re.split(SHORT, words)[0]}.")
     page.run("location.hash = '#predict=1'")
     becomes(checks, page, "a link asks", "document.body.classList.contains('asked') && document.getElementById('predict').checked",
             True)

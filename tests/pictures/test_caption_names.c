@@ -169,8 +169,9 @@ TEST_WITH(a_caption_of_the_options_is_whole_or_refused, make, destroy) {
 
 /* What happened, without figures behind it: counts of boxes stay. */
 TEST_WITH(the_end_card_has_the_verdicts, make, destroy) {
-    static const char *const verdicts[][2] = {{"collapses; 8 of 10 fell (most: 2 m)", "collapses; 8 of 10 fell"},
-                                              {"settles at 3 s; slides by 5 m", "settles at 3 s"}};
+    static const char *const verdicts[][2] = {
+        {"collapses; 8 of 10 fell; 2 moved by up to 2 m; rests", "collapses; 8 of 10 fell; 2 moved by up to 2 m"},
+        {"settles at 3 s; slides by 5 m", "settles at 3 s"}};
     const RenderOptions options = {.width = 1280, .height = 720, .end_card = true};
     Picture picture;
     OWN(Drawing) drawing = {0};
