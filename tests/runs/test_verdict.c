@@ -185,6 +185,62 @@ TEST(moved_is_a_tenth_of_a_size_beside) {
     }
 }
 
+/* Of five boxes two move, the first farther; two fall, one of them out of the scene; one stays. */
+TEST(each_number_is_of_its_bodies) {
+    Trial trial = trial_on_ground();
+    for (int i = 0; i < 5; i++) add_box(&trial, 3 * (float)i, 0.499f);
+    go(&trial, 600);
+    trial.bodies[1].position.x -= 0.75f;
+    trial.bodies[2].position.x += 0.25f;
+    trial.bodies[3].angle = 1;
+    trial.bodies[4].position.y = -25;
+    go(&trial, 700);
+    trial.bodies[1].position.x += 0.25f;
+    go(&trial, 701);
+    const VerdictReading reading = end(&trial);
+    const VerdictCount *count = &reading.count;
+    assert_true(count->bodies == 5 && count->fell == 2 && count->left == 1 && count->moved == 2 && count->first == 601);
+    assert_near(count->farthest, 0.5, 1e-5);
+    assert_near(reading.drift, 25.499, 1e-4);
+}
+
+/* Stays of 60 frames, then a last one. */
+TEST(a_rest_is_twice_as_long_as_the_stays_before) {
+    for (int last = 119; last <= 121; last += 2) {
+        Trial trial = box_on_ground();
+        for (int stay = 0; stay < 4; stay++) {
+            go(&trial, 60 * (stay + 1) - 1);
+            trial.bodies[1].position.x += 0.03f;
+        }
+        go(&trial, 240 + last);
+        assert_int_equal(end(&trial).moving, last == 119);
+    }
+}
+
+/* A box that nothing carries at the start has a place when the bomb strikes, if it lies on something then and is slow:
+   a fall from there counts. */
+TEST(what_has_dropped_into_place_can_fall) {
+    static const struct {
+        float gap, speed; /* m, m/s */
+        bool carried;
+    } cases[] = {{0.04f, 0, true}, {0.07f, 0, false}, {-0.001f, 1.0f, true}, {-0.001f, 1.3f, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Trial trial = trial_on_ground();
+        add_box(&trial, 0, 3);
+        trial.run.bomb = 2;
+        go(&trial, 10);
+        trial.bodies[1].position = vec2(cases[i].speed / -SECOND, 0.5f + cases[i].gap);
+        go(&trial, 40);
+        trial.bodies[1].position.x = 0;
+        add_box(&trial, -0.99f, 0.5f);
+        trial.run.bomb = 2;
+        go(&trial, 41);
+        trial.bodies[1].angle = 1;
+        go(&trial, 100);
+        assert_int_equal(end(&trial).count.fell, cases[i].carried);
+    }
+}
+
 /* Of four boxes on the ground, which some leave in the frame after the bomb has touched one. */
 static VerdictReading struck(int falling, bool touched) {
     Trial trial = trial_on_ground();
