@@ -20,8 +20,7 @@ static const double rest_units = 0.5; /* a hop of a size up and down takes as lo
 static const double fall_share = 0.5, fall_turn = 30 * M_PI / 180;
 static const double moved_share = 0.1;   /* of a size: seen at a glance */
 static const double carrier_reach = 0.5; /* of a side; a gap beyond that is a drop */
-static const double struck_reach = 0.05; /* of a side: for what lies in its place when the bomb strikes */
-static const double slow_share = 0.25;   /* of the speed of a fall by a body's size: it lies in its place */
+static const double slow_share = 0.25;   /* of the speed of a fall by a body's size: it drops, and does not fly */
 static const double start_share = 0.005; /* of a size in a unit: the body starts with a speed */
 static const double start_poses = 0.5;   /* the same of differences of poses, which have the first step's impulses */
 static const double unit_sizes = 5;      /* a box of 1 m: one second */
@@ -68,12 +67,18 @@ VerdictRun verdict_run_of(const Scene *scene, const Method *method) {
     return run;
 }
 
-/* m: how far the box reaches along gravity. */
-static double reach_along(const VerdictWatch *watch, const WatchedBody *body, const Pose *pose) {
+/* m: how far the box reaches along a direction, from its middle. */
+static double reach_along(double x, double y, const WatchedBody *body, const Pose *pose) {
     const double c = cos(pose->angle), s = sin(pose->angle);
-    return (fabs(c * watch->up_x + s * watch->up_y) * (double)body->box.x +
-            fabs(c * watch->up_y - s * watch->up_x) * (double)body->box.y) /
-           2;
+    return (fabs(c * x + s * y) * (double)body->box.x + fabs(c * y - s * x) * (double)body->box.y) / 2;
+}
+
+static double reach_up(const VerdictWatch *watch, const WatchedBody *body, const Pose *pose) {
+    return reach_along(watch->up_x, watch->up_y, body, pose);
+}
+
+static double reach_across(const VerdictWatch *watch, const WatchedBody *body, const Pose *pose) {
+    return reach_along(watch->up_y, -watch->up_x, body, pose);
 }
 
 static Vec2 moved_down(const VerdictWatch *watch, Vec2 from, double way) {
@@ -113,7 +118,7 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
                               .is_bomb = i == watch->run.bomb};
         const double up = height_of(watch, &pose);
         if (body->is_static) {
-            watch->floor = fmin(watch->floor, up - reach_along(watch, body, &pose));
+            watch->floor = fmin(watch->floor, up - reach_up(watch, body, &pose));
             continue;
         }
         watch->smallest = fmin(watch->smallest, body->side);
@@ -125,26 +130,22 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
     return true;
 }
 
-/* By how much body i must move down until it touches j; INFINITY: farther than `reach`. */
-static double way_down(const VerdictWatch *watch, int i, const Box *of_i, const Box *of_j, double reach) {
-    enum { STEPS = 10, HALVINGS = 20 };
-    const double near = 0.01 * watch->bodies[i].side;
+/* By how much body i must move down until it touches j; INFINITY: farther than `reach`. What separates two boxes is no
+   more than the way until they touch. */
+static double way_down(const VerdictWatch *watch, int i, int j, const Box *of_i, const Box *of_j, double reach) {
+    enum { STEPS = 100 };
+    const WatchedBody *body = &watch->bodies[i], *below = &watch->bodies[j];
+    const double beside = fabs(across_of(watch, &body->last) - across_of(watch, &below->last));
+    if (beside >= reach_across(watch, body, &body->last) + reach_across(watch, below, &below->last)) return INFINITY;
     Box box = *of_i;
-    double low = 0, high = INFINITY;
-    for (int k = 0; k <= STEPS && isinf(high); k++) {
-        const double down = reach * k / STEPS;
-        box.position = moved_down(watch, of_i->position, down);
-        if (-overlap_depth(&box, of_j) <= near)
-            high = down;
-        else
-            low = down;
+    double way = 0;
+    for (int k = 0; k < STEPS && way <= reach; k++) {
+        const double apart = -overlap_depth(&box, of_j);
+        if (apart <= 1e-3 * body->side) return way;
+        way += apart;
+        box.position = moved_down(watch, of_i->position, way);
     }
-    for (int k = 0; k < HALVINGS && high > 0 && isfinite(high); k++) {
-        const double middle = (low + high) / 2;
-        box.position = moved_down(watch, of_i->position, middle);
-        *(-overlap_depth(&box, of_j) <= 0 ? &high : &low) = middle;
-    }
-    return high;
+    return INFINITY;
 }
 
 /* Gives a body its carrier, behind it in the order. */
@@ -170,17 +171,17 @@ static int by_height(const void *a, const void *b) {
     return one->up != other->up ? (one->up > other->up ? 1 : -1) : one->body - other->body;
 }
 
-/* Whether i needs what j could give: a carrier. */
+/* Whether i needs what j could give: a carrier. What flies sideways gets none. */
 static bool may_carry(const VerdictWatch *watch, int j, int i) {
     const WatchedBody *body = &watch->bodies[i];
     return !body->is_static && !body->is_bomb && body->carrier < 0 && !watch->bodies[j].is_bomb &&
-           way_between(&body->last, &body->before) <
+           fabs(across_of(watch, &body->last) - across_of(watch, &body->before)) <
                slow_share * sqrt(2 * watch->pull * body->size) * (double)watch->run.dt;
 }
 
-/* Of the bodies without a carrier, those that are slow get one: what they touch first below them; or else what holds
-   them from the side. Poses are the last ones. */
-static bool find_carriers(VerdictWatch *watch, double share, Error *error) {
+/* The bodies without a carrier get one: what they touch first if they move down by up to this way, m, or by half their
+   side; or else what holds them from the side. Poses are the last ones. */
+static bool find_carriers(VerdictWatch *watch, double way, Error *error) {
     const size_t count = (size_t)watch->body_count;
     SortAndSweep sweep = {0};
     PairList pairs = {0};
@@ -193,7 +194,7 @@ static bool find_carriers(VerdictWatch *watch, double share, Error *error) {
         const WatchedBody *body = &watch->bodies[i];
         boxes[i] = box_of(body, &body->last);
         bounds[i] = bounds_of_box(&boxes[i]);
-        const Vec2 reach = moved_down(watch, vec2(0, 0), share * body->side);
+        const Vec2 reach = moved_down(watch, vec2(0, 0), larger(way, carrier_reach * body->side));
         const float margin = (float)(touch_share * body->side);
         bounds[i].low = vec2_add(bounds[i].low, vec2(fminf(reach.x, 0) - margin, fminf(reach.y, 0) - margin));
         bounds[i].high = vec2_add(bounds[i].high, vec2(fmaxf(reach.x, 0) + margin, fmaxf(reach.y, 0) + margin));
@@ -207,7 +208,7 @@ static bool find_carriers(VerdictWatch *watch, double share, Error *error) {
         const WatchedBody *body = &watch->bodies[i], *other = &watch->bodies[j];
         const double up = other->is_static ? -INFINITY : height_of(watch, &other->last);
         if (!may_carry(watch, j, i) || up >= height_of(watch, &body->last)) continue;
-        const double gap = way_down(watch, i, &boxes[i], &boxes[j], share * body->side);
+        const double gap = way_down(watch, i, j, &boxes[i], &boxes[j], larger(way, carrier_reach * body->side));
         const double alike = 0.1 * body->side; /* gaps that differ by less are equal */
         if (isinf(gap) || gap > below[i].gap + alike) continue;
         if (below[i].on < 0 || gap < below[i].gap - alike || up < below[i].up) below[i] = (Below){i, j, gap, up};
@@ -281,8 +282,25 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
         starting += body->starts;
     }
     watch->struck = (run->bomb >= 0 && moving > 0) || (starting > 0 && starting < moving);
-    if (pull > 0 && !find_carriers(watch, carrier_reach, error)) return false;
+    if (pull > 0 && !find_carriers(watch, 0, error)) return false;
     return !run->finds_contacts || contact_finder_find(&watch->finder, bodies, count, run->skin, error);
+}
+
+typedef struct Span {
+    double low, high; /* m, across gravity */
+} Span;
+
+/* Where static bodies are, and what chains of contacts join to them. */
+static Span held_span(const VerdictWatch *watch) {
+    Span span = {INFINITY, -INFINITY};
+    for (int i = 0; i < watch->body_count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        if (body->held != watch->frame) continue;
+        const double across = across_of(watch, &body->last);
+        span.low = across - body->corner < span.low ? across - body->corner : span.low;
+        span.high = larger(span.high, across + body->corner);
+    }
+    return span;
 }
 
 /* Whether a body is lower than half its side below its reference, or has turned, or left the scene. Bodies come behind
@@ -302,10 +320,13 @@ static void judge_falls(VerdictWatch *watch) {
         }
         body->fell = !fell ? 0 : body->fell > 0 ? body->fell : watch->frame;
     }
+    const Span held = held_span(watch);
     for (int i = 0; watch->pull > 0 && isfinite(watch->floor) && i < watch->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
-        const double up = height_of(watch, &body->last);
-        body->left = !body->is_static && up < watch->floor && up + reach_along(watch, body, &body->last) < watch->floor;
+        if (body->is_static) continue;
+        const double up = height_of(watch, &body->last), across = across_of(watch, &body->last);
+        body->gone = up < watch->floor && up + reach_up(watch, body, &body->last) < watch->floor;
+        body->left = body->gone || across - body->corner > held.high || across + body->corner < held.low;
         if (body->left && body->fell == 0) body->fell = watch->frame;
         if (!body->left && body->carrier < 0) body->fell = 0;
     }
@@ -347,10 +368,10 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *er
     const int had = watch->body_count;
     if (!add_bodies(watch, step.bodies, step.body_count, step.frame, error)) return false;
     if (watch->met < 0 && run->bomb >= 0 && run->bomb < had && strikes(watch, &step)) {
-        /* The bomb brings its energy, and what fell into its place before is judged from there on. */
+        /* The bomb brings its energy, and what drops is judged from here on: it would fall that far in a unit. */
         watch->met = step.frame - 1;
         energy_count(watch, &watch->bodies[run->bomb]);
-        if (watch->pull > 0 && !find_carriers(watch, struck_reach, error)) return false;
+        if (watch->pull > 0 && !find_carriers(watch, unit_sizes * watch->mean, error)) return false;
     }
     double farthest = 0; /* m: what a corner has moved in this step */
     for (int i = 0; i < step.body_count; i++) {
@@ -452,7 +473,7 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
             count.moved++;
             count.farthest = larger(count.farthest, way);
         }
-        if (body->left) continue;
+        if (body->gone) continue;
         const int stay = watch->frame - body->since,
                   shorter = body->stays[0] < body->stays[1] ? body->stays[0] : body->stays[1];
         const bool known = body->stays[0] != INT_MAX && body->stays[1] != INT_MAX;

@@ -29,7 +29,7 @@ struct WatchedBody {
     double carrier_up;      /* m: height of the carrier at the reference */
     double gap, gaps;       /* m: below the body; and below all that carries it, too */
     int fell;               /* since this frame; 0: not */
-    bool left;
+    bool left, gone;        /* it is beside or below all static bodies; it is below them */
     int root;                    /* scratch: of its chain of contacts */
     double heights[HANG_CHECKS]; /* m: at the last checks */
 };
@@ -51,6 +51,10 @@ static inline double larger(double a, double b) { return a < b ? b : a; }
 
 static inline double height_of(const VerdictWatch *watch, const Pose *pose) {
     return pose->x * watch->up_x + pose->y * watch->up_y;
+}
+
+static inline double across_of(const VerdictWatch *watch, const Pose *pose) {
+    return pose->x * watch->up_y - pose->y * watch->up_x;
 }
 
 static inline double turn_between(double a, double b) {

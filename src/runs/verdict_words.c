@@ -79,9 +79,7 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
     if (count->moved > 0) text_add(words, SIZE, "; %d moved by up to %.2g m", count->moved, count->farthest);
     if (count->left > 0) text_add(words, SIZE, "; %d out of the scene", count->left);
     if (watch->run.bomb >= 0 && watch->met < 0) text_add(words, SIZE, "; the bomb touched nothing");
-    if (count->bodies > 0 && count->left == count->bodies)
-        text_add(words, SIZE, "; nothing is left in the scene");
-    else if (reading->too_short)
+    if (reading->too_short)
         text_add(words, SIZE, "; too short to tell");
     else if (reading->moving)
         text_add(words, SIZE, "; still moving at the end");
