@@ -118,7 +118,10 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
                               .is_bomb = i == watch->run.bomb};
         const double up = height_of(watch, &pose);
         if (body->is_static) {
+            const double across = across_of(watch, &pose), reach = reach_across(watch, body, &pose);
             watch->floor = fmin(watch->floor, up - reach_up(watch, body, &pose));
+            watch->low = fmin(watch->low, across - reach);
+            watch->high = larger(watch->high, across + reach);
             continue;
         }
         watch->smallest = fmin(watch->smallest, body->side);
@@ -254,6 +257,8 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
                             .up_y = pull > 0 ? -y / pull : 1,
                             .smallest = INFINITY,
                             .floor = INFINITY,
+                            .low = INFINITY,
+                            .high = -INFINITY,
                             .lowest = INFINITY,
                             .kept = INFINITY,
                             .met = -1,
@@ -286,21 +291,19 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
     return !run->finds_contacts || contact_finder_find(&watch->finder, bodies, count, run->skin, error);
 }
 
-typedef struct Span {
-    double low, high; /* m, across gravity */
-} Span;
-
-/* Where static bodies are, and what chains of contacts join to them. */
-static Span held_span(const VerdictWatch *watch) {
-    Span span = {INFINITY, -INFINITY};
+/* Whether a body is beside all static bodies, and all that chains of contacts join to them. */
+static bool is_beside(const VerdictWatch *watch, const WatchedBody *body) {
+    const double across = across_of(watch, &body->last), low = across - body->corner, high = across + body->corner;
+    if (body->held == watch->frame || (high > watch->low && low < watch->high)) return false;
+    bool all_lower = true, all_higher = true;
     for (int i = 0; i < watch->body_count; i++) {
-        const WatchedBody *body = &watch->bodies[i];
-        if (body->held != watch->frame) continue;
-        const double across = across_of(watch, &body->last);
-        span.low = across - body->corner < span.low ? across - body->corner : span.low;
-        span.high = larger(span.high, across + body->corner);
+        const WatchedBody *other = &watch->bodies[i];
+        if (other->is_static || other->held != watch->frame) continue;
+        const double at = across_of(watch, &other->last);
+        all_lower &= at + other->corner < low;
+        all_higher &= at - other->corner > high;
     }
-    return span;
+    return (low > watch->high && all_lower) || (high < watch->low && all_higher);
 }
 
 /* Whether a body is lower than half its side below its reference, or has turned, or left the scene. Bodies come behind
@@ -320,13 +323,12 @@ static void judge_falls(VerdictWatch *watch) {
         }
         body->fell = !fell ? 0 : body->fell > 0 ? body->fell : watch->frame;
     }
-    const Span held = held_span(watch);
     for (int i = 0; watch->pull > 0 && isfinite(watch->floor) && i < watch->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
         if (body->is_static) continue;
-        const double up = height_of(watch, &body->last), across = across_of(watch, &body->last);
+        const double up = height_of(watch, &body->last);
         body->gone = up < watch->floor && up + reach_up(watch, body, &body->last) < watch->floor;
-        body->left = body->gone || across - body->corner > held.high || across + body->corner < held.low;
+        body->left = body->gone || is_beside(watch, body);
         if (body->left && body->fell == 0) body->fell = watch->frame;
         if (!body->left && body->carrier < 0) body->fell = 0;
     }

@@ -26,13 +26,14 @@
    Rest. A body has a place: the pose from which its corners have since moved by no more than 2% of its size; when it
    moves farther, it takes a new place there. It rests if it took its last place half a unit ago and more than twice the
    shorter of its last two stays, so that constant gliding never rests. A run rests since its last body does. The bomb
-   and what left the scene need not rest.
+   and what is below all static bodies need not rest.
 
    Fell, at the end: a body is lower than at its reference by more than half its side and the gaps below it, and so
-   relative to what carried it, unless that fell, too: sag is no fall. Or it has turned by 30 degrees; or it left: its
-   top is below all static bodies. Its carrier is what it touches first if moved down by up to half its side, or what
-   holds it from the side, as in an arch. The reference is the start; for a body without a carrier there that lies in
-   its place when the bomb strikes, that moment; others without a carrier drop, and are judged by rest and leaving only.
+   relative to what carried it, unless that fell, too: sag is no fall. Or it has turned by 30 degrees; or it left: it is
+   below all static bodies, or beside all that chains of contacts join to them. Its carrier is what it touches first if
+   moved down by up to half its side, or what holds it from the side, as in an arch. The reference is the start; for a
+   body without a carrier there that does not fly sideways, the moment when the bomb strikes, and its carrier is what it
+   would reach in a unit. Others without a carrier drop, and are judged by rest and leaving only.
    Moved: has not fallen, and is a tenth of its size beside its reference, or above it. */
 #pragma once
 #include "base/base.h"
@@ -168,6 +169,7 @@ typedef struct VerdictWatch {
     double up_x, up_y, pull;   /* unit vector; m/s^2 */
     double mean, smallest;     /* m: mean size of the bodies at the start; smallest side of a dynamic one */
     double floor;              /* m: the lowest point of all static bodies */
+    double low, high;          /* m: their ends across gravity */
     double unit;               /* s */
     double energy, kinetic;    /* J: in the last frame: of all dynamic bodies; their mean */
     double speed, fastest;     /* m/s: of the fastest body in the last frame; of the fastest corner so far */

@@ -162,17 +162,27 @@ TEST(what_stands_on_a_fallen_body_fell_with_it) {
     assert_int_equal(end(&trial).count.fell, 3);
 }
 
-TEST(what_is_below_all_static_bodies_has_left) {
-    for (int i = 0; i < 2; i++) {
+/* The ground is 100 m wide, and its lower face is at -20 m. */
+TEST(what_is_below_or_beside_all_that_holds_has_left) {
+    static const struct {
+        float x, y;
+        bool left, moving;
+    } cases[] = {{50.6f, 20, false, false}, {50.8f, 20, true, false}, {0, -20.49f, false, false},
+                 {0, -20.51f, true, false}, {50.6f, 20, false, true}, {50.8f, 20, true, true},
+                 {0, -20.51f, true, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Trial trial = stack_of(2);
-        add_box(&trial, 55, 20); /* nothing carries it */
+        add_box(&trial, 0, 20); /* nothing carries it */
         go(&trial, 10);
-        trial.bodies[3].position.y = i == 0 ? -20.49f : -20.51f; /* the ground's lower face is at -20 */
+        trial.bodies[3].position = vec2(cases[i].x, cases[i].y);
+        go(&trial, 99);
+        if (cases[i].moving || i == 6) trial.bodies[3].position.y -= 1; /* what is below all need not rest */
         go(&trial, 100);
         const VerdictReading reading = end(&trial);
-        assert_int_equal(reading.count.left, i);
-        assert_int_equal(reading.count.fell, i);
+        assert_int_equal(reading.count.left, cases[i].left);
+        assert_int_equal(reading.count.fell, cases[i].left);
         assert_int_equal(reading.count.bodies, 3);
+        assert_int_equal(reading.moving, cases[i].moving);
     }
 }
 
@@ -217,13 +227,13 @@ TEST(a_rest_is_twice_as_long_as_the_stays_before) {
     }
 }
 
-/* A box that nothing carries at the start has a place when the bomb strikes, if it lies on something then and is slow:
-   a fall from there counts. */
-TEST(what_has_dropped_into_place_can_fall) {
+/* A box that nothing carries at the start is judged from the strike on, if it would drop onto something within a unit,
+   which is 5 m, and does not fly sideways: it can turn, and fall by more than its gap. */
+TEST(what_drops_when_the_bomb_strikes_can_fall) {
     static const struct {
         float gap, speed; /* m, m/s */
         bool carried;
-    } cases[] = {{0.04f, 0, true}, {0.07f, 0, false}, {-0.001f, 1.0f, true}, {-0.001f, 1.3f, false}};
+    } cases[] = {{4.9f, 0, true}, {5.1f, 0, false}, {-0.001f, 1.0f, true}, {-0.001f, 1.3f, false}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Trial trial = trial_on_ground();
         add_box(&trial, 0, 3);
@@ -232,8 +242,7 @@ TEST(what_has_dropped_into_place_can_fall) {
         trial.bodies[1].position = vec2(cases[i].speed / -SECOND, 0.5f + cases[i].gap);
         go(&trial, 40);
         trial.bodies[1].position.x = 0;
-        add_box(&trial, -0.99f, 0.5f);
-        trial.run.bomb = 2;
+        add_box(&trial, -0.99f, 0.5f + cases[i].gap);
         go(&trial, 41);
         trial.bodies[1].angle = 1;
         go(&trial, 100);
