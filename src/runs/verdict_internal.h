@@ -24,12 +24,12 @@ struct WatchedBody {
     Pose last, before, prior;  /* in the last frame, the one before it, and that before it */
     Pose place;                /* since frame `since`; the two stays before took so many frames */
     int since, stays[2];
-    Pose reference, rested; /* what a fall is judged by; after VERDICT_DRIFT_UNITS */
-    int carrier;            /* -1: none, it drops */
-    double carrier_up;      /* m: height of the carrier at the reference */
-    double gap, gaps;       /* m: below the body; and below all that carries it, too */
-    int fell;               /* since this frame; 0: not */
-    bool left, gone;        /* it is beside or below all static bodies; it is below them */
+    Pose reference, rested;      /* what a fall is judged by; after VERDICT_DRIFT_UNITS */
+    int carrier;                 /* -1: none, it drops */
+    double carrier_up;           /* m: height of the carrier at the reference */
+    double gap, gaps;            /* m: below the body; and below all that carries it, too */
+    int fell;                    /* since this frame; 0: not */
+    bool left, gone;             /* it is beside or below all static bodies; it is below them */
     int root;                    /* scratch: of its chain of contacts */
     double heights[HANG_CHECKS]; /* m: at the last checks */
 };
