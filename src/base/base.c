@@ -12,7 +12,6 @@
 
 #undef error_input
 #undef error_failure
-#undef error_incomplete
 #undef error_system
 #undef error_interrupted
 #undef error_memory
@@ -54,7 +53,6 @@ static void set(Error *error, ErrorKind kind, const char *where, const char *for
 SETTER(error_input, ERROR_INPUT)
 SETTER(error_system, ERROR_SYSTEM)
 SETTER(error_interrupted, ERROR_INTERRUPTED)
-SETTER(error_incomplete, ERROR_INCOMPLETE)
 
 bool error_failure(Error *error, MethodFailure failure, const char *where, const char *format, ...) {
     va_list arguments;

@@ -17,13 +17,7 @@
    too, unless the format has one. */
 
 /* The values are the program's exit statuses. */
-typedef enum ErrorKind {
-    ERROR_NONE = 0,
-    ERROR_INCOMPLETE = 1,
-    ERROR_INPUT = 2,
-    ERROR_SYSTEM = 3,
-    ERROR_INTERRUPTED = 130
-} ErrorKind;
+typedef enum ErrorKind { ERROR_NONE = 0, ERROR_INPUT = 2, ERROR_SYSTEM = 3, ERROR_INTERRUPTED = 130 } ErrorKind;
 
 /* Whether a method failed at its work, rather than what it was given: to a study that is a result. */
 typedef enum MethodFailure {
@@ -62,9 +56,6 @@ bool error_system(Error *error, const char *where, const char *format, ...) PRIN
 /* Work was stopped on request (base/machine.h): by SIGINT or SIGTERM. */
 bool error_interrupted(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
 
-/* Other processes have not finished what this one needs. */
-bool error_incomplete(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
-
 /* Out of memory: a system error whose text needs no arguments. */
 bool error_memory(Error *error, const char *where);
 
@@ -78,7 +69,6 @@ static inline bool error_false(bool set) {
 }
 #define error_input(...) error_false(error_input(__VA_ARGS__))
 #define error_failure(...) error_false(error_failure(__VA_ARGS__))
-#define error_incomplete(...) error_false(error_incomplete(__VA_ARGS__))
 #define error_system(...) error_false(error_system(__VA_ARGS__))
 #define error_interrupted(...) error_false(error_interrupted(__VA_ARGS__))
 #define error_memory(...) error_false(error_memory(__VA_ARGS__))

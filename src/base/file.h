@@ -38,9 +38,6 @@ bool file_write_soon(const char *path, const void *data, size_t size, Error *err
 /* Waits until a file, or the entries of a directory, are on the disk. */
 bool file_sync(const char *path, Error *error);
 
-/* Writes behind what is in the file; creates it if it is missing. */
-bool file_append(const char *path, const void *data, size_t size, Error *error);
-
 /* file_read() and file_write() for a file `name` of the open directory `folder`, without following links:
    file_read_at() refuses one, file_write_at() replaces it. `path` is used in messages. */
 char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error);

@@ -266,11 +266,6 @@ static bool finish(bool written, const char *path, size_t size, Error *error) {
     return true;
 }
 
-bool file_append(const char *path, const void *data, size_t size, Error *error) {
-    const int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666);
-    return finish(write_into(file, &(Contents){data, size, -1}), path, size, error);
-}
-
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
     return finish(put(path, &(Contents){data, size, -1}, true), path, size, error);
 }

@@ -124,28 +124,19 @@ bool json_read_end(JsonReader *reader, Error *error) {
     return reader->at == reader->end || json_read_error(reader, error, "end of file expected");
 }
 
-static bool json_begin(JsonReader *reader, const char *name, const char *text, size_t size, size_t most, size_t memory,
-                       Error *error) {
-    *reader = (JsonReader){.path = name, .at = text, .end = text + size, .most = most};
-    reader->line = reader->column = reader->value_line = reader->value_column = 1;
-    reader->memory = malloc(sizeof *reader->memory + memory);
-    if (reader->memory == NULL) return error_memory(error, name);
-    reader->memory->room = memory / sizeof *reader->memory->blocks;
-    return true;
-}
-
-bool json_read_text(JsonReader *reader, const char *name, const char *text, size_t size, Error *error) {
-    return json_begin(reader, name, text, size, size, JSON_VALUE_MEMORY + JSON_TEXT_TIMES * size, error);
-}
-
 bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error) {
     size_t size;
     char *text = file_read(path, max_size, &size, error);
     if (text == NULL) return false;
-    if (json_begin(reader, path, text, size, JSON_VALUE_SIZE, JSON_VALUE_MEMORY, error))
-        return reader->text = text, true;
+    *reader = (JsonReader){.path = path, .text = text, .at = text, .end = text + size, .most = JSON_VALUE_SIZE};
+    reader->line = reader->column = reader->value_line = reader->value_column = 1;
+    reader->memory = malloc(sizeof *reader->memory + JSON_VALUE_MEMORY);
+    if (reader->memory != NULL) {
+        reader->memory->room = JSON_VALUE_MEMORY / sizeof *reader->memory->blocks;
+        return true;
+    }
     free(text);
-    return false;
+    return error_memory(error, path);
 }
 
 void json_read_close(JsonReader *reader) {

@@ -20,7 +20,7 @@
 
 /* Bytes of one value in a file, and in memory; of text in memory, a value may have all bytes, and so many times these
    more. */
-enum { JSON_VALUE_SIZE = 1 << 16, JSON_VALUE_MEMORY = 1 << 20, JSON_TEXT_TIMES = 32 };
+enum { JSON_VALUE_SIZE = 1 << 16, JSON_VALUE_MEMORY = 1 << 20 };
 
 typedef struct JsonReader {
     const char *path; /* as given; not owned */
@@ -34,8 +34,6 @@ typedef struct JsonReader {
 
 /* Opens a file of at most max_size bytes. On failure nothing needs to be freed. */
 bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error);
-/* The same for text in memory, which stays the caller's; messages have this name in the place of the path. */
-bool json_read_text(JsonReader *reader, const char *name, const char *text, size_t size, Error *error);
 void json_read_close(JsonReader *reader);
 
 /* The next value, of any kind; NULL with error set if there is no valid one. The reader owns it (no json_decref); it is

@@ -87,15 +87,11 @@ bool parallel_for(const ParallelWork *work, int count, const char *what, const P
            error_interrupted(error, what, "stopped after %d of %d", atomic_load(&done), count);
 }
 
-static double read_clock(clockid_t clock) {
+double clock_seconds(void) {
     struct timespec time;
-    clock_gettime(clock, &time);
+    clock_gettime(CLOCK_MONOTONIC, &time);
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
-
-double clock_seconds(void) { return read_clock(CLOCK_MONOTONIC); }
-
-double clock_thread_seconds(void) { return read_clock(CLOCK_THREAD_CPUTIME_ID); }
 
 struct Background {
     pthread_t thread;

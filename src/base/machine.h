@@ -74,9 +74,6 @@ void background_stop(Background *background);
 /* Seconds of a clock that never steps back. */
 double clock_seconds(void);
 
-/* Processor time of the calling thread: other programs do not count. */
-double clock_thread_seconds(void);
-
 /* The processor's model, as the system names it, in plain characters of ASCII: "Intel(R) Xeon(R) CPU @ 2.20GHz"; else
    the architecture. */
 enum { CPU_NAME_SIZE = 96 };

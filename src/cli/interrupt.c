@@ -47,5 +47,3 @@ void interrupt_hold(void) { atomic_fetch_add(&held, 1); }
 void interrupt_release(void) { atomic_fetch_sub(&held, 1); }
 
 bool interrupt_requested(void) { return atomic_load(&requested); }
-
-void interrupt_forget(void) { atomic_store(&requested, false); }

@@ -17,6 +17,3 @@ void interrupt_release(void);
 
 /* True after a signal. From any thread. */
 bool interrupt_requested(void);
-
-/* The signal was the expected end of the work, which was not interrupted by it. */
-void interrupt_forget(void);

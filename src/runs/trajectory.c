@@ -136,52 +136,6 @@ uint64_t trajectory_frame_hash(const Trajectory *t, int frame) {
     return hash;
 }
 
-static void copy_head(Trajectory *to, const Trajectory *from, int step) {
-    /* The verdict's frame may have been left out; what it saw is there in the next one. */
-    const int frame = from->verdict_frame, kept = frame / step + (frame % step != 0);
-    memcpy(to->scene, from->scene, sizeof to->scene);
-    memcpy(to->method, from->method, sizeof to->method);
-    memcpy(to->program, from->program, sizeof to->program);
-    to->scene_hash = from->scene_hash;
-    to->iterations = from->iterations;
-    to->dt = from->dt * (float)step;
-    to->bomb = from->bomb;
-    trajectory_judge(to, from->verdict, frame >= 0 && kept < to->frames ? kept : -1, from->verdict_body);
-    to->fixed_guessed = from->fixed_guessed;
-    to->no_velocities = from->no_velocities;
-    to->no_contacts = from->no_contacts;
-    to->no_impulses = from->no_impulses;
-    to->camera_center = from->camera_center;
-    to->camera_size = from->camera_size;
-    memcpy(to->size, from->size, (size_t)from->bodies * sizeof *to->size);
-    memcpy(to->mass, from->mass, (size_t)from->bodies * sizeof *to->mass);
-    memcpy(to->fixed, from->fixed, (size_t)from->bodies * sizeof *to->fixed);
-}
-
-Trajectory *trajectory_every(const Trajectory *from, int step, Error *error) {
-    assert(step >= 1);
-    Trajectory *to = trajectory_create((from->frames - 1) / step + 1, from->bodies, error);
-    if (to == NULL) return NULL;
-    copy_head(to, from, step);
-    bool ok = true;
-    if (from->name != NULL && (ok = trajectory_make_names(to, error)))
-        memcpy(to->name, from->name, (size_t)from->bodies * sizeof *to->name);
-    const size_t bodies = (size_t)from->bodies;
-    for (int frame = 0; frame < to->frames; frame++) {
-        const size_t at = (size_t)frame * bodies, of = at * (size_t)step;
-        memcpy(to->position + at, from->position + of, bodies * sizeof *to->position);
-        memcpy(to->angle + at, from->angle + of, bodies * sizeof *to->angle);
-        memcpy(to->velocity + at, from->velocity + of, bodies * sizeof *to->velocity);
-        memcpy(to->angular_velocity + at, from->angular_velocity + of, bodies * sizeof *to->angular_velocity);
-        for (int64_t i = from->contact_start[frame * step]; ok && i < from->contact_start[frame * step + 1]; i++)
-            ok = trajectory_add_contact(to, frame, &from->contacts[i], error);
-    }
-    trajectory_end_contacts(to);
-    if (ok) return to;
-    trajectory_destroy(to);
-    return NULL;
-}
-
 bool trajectory_has_masses(const Trajectory *trajectory) {
     for (int body = 0; body < trajectory->bodies; body++)
         if (!trajectory->fixed[body] && isnan(trajectory->mass[body])) return false;

@@ -97,10 +97,6 @@ uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
    scene and method do not count. */
 uint64_t trajectory_hash(const Trajectory *trajectory);
 
-/* A copy with every step'th frame from frame 0 on, dt multiplied by step, and the contacts of the steps that end in
-   these frames; its verdict is in the first of them from the verdict's frame on. The caller destroys it. step >= 1. */
-Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
-
 /* Names of runs from files, and the file names of runs that are stored beside the pictures of them. */
 
 enum { TRAJECTORY_FILE_NAME_SIZE = 2 * TRAJECTORY_NAME_SIZE + 24 };

@@ -221,10 +221,6 @@ extern const char stability_unconverged_words[];
 
 bool border_same_study(const BorderRow *a, const BorderRow *b);
 
-/* A cell's method as for method_parse(): "engine:k=10". */
-enum { MAP_METHOD_SIZE = CSV_NAME_SIZE + STABILITY_SETTING_SIZE };
-void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell);
-
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
 /* "engine:k=10,warm=off", of a program its `name` (methods/methods.h); for figures the same, plain; and

@@ -17,10 +17,6 @@
 #include <math.h>
 #include <string.h>
 
-void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
-    snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
-}
-
 bool map_cell_same_method(const MapCell *a, const MapCell *b) {
     return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
 }
