@@ -82,8 +82,8 @@ const char *file_make_cause(const char *path, int cause);
 /* Creates the directory and its parents where missing. */
 bool file_make_directory(const char *path, Error *error);
 
-/* Where a file may be that is not under its path, as typed; it may return the path itself. NULL: nowhere. The program sets it
-   to look among what is installed, so that what names the file keeps its name. */
+/* Where a file may be that is not under its path, as typed; it may return the path itself. NULL: nowhere. The program
+   sets it to look among what is installed, so that what names the file keeps its name. */
 extern const char *(*file_elsewhere)(const char *path);
 
 /* Prints a path into path[size], as snprintf does. False with error set if it does not fit. */

@@ -66,27 +66,31 @@ static bool take_number(const char *text, char terminator, Number *number, const
     return parse_convert(text, number);
 }
 
-bool parse_float(const char *text, float *value) {
-    Number number, divisor;
-    const char *rest;
-    if (take_number(text, '\0', &number, &rest)) {
-        *value = number.single;
-        return true;
-    }
-    if (!take_number(text, '/', &number, &rest) || !take_number(rest, '\0', &divisor, &rest)) return false;
-    if (divisor.single == 0 || !isfinite(number.single / divisor.single)) return false;
-    *value = number.single / divisor.single;
-    return true;
-}
-
-bool parse_double(const char *text, double *value) {
+bool parse_number(const char *text, float *value, double *full) {
     Number number, divisor = {1, 1};
     const char *rest;
     if (!take_number(text, '\0', &number, &rest) &&
         !(take_number(text, '/', &number, &rest) && take_number(rest, '\0', &divisor, &rest) && divisor.single != 0))
         return false;
-    *value = number.full / divisor.full;
-    return isfinite((float)*value);
+    *value = number.single / divisor.single;
+    *full = number.full / divisor.full;
+    return isfinite(*value);
+}
+
+bool parse_float(const char *text, float *value) {
+    double full;
+    float single;
+    const bool ok = parse_number(text, &single, &full);
+    if (ok) *value = single;
+    return ok;
+}
+
+bool parse_double(const char *text, double *value) {
+    double full;
+    float single;
+    const bool ok = parse_number(text, &single, &full);
+    if (ok) *value = full;
+    return ok;
 }
 
 bool parse_leading_double(const char *text, double *value, const char **rest) {

@@ -8,6 +8,6 @@
    directory or installed. Valid until the program ends. */
 const char *installed_path(const char *path);
 
-/* The name by which installed_path() found this path, the same in each installation: "scenes/stack.yaml". Of another path,
-   itself. */
+/* The name by which installed_path() found this path, the same in each installation: "scenes/stack.yaml". Of another
+   path, itself. */
 const char *installed_name(const char *path);

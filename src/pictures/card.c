@@ -152,8 +152,8 @@ void card_plan(Picture *picture) {
     }
 }
 
-/* The verdict of a run without figures behind what happened, as in pages (player/time.js): up to " (", or to "; " unless a count
-   of boxes follows. */
+/* The verdict of a run without figures behind what happened, as in pages (player/time.js): up to " (", or to "; "
+   unless a count of boxes follows. */
 static void short_verdict(const Trajectory *run, char *text, size_t size) {
     size_t length = 0;
     for (const char *at; *(at = run->verdict + length) != '\0' && strncmp(at, " (", 2) != 0; length++)

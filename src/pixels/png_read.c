@@ -320,8 +320,8 @@ static bool decode_all(Decoder *decoder) {
     return check_stream(decoder);
 }
 
-/* checked: the pixels are not kept, and there is no image. The chunks are judged by png_check() alone: libpng skips some
-   that are damage, and reads only the first picture of an animation. */
+/* checked: the pixels are not kept, and there is no image. The chunks are judged by png_check() alone: libpng skips
+   some that are damage, and reads only the first picture of an animation. */
 static bool decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, bool checked, Image **image,
                    Error *error) {
     Decoder decoder;

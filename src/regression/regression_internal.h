@@ -17,9 +17,9 @@ void regression_free_run(RegressionRun *run);
 
 /* States and names: states.c */
 
-/* Sets the states verdict of a frame, and whether it fails: with limits of poses, if one of its runs that differ exceeds
-   them; otherwise unless a limit of pixels is given, which then alone decides. data: the two PNG files, whose texts are
-   read. False with error set when memory is short. */
+/* Sets the states verdict of a frame, and whether it fails: with limits of poses, if one of its runs that differ
+   exceeds them; otherwise unless a limit of pixels is given, which then alone decides. data: the two PNG files, whose
+   texts are read. False with error set when memory is short. */
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              const Tolerance *limits, Error *error);
 

@@ -47,8 +47,8 @@ typedef struct ReportResults {
     void (*write_json)(FILE *file, const void *comparison);
 } ReportResults;
 
-/* Makes and reserves the folder (folder_reserve()), and removes the files of an earlier report: before any work, so that
-   a comparison that fails, or is killed, leaves none. */
+/* Makes and reserves the folder (folder_reserve()), and removes the files of an earlier report: before any work, so
+   that a comparison that fails, or is killed, leaves none. */
 bool report_begin(const char *folder, Error *error);
 
 /* Writes report.html, junit.xml and results.json into a folder that exists. results.json is last: if it is

@@ -339,11 +339,9 @@ static double last_digit(const char *text) {
 }
 
 /* Notes the first number that is not the text's in as many digits as the text has: as stored in float32. */
-static void note_rounding(CsvRows *rows, const char *text, float value) {
-    const bool hexadecimal = strpbrk(text, "xX") != NULL;
-    double full;
-    if (rows->rounded[0] != '\0' || strlen(text) <= FLT_DIG || !take_number(text, &full) ||
-        fabs(full - (double)value) <= (hexadecimal ? 0 : 0.500001 * last_digit(text)))
+static void note_rounding(CsvRows *rows, const char *text, float value, double full) {
+    if (rows->rounded[0] != '\0' || (double)value == full || strlen(text) <= FLT_DIG ||
+        (strpbrk(text, "xX") == NULL && fabs(full - (double)value) <= 0.500001 * last_digit(text)))
         return;
     snprintf(rows->rounded, sizeof rows->rounded, "%s in line %d is stored as %.9g", csv_show(text).text, rows->line,
              (double)value);
@@ -363,12 +361,12 @@ bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
         const char *text = is_absent(rows, column) ? "0" : fields.text[rows->field[column]];
         float *state = &row->state[column - COL_X];
         double value;
-        if (!parse_float(text, state)) {
+        if (!parse_number(text, state, &value)) {
             if (!take_number(text, &value)) return fail_field(rows, &fields, column, error, "is not a finite number");
             *state = (float)value;
             row->not_finite = row->not_finite || !isfinite(*state);
         }
-        if (isfinite(*state)) note_rounding(rows, text, *state);
+        if (isfinite(*state)) note_rounding(rows, text, *state, value);
     }
     if (!is_absent(rows, COL_TIME)) {
         const char *text = fields.text[rows->field[COL_TIME]];

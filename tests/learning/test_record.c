@@ -45,8 +45,8 @@ TEST(visits_add_up_to_the_pairs_change) {
     assert_true(first_touches >= 5);
 }
 
-/* Rows of a thinned launch are every third of the whole one, and not the first of each: the first blow of a launch is in
-   a third of them. */
+/* Rows of a thinned launch are every third of the whole one, and not the first of each: the first blow of a launch is
+   in a third of them. */
 TEST(thinned_rows_are_rows_of_the_whole) {
     OWN(Dataset) *all = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT});
     OWN(Dataset) *some = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT, .every = 3});

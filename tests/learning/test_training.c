@@ -94,9 +94,10 @@ TEST(linear_problems_are_solved) {
     }
 }
 
-/* Row i of a launch has x = i mod 4 in its inputs, and y = x^2 in training, so 0, 1, 4, 9: mean 3.5 (the middle is 4.5),
-   variance 12.25. Held-out rows have y = x^2 + 3.5. A layer of linear outputs fits the line 3 x - 1 with the squares
-   1, 1, 1, 1; its held-out errors are those of +-1 - 3.5, of squares 6.25 or 20.25; those of the mean 3.5 are y. */
+/* Row i of a launch has x = i mod 4 in its inputs, and y = x^2 in training, so 0, 1, 4, 9: mean 3.5 (the middle is
+   4.5), variance 12.25. Held-out rows have y = x^2 + 3.5. A layer of linear outputs fits the line 3 x - 1 with the
+   squares 1, 1, 1, 1; its held-out errors are those of +-1 - 3.5, of squares 6.25 or 20.25; those of the mean 3.5 are
+   y. */
 TEST(errors_constant_and_split_are_those_of_the_closed_form) {
     OWN(Dataset) *dataset = make_dataset(1000);
     for (int r = 0; r < 1000; r++) {

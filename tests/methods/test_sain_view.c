@@ -203,8 +203,8 @@ TEST(an_empty_problem_is_seen) {
     sain_answers_free(&answers);
 }
 
-/* A box of 4 kg, moving at (3, 0), strikes one of 1 kg at rest from the left, and the engine gives them (2, 0) and (4, 0):
-   of the light box's row the numbers that no symmetry tells. */
+/* A box of 4 kg, moving at (3, 0), strikes one of 1 kg at rest from the left, and the engine gives them (2, 0) and (4,
+   0): of the light box's row the numbers that no symmetry tells. */
 TEST(a_pair_has_its_inputs_by_hand) {
     static Problem p;
     p = (Problem){

@@ -117,8 +117,7 @@ static void expect_refused(const char *table, const char *text, const char *mess
 #define TRANSFER "start,seed,launches,error_m_s,constant_m_s\n"
 
 TEST(tables_out_of_order_are_refused_with_their_place) {
-    expect_refused("table1", "network,target\nbaseline,pair\n",
-                   "table1.csv:1:1: error: the column 'seed' is missing");
+    expect_refused("table1", "network,target\nbaseline,pair\n", "table1.csv:1:1: error: the column 'seed' is missing");
     expect_refused("table1", TABLE1 "baseline,pair,adam,ten,1,1,1,1\n",
                    "table1.csv:2:20: error: iteration: 'ten' is not");
     expect_refused("table1", TABLE1 "baseline,pair,adam,,1,1,1,1\n",

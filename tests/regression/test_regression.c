@@ -83,7 +83,8 @@ static Regression compared_by(RegressionOptions options) {
 
 static Regression compared(void) { return compared_by((RegressionOptions){0}); }
 
-/* One letter per frame: (e)qual, (w)ithin tolerance, (r)enderer or (r)un, (p)hysics, (v)iew; and the overall verdict. */
+/* One letter per frame: (e)qual, (w)ithin tolerance, (r)enderer or (r)un, (p)hysics, (v)iew; and the overall verdict.
+   */
 static void assert_verdicts(const Regression *regression, const char *letters, const char *whole) {
     char found[FRAMES + 1] = "";
     for (int i = 0; i < FRAMES; i++) found[i] = frame_verdict(&regression->frames[i])[0];

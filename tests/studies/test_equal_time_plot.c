@@ -12,7 +12,8 @@ static const char *folder(void) {
     return temporary_folder;
 }
 
-/* All runs of block are unstable; the ratio of net=off in the wall is 5100 / 0.2, of momentum in the tall scene 0.584 / 0.001. */
+/* All runs of block are unstable; the ratio of net=off in the wall is 5100 / 0.2, of momentum in the tall scene 0.584 /
+   0.001. */
 TEST(learned_methods_stand_beside_their_twins) {
     EqualTimeFigure figure;
     assert_ok(equal_time_plot(SAMPLE, folder(), &figure, &error), error);
@@ -34,7 +35,8 @@ TEST(learned_methods_stand_beside_their_twins) {
         "    number = f'{float(f\"{most:.2g}\"):.{1 if most < 9.95 else 0}f}'\n"
         "    return '1' if most < 1.05 else ('1/' if ratio < 1 else '×') + number\n"
         "table = csv.DictReader(open(sys.argv[1][:-4] + '_methods.csv'))\n"
-        "cells = collections.Counter(cell(float(row['ratio'])) for row in table if row['ratio'] and float(row['ratio']) < 9e3)\n"
+        "cells = collections.Counter(cell(float(row['ratio'])) for row in table if row['ratio'] and "
+        "float(row['ratio']) < 9e3)\n"
         "assert len(cells) > 5 and not cells - collections.Counter(texts), (cells, texts)\n"
         "assert 'left out: block' in texts, texts\n"
         "for wanted in ('in the time of momentum with 50 sweeps per step', '– slower, or unstable before the impact',\n"
