@@ -226,8 +226,8 @@ static void draw_left_out(ChartPicture *picture, double left) {
                           : line->beyond > 0   ? "beyond the axes"
                                                : NULL;
         if (why == NULL || line->marks[0] + line->marks[1] > 0 || line->rank == CHART_HIDDEN) continue;
-        snprintf(next, sizeof next, "%s%s%s (%s)", text, more == 0 && text[0] == '\0' ? "left out: " : ", ", line->name,
-                 why);
+        strcpy(next, text);
+        text_add(next, sizeof next, "%s%s (%s)", text[0] == '\0' ? "left out: " : ", ", line->name, why);
         if (more == 0 &&
             left + type_width(next, CHART_SMALL_POINTS) + type_width(", 99 more", CHART_SMALL_POINTS) < right)
             strcpy(text, next);
