@@ -147,13 +147,13 @@ TEST(a_training_ends_when_its_held_out_error_does_not_fall) {
     }
     for (int p = 0; p < network_parameter_count(start); p++) start->weights[0][p] = 0;
     options.start = start;
-    OWN(Network) *network = train(dataset, options, &scores);
+    network_destroy(train(dataset, options, &scores));
     assert_int_equal(last_score(&scores)->iteration, 40);
     for (int r = 0; r < 1000; r++)
         for (int k = 0; k < PAIR_CHANGES; k++)
             dataset->changes[r * PAIR_CHANGES + k] = dataset->inputs[r * PAIR_INPUTS + k];
     options.patience = 200; /* the error falls for long */
-    OWN(Network) *longer = train(dataset, options, &scores);
+    network_destroy(train(dataset, options, &scores));
     assert_true(last_score(&scores)->iteration > 200);
 }
 
