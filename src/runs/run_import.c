@@ -62,8 +62,10 @@ static bool finish_bodies(CsvImport *import, Error *error) {
             run->velocity[i] = run->velocity[before];
             run->angular_velocity[i] = run->angular_velocity[before];
         }
-        for (int frame = 1; stated && frame < run->frames; frame++) {
-            const size_t i = trajectory_at(run, frame, body), first = trajectory_at(run, 0, body);
+        int begins = 0;
+        while (begins < run->frames - 1 && !trajectory_has(run, begins, body)) begins++;
+        for (int frame = begins + 1; stated && frame < run->frames; frame++) {
+            const size_t i = trajectory_at(run, frame, body), first = trajectory_at(run, begins, body);
             const int64_t number = import->head.bodies[body].number;
             if (run->position[i].x != run->position[first].x || run->position[i].y != run->position[first].y ||
                 run->angle[i] != run->angle[first])
