@@ -34,11 +34,12 @@ class Case:
     continues with it; short: takes a few hundredths of a second, so every call fails in turn; of others, the first from each
     place, and of these one in `sample`; says_how: the output tells how the files were made, which a fault may change. most: kills
     in a run of everything; resume: the command that continues after one (default: the same); early: the file that a run
-    which SIGTERM stops early stores."""
+    which SIGTERM stops early stores; renews: the folder whose old files go before the work begins, so that none looks like its result."""
 
-    def __init__(self, name, arguments, inputs="", journals="", short=False, sample=1, says_how=False, most=0, resume=None, early=""):
+    def __init__(self, name, arguments, inputs="", journals="", short=False, sample=1, says_how=False, most=0, resume=None, early="", renews=None):
         self.name, self.arguments, self.inputs, self.journals = name, arguments, inputs.split(), journals.split()
         self.short, self.sample, self.says_how, self.most, self.resume, self.early = short, sample, says_how, most, resume, early
+        self.renews = renews
 
 
 TINY = "SCENES/single.yaml --frames 4"
@@ -72,7 +73,7 @@ CASES = [
     Case("compare-runs-json", "compare a.npz b.npz --json", "a.npz b.npz", short=True),
     Case("solve-step", "solve SCENES/single.yaml --frame 45 -o out.npz -m engine:k=3", "out.npz=problem.npz", short=True),
     Case("solve", "solve problem.npz -m engine:k=3 -m momentum:k=3 --json", "problem.npz", short=True),
-    Case("compare-report", "compare expected actual --report report", "expected actual report", most=12),
+    Case("compare-report", "compare expected actual --report report", "expected actual report", most=12, renews="report"),
     Case("dataset", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --context", "out.npz=pairs.npz", most=14),
     Case("train-pair-net", "train pairs.npz -o net.npz --iterations 2", "pairs.npz net.npz", most=14, early="net.npz"),
     Case("train-from", "train pairs.npz -o net.npz --from net.npz --iterations 2", "pairs.npz net.npz"),

@@ -156,7 +156,8 @@ class Bench:
     def lost(self, result):
         """None if no old file is gone that the run would have renewed; what a journal renews may be gone meanwhile."""
         for path in self.state:
-            if path not in result.files and path in self.wanted.files and not self.is_journal(f"{path}.part"):
+            renewed = self.is_journal(f"{path}.part") or path.startswith(f"work/{self.case.renews}/")
+            if path not in result.files and path in self.wanted.files and not renewed:
                 return f"{path} is lost"
         return None
 
