@@ -73,7 +73,8 @@ for name, values in json.load(open("wanted.json")).items():
     if values == ["rows"]:
         continue
     number = float(values[0]) / (float(values[1]) if len(values) == 2 else 1)
-    close = [text for text in shown if re.fullmatch(r"[\d.,]+", text) and abs(float(text.replace(",", "")) / number - 1) < 0.06]
+    medians = [text.split()[0].replace(",", "") for text in shown if re.fullmatch(r"[\d.,]+( \(\S+ to \S+\))?", text)]
+    close = [median for median in medians if abs(float(median) / number - 1) < 0.06]
     assert close, (name, values, shown)
 assert "Toy 1.0" in page and ">3 | 4<br><span class=\"soft\">sinks</span>" in page
 # What fell in each live figure, in the words of simulate; where the reader predicts, only how many.
