@@ -243,7 +243,8 @@ static bool find_carriers(VerdictWatch *watch, double way, Error *error) {
     free(pairs.pairs);
     const bool too_many = sweep.too_many;
     sort_and_sweep_free(&sweep);
-    if (too_many) return error_input(error, "verdict", "more than %d pairs of bodies may touch", BROAD_PHASE_MAX_PAIRS);
+    if (too_many)
+        return error_input(error, "verdict", "more than %d pairs of boxes overlap, or nearly", BROAD_PHASE_MAX_PAIRS);
     return ok || error_memory(error, "verdict");
 }
 
