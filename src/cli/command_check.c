@@ -117,10 +117,11 @@ static Fit find_fit(const Scene *scene) {
     return fit;
 }
 
-static const double SMALL = 0.05; /* as a share of a side, or of a motion */
-static bool check_rounding(const Fit *fit) { return fit->apart / 2 <= SMALL * fit->moved; }
+static const double small = 0.05; /* as a share of a side, or of a motion */
 
-static bool check_fits(const Fit *fit) { return fit->slop <= SMALL && fit->step <= SMALL; }
+static bool check_rounding(const Fit *fit) { return fit->apart / 2 <= small * fit->moved; }
+
+static bool check_fits(const Fit *fit) { return fit->slop <= small && fit->step <= small; }
 
 static void print_fit(FILE *out, const Scene *scene) {
     const Fit fit = find_fit(scene);

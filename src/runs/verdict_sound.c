@@ -279,7 +279,7 @@ static int root_of(const VerdictWatch *watch, int i) {
 
 /* Joins what touches, within a gap that a step's motion may be. A chain's root is a static body, if it has one. */
 static bool find_chains(VerdictWatch *watch, const Body *bodies, Error *error) {
-    const double widest = 0.25 * watch->smallest; /* m: a gap beyond that is none of a step's motion */
+    const double widest = 0.25 * watch->smallest; /* m: the most that a step's motion may open */
     const float skin = watch->run.skin + (float)widest / 2;
     if (!contact_finder_find(&watch->finder, bodies, watch->body_count, skin, error)) return false;
     for (int i = 0; i < watch->body_count; i++) watch->bodies[i].root = i;
