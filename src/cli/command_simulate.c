@@ -188,9 +188,9 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
 
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
     SimulateResult result = {.scene = scene, .method = method->text, .output = options->output};
-    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method, error))
-        return false;
-    bool ok = record(scene, method, options, &result, error);
+    if (!override_scene(scene, options, error)) return false;
+    bool ok =
+        simulate_verdict_begin(&result.verdict, scene, method, error) && record(scene, method, options, &result, error);
     if (ok && !options->json) print_result(&result);
     /* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
     if (result.judged && (error->kind == ERROR_NONE || error->failure != FAILURE_NONE)) {
