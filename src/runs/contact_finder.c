@@ -19,23 +19,32 @@ void contact_finder_free(ContactFinder *finder) {
     *finder = (ContactFinder){0};
 }
 
-bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error) {
+bool contact_finder_reserve(ContactFinder *finder, int count, Error *error) {
     const size_t room = (size_t)count + 1;
-    if (!array_reserve((void **)&finder->boxes, &finder->box_capacity, room, sizeof *finder->boxes) ||
-        !array_reserve((void **)&finder->bounds, &finder->bound_capacity, room, sizeof *finder->bounds) ||
-        !array_reserve((void **)&finder->fixed, &finder->fixed_capacity, room, sizeof *finder->fixed))
-        return error_memory(error, "contacts");
+    return (array_reserve((void **)&finder->boxes, &finder->box_capacity, room, sizeof *finder->boxes) &&
+            array_reserve((void **)&finder->bounds, &finder->bound_capacity, room, sizeof *finder->bounds) &&
+            array_reserve((void **)&finder->fixed, &finder->fixed_capacity, room, sizeof *finder->fixed)) ||
+           error_memory(error, "contacts");
+}
+
+bool contact_finder_pairs(ContactFinder *finder, int count, Error *error) {
+    if (sort_and_sweep_find(&finder->broad_phase, &finder->pairs, finder->bounds, finder->fixed, count)) return true;
+    return finder->broad_phase.too_many
+               ? error_input(error, "contacts", "more than %d pairs of boxes overlap, or nearly", BROAD_PHASE_MAX_PAIRS)
+               : error_memory(error, "contacts");
+}
+
+bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error) {
+    if (!contact_finder_reserve(finder, count, error)) return false;
     for (int i = 0; i < count; i++) {
         const Vec2 size = vec2_add(bodies[i].size, vec2(2 * skin, 2 * skin));
         finder->boxes[i] = box_make(bodies[i].position, size, bodies[i].angle);
         finder->bounds[i] = bounds_of_box(&finder->boxes[i]);
         finder->fixed[i] = bodies[i].inv_mass == 0;
     }
-    if (!sort_and_sweep_find(&finder->broad_phase, &finder->pairs, finder->bounds, finder->fixed, count) ||
-        !contact_set_collide(&finder->set, &finder->pairs, finder->boxes, &(ContactSet){0}, (ContactRules){0}))
-        return finder->broad_phase.too_many
-                   ? error_input(error, "contacts", "more than %d pairs of bodies may touch", BROAD_PHASE_MAX_PAIRS)
-                   : error_memory(error, "contacts");
+    if (!contact_finder_pairs(finder, count, error)) return false;
+    if (!contact_set_collide(&finder->set, &finder->pairs, finder->boxes, &(ContactSet){0}, (ContactRules){0}))
+        return error_memory(error, "contacts");
     for (int i = 0; i < finder->set.contact_count; i++) finder->set.contacts[i].separation += 2 * skin;
     return true;
 }

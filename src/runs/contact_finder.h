@@ -17,5 +17,10 @@ typedef struct ContactFinder {
 
 void contact_finder_free(ContactFinder *finder);
 
+/* Makes room in bounds and fixed, from which contact_finder_pairs() finds the pairs whose bounds overlap. ERROR_INPUT: too
+   many. */
+bool contact_finder_reserve(ContactFinder *finder, int count, Error *error);
+bool contact_finder_pairs(ContactFinder *finder, int count, Error *error);
+
 /* Boxes that are apart by less than 2 `skin` (m) touch, too: separation > 0. ERROR_INPUT: too many pairs. */
 bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error);

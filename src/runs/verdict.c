@@ -18,12 +18,9 @@ static const double rest_units = 0.5; /* a hop of a size up and down takes as lo
 /* Half a side lower, a box has lost its layer. At 30 degrees a square's centre has risen by nine tenths of what turns
    it over. */
 static const double fall_share = 0.5, fall_turn = 30 * M_PI / 180;
-static const double moved_share = 0.1;   /* of a size: seen at a glance */
-static const double carrier_reach = 0.5; /* of a side; a gap beyond that is a drop */
-static const double slow_share = 0.25;   /* of the speed of a fall by a body's size: it drops, and does not fly */
-static const double start_share = 0.005; /* of a size in a unit: the body starts with a speed */
-static const double start_poses = 0.5;   /* the same of differences of poses, which have the first step's impulses */
-static const double unit_sizes = 5;      /* a box of 1 m: one second */
+static const double moved_share = 0.1;  /* of a size: seen at a glance */
+static const double touch_share = 0.03; /* of a side: less is not seen */
+static const double unit_sizes = 5;     /* a box of 1 m: one second */
 
 const char *const verdict_words[VERDICTS + 2] = {
     "settles", "agrees",    "stands",       "moves",          "too short",     "undecided",
@@ -67,22 +64,109 @@ VerdictRun verdict_run_of(const Scene *scene, const Method *method) {
     return run;
 }
 
-/* m: how far the box reaches along a direction, from its middle. */
-static double reach_along(double x, double y, const WatchedBody *body, const Pose *pose) {
-    const double c = cos(pose->angle), s = sin(pose->angle);
-    return (fabs(c * x + s * y) * (double)body->box.x + fabs(c * y - s * x) * (double)body->box.y) / 2;
+static Pose pose_of(const Body *body) { return (Pose){body->position.x, body->position.y, body->angle}; }
+
+double depth_of(const WatchedBody *a, const WatchedBody *b, double within) {
+    if (way_between(&a->last, &b->last) > a->corner + b->corner + within) return -INFINITY;
+    const Box of_a = box_of(a, &a->last), of_b = box_of(b, &b->last);
+    return overlap_depth(&of_a, &of_b);
 }
 
-static double reach_up(const VerdictWatch *watch, const WatchedBody *body, const Pose *pose) {
-    return reach_along(watch->up_x, watch->up_y, body, pose);
+bool bodies_touch(const VerdictWatch *watch, const WatchedBody *a, const WatchedBody *b) {
+    const double x = a->last.x - a->before.x - (b->last.x - b->before.x),
+                 y = a->last.y - a->before.y - (b->last.y - b->before.y);
+    const double way = sqrt(x * x + y * y) + fabs(turn_between(a->last.angle, a->before.angle)) * a->corner +
+                       fabs(turn_between(b->last.angle, b->before.angle)) * b->corner;
+    const double gap = way + touch_share * fmin(a->side, b->side) + 2 * (double)watch->run.skin;
+    return depth_of(a, b, gap) > -gap;
 }
 
-static double reach_across(const VerdictWatch *watch, const WatchedBody *body, const Pose *pose) {
-    return reach_along(watch->up_y, -watch->up_x, body, pose);
+bool find_near(VerdictWatch *watch, double down, Error *error) {
+    ContactFinder *finder = &watch->finder;
+    if (!contact_finder_reserve(finder, watch->body_count, error)) return false;
+    for (int i = 0; i < watch->body_count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        const Pose *a = &body->before, *b = &body->last;
+        const double x = -watch->up_x * down, y = -watch->up_y * down;
+        const double r = body->corner * (1 + touch_share) + (double)watch->run.skin;
+        finder->bounds[i] = (Bounds){
+            vec2((float)(fmin(a->x, b->x) + fmin(x, 0) - r), (float)(fmin(a->y, b->y) + fmin(y, 0) - r)),
+            vec2((float)(larger(a->x, b->x) + larger(x, 0) + r), (float)(larger(a->y, b->y) + larger(y, 0) + r))};
+        finder->fixed[i] = body->is_static;
+    }
+    return contact_finder_pairs(finder, watch->body_count, error);
 }
 
-static Vec2 moved_down(const VerdictWatch *watch, Vec2 from, double way) {
-    return vec2_sub(from, vec2((float)(watch->up_x * way), (float)(watch->up_y * way)));
+/* m: how far a box reaches along a direction, from its middle. */
+static double reach_along(const Box *box, Vec2 way) {
+    return fabs((double)vec2_dot(box->rotation.column1, way)) * (double)box->half.x +
+           fabs((double)vec2_dot(box->rotation.column2, way)) * (double)box->half.y;
+}
+
+/* m: how far a box moves along a direction until it touches another; INFINITY: it never does. Along each axis of a face
+   they overlap from one way to another. */
+static double way_until(const Box *box, const Box *other, Vec2 direction) {
+    const double rounding = 2e-3 * fmin((double)box->half.x, (double)box->half.y); /* m: neighbours do not touch */
+    const Vec2 axes[] = {box->rotation.column1, box->rotation.column2, other->rotation.column1,
+                         other->rotation.column2};
+    double first = 0, last = INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double reach = reach_along(box, axes[k]) + reach_along(other, axes[k]) - rounding;
+        const double speed = vec2_dot(axes[k], direction),
+                     apart = vec2_dot(axes[k], vec2_sub(other->position, box->position));
+        const double ahead = speed < 0 ? -apart : apart;
+        if (fabs(speed) < 1e-6 && fabs(apart) > reach) return INFINITY;
+        if (fabs(speed) < 1e-6) continue;
+        first = larger(first, (ahead - reach) / fabs(speed));
+        last = fmin(last, (ahead + reach) / fabs(speed));
+    }
+    return first <= last ? first : INFINITY;
+}
+
+/* m: the height of a body before the last step: static ones are below all, none is above all. */
+static double rank_of(const VerdictWatch *watch, int i) {
+    return i < 0 ? INFINITY : watch->bodies[i].is_static ? -INFINITY : height_of(watch, &watch->bodies[i].before);
+}
+
+/* The bodies without a carrier get one, by their poses before the last step. What starts at rest may move down by
+   `way`, m. First each finds what it would touch; then they are carried from the static bodies on, to and fro, so that
+   a tower that is listed from either end is quick. */
+static bool find_carriers(VerdictWatch *watch, double way, Error *error) {
+    if (watch->pull == 0) return true;
+    if (!find_near(watch, larger(way, fall_share * watch->largest), error)) return false;
+    const size_t count = 2 * watch->finder.pairs.count;
+    const Vec2 down = vec2((float)-watch->up_x, (float)-watch->up_y);
+    bool more = true;
+    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].link = -1;
+    for (int pass = 0; more; pass++) {
+        more = pass == 0;
+        for (size_t n = 0; n < count; n++) {
+            const size_t k = pass % 2 == 0 ? n : count - 1 - n;
+            const BodyPair pair = watch->finder.pairs.pairs[k / 2];
+            const int i = k % 2 == 0 ? pair.a : pair.b, j = k % 2 == 0 ? pair.b : pair.a;
+            WatchedBody *body = &watch->bodies[i];
+            const WatchedBody *other = &watch->bodies[j];
+            if (body->is_static || body->is_bomb || body->carrier >= 0 || other->is_bomb) continue;
+            if (pass == 0 && rank_of(watch, j) < rank_of(watch, i)) {
+                const Box box = box_of(body, &body->before), under = box_of(other, &other->before);
+                const double gap = way_until(&box, &under, down), alike = 0.1 * body->side;
+                if (gap > larger(body->starts ? 0 : way, fall_share * body->side)) continue;
+                if (body->link < 0 || gap < body->gap - alike ||
+                    (gap < body->gap + alike && rank_of(watch, j) < rank_of(watch, body->link)))
+                    body->link = j, body->gap = gap;
+            } else if (pass > 0 && (other->is_static || other->carrier >= 0)) {
+                if (body->link < 0 && bodies_touch(watch, body, other)) body->link = j, body->gap = 0;
+                if (body->link != j) continue;
+                body->carrier = j;
+                body->carrier_up = height_of(watch, &other->before);
+                body->gaps = body->gap + (other->is_static ? 0 : other->gaps);
+                body->reference = body->before;
+                watch->order[watch->carried++] = i;
+                more = true;
+            }
+        }
+    }
+    return true;
 }
 
 static void set_unit(VerdictWatch *watch) {
@@ -96,160 +180,57 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
     if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies) ||
         !array_reserve((void **)&watch->order, &watch->order_capacity, (size_t)count, sizeof *watch->order))
         return error_memory(error, "verdict");
+    const Vec2 upwards = vec2((float)watch->up_x, (float)watch->up_y), across = vec2(upwards.y, -upwards.x);
+    /* By then what goes so fast has gone as far as it would have to fall. */
+    const double slowest = fall_share * watch->mean / watch->unit;
     for (int i = watch->body_count; i < count; i++) {
         const Body *from = &bodies[i];
         WatchedBody *body = &watch->bodies[i];
-        const double x = from->position.x, y = from->position.y, w = from->size.x, h = from->size.y;
-        const Pose pose = {x, y, from->angle};
+        const Box box = box_make(from->position, from->size, from->angle);
+        const Pose pose = pose_of(from);
+        const double w = from->size.x, h = from->size.y, up = height_of(watch, &pose);
         *body = (WatchedBody){.box = from->size,
-                              .size = sqrt(w * h),
+                              .size = verdict_size(from),
                               .side = fmin(w, h),
                               .corner = sqrt(w * w + h * h) / 2,
                               .last = pose,
                               .before = pose,
-                              .prior = pose,
                               .place = pose,
                               .reference = pose,
                               .since = frame,
                               .stays = {INT_MAX, INT_MAX},
                               .carrier = -1,
                               .held = frame,
+                              .level = up,
+                              .level_since = frame,
                               .is_static = from->inv_mass == 0,
                               .is_bomb = i == watch->run.bomb};
-        const double up = height_of(watch, &pose);
         if (body->is_static) {
-            const double across = across_of(watch, &pose), reach = reach_across(watch, body, &pose);
-            watch->floor = fmin(watch->floor, up - reach_up(watch, body, &pose));
-            watch->low = fmin(watch->low, across - reach);
-            watch->high = larger(watch->high, across + reach);
+            const double at = across_of(watch, &pose), reach = reach_along(&box, across);
+            watch->floor = fmin(watch->floor, up - reach_along(&box, upwards));
+            watch->low = fmin(watch->low, at - reach);
+            watch->high = larger(watch->high, at + reach);
             continue;
         }
+        if (isinf(watch->lowest)) watch->lowest = up;
+        const double per_kg =
+            body_energy(from, vec2(0, 0)) * (double)from->inv_mass + watch->pull * (up - watch->lowest);
+        const double speed = vec2_distance(from->velocity, vec2(0, 0)), spin = from->angular_velocity;
+        body->mass = 1 / (double)from->inv_mass;
+        body->energy = body->mass * (per_kg + watch->pull * watch->lowest);
+        body->starts = frame == 0 && !body->is_bomb && speed + fabs(spin) * body->corner > slowest;
         watch->smallest = fmin(watch->smallest, body->side);
-        if (frame == 0) watch->lowest = fmin(watch->lowest, up);
+        watch->largest = larger(watch->largest, body->size);
+        watch->liveliest = larger(watch->liveliest, per_kg);
+        watch->weight += body->mass * watch->pull;
+        watch->lift += body->mass * watch->pull * body->size;
+        if (energy_counts(watch, body)) count_energy(watch, body);
     }
-    for (int i = watch->body_count; i < count; i++)
-        if (bodies[i].inv_mass != 0) energy_add_body(watch, &bodies[i], &watch->bodies[i]);
     watch->body_count = count;
     return true;
 }
 
-/* By how much body i must move down until it touches j; INFINITY: farther than `reach`. What separates two boxes is no
-   more than the way until they touch. */
-static double way_down(const VerdictWatch *watch, int i, int j, const Box *of_i, const Box *of_j, double reach) {
-    enum { STEPS = 100 };
-    const WatchedBody *body = &watch->bodies[i], *below = &watch->bodies[j];
-    const double beside = fabs(across_of(watch, &body->last) - across_of(watch, &below->last));
-    if (beside >= reach_across(watch, body, &body->last) + reach_across(watch, below, &below->last)) return INFINITY;
-    Box box = *of_i;
-    double way = 0;
-    for (int k = 0; k < STEPS && way <= reach; k++) {
-        const double apart = -overlap_depth(&box, of_j);
-        if (apart <= 1e-3 * body->side) return way;
-        way += apart;
-        box.position = moved_down(watch, of_i->position, way);
-    }
-    return INFINITY;
-}
-
-/* Gives a body its carrier, behind it in the order. */
-static void give_carrier(VerdictWatch *watch, int i, int carrier, double gap) {
-    WatchedBody *body = &watch->bodies[i];
-    const WatchedBody *below = &watch->bodies[carrier];
-    body->carrier = carrier;
-    body->gap = gap;
-    body->gaps = gap + (below->is_static ? 0 : below->gaps);
-    body->reference = body->last;
-    body->carrier_up = height_of(watch, &below->last);
-    watch->order[watch->carried++] = i;
-}
-
-typedef struct Below {
-    int body, on; /* on: what it would touch first; -1: nothing */
-    double gap;   /* m: until then */
-    double up;    /* m: height of `on`, -INFINITY for a static body, which comes first; then of the body */
-} Below;
-
-static int by_height(const void *a, const void *b) {
-    const Below *one = a, *other = b;
-    return one->up != other->up ? (one->up > other->up ? 1 : -1) : one->body - other->body;
-}
-
-/* Whether i needs what j could give: a carrier. What flies sideways gets none. */
-static bool may_carry(const VerdictWatch *watch, int j, int i) {
-    const WatchedBody *body = &watch->bodies[i];
-    return !body->is_static && !body->is_bomb && body->carrier < 0 && !watch->bodies[j].is_bomb &&
-           fabs(across_of(watch, &body->last) - across_of(watch, &body->before)) <
-               slow_share * sqrt(2 * watch->pull * body->size) * (double)watch->run.dt;
-}
-
-/* The bodies without a carrier get one: what they touch first if they move down by up to this way, m, or by half their
-   side; or else what holds them from the side. Poses are the last ones. */
-static bool find_carriers(VerdictWatch *watch, double way, Error *error) {
-    const size_t count = (size_t)watch->body_count;
-    SortAndSweep sweep = {0};
-    PairList pairs = {0};
-    Box *boxes = calloc(count + 1, sizeof *boxes);
-    Bounds *bounds = malloc((count + 1) * sizeof *bounds);
-    bool *fixed = malloc(count + 1);
-    Below *below = calloc(count + 1, sizeof *below);
-    bool ok = boxes != NULL && bounds != NULL && fixed != NULL && below != NULL;
-    for (size_t i = 0; ok && i < count; i++) {
-        const WatchedBody *body = &watch->bodies[i];
-        boxes[i] = box_of(body, &body->last);
-        bounds[i] = bounds_of_box(&boxes[i]);
-        const Vec2 reach = moved_down(watch, vec2(0, 0), larger(way, carrier_reach * body->side));
-        const float margin = (float)(touch_share * body->side);
-        bounds[i].low = vec2_add(bounds[i].low, vec2(fminf(reach.x, 0) - margin, fminf(reach.y, 0) - margin));
-        bounds[i].high = vec2_add(bounds[i].high, vec2(fmaxf(reach.x, 0) + margin, fmaxf(reach.y, 0) + margin));
-        fixed[i] = body->is_static;
-        below[i] = (Below){.body = (int)i, .on = -1, .gap = INFINITY};
-    }
-    ok = ok && sort_and_sweep_find(&sweep, &pairs, bounds, fixed, (int)count);
-    for (size_t k = 0; ok && k < 2 * pairs.count; k++) {
-        const BodyPair pair = pairs.pairs[k / 2];
-        const int i = k % 2 == 0 ? pair.a : pair.b, j = k % 2 == 0 ? pair.b : pair.a;
-        const WatchedBody *body = &watch->bodies[i], *other = &watch->bodies[j];
-        const double up = other->is_static ? -INFINITY : height_of(watch, &other->last);
-        if (!may_carry(watch, j, i) || up >= height_of(watch, &body->last)) continue;
-        const double gap = way_down(watch, i, j, &boxes[i], &boxes[j], larger(way, carrier_reach * body->side));
-        const double alike = 0.1 * body->side; /* gaps that differ by less are equal */
-        if (isinf(gap) || gap > below[i].gap + alike) continue;
-        if (below[i].on < 0 || gap < below[i].gap - alike || up < below[i].up) below[i] = (Below){i, j, gap, up};
-    }
-    for (size_t i = 0; ok && i < count; i++) below[i].up = height_of(watch, &watch->bodies[i].last);
-    if (ok) qsort(below, count, sizeof *below, by_height);
-    for (size_t k = 0; ok && k < count; k++) /* upwards */
-        if (below[k].on >= 0 && (watch->bodies[below[k].on].is_static || watch->bodies[below[k].on].carrier >= 0))
-            give_carrier(watch, below[k].body, below[k].on, below[k].gap);
-    bool more = ok;
-    for (int pass = 0; more; pass++) { /* sideways; to and fro, so that a row that is listed from either end is quick */
-        more = false;
-        for (size_t n = 0; n < 2 * pairs.count; n++) {
-            const size_t k = pass % 2 == 0 ? n : 2 * pairs.count - 1 - n;
-            const BodyPair pair = pairs.pairs[k / 2];
-            const int i = k % 2 == 0 ? pair.a : pair.b, j = k % 2 == 0 ? pair.b : pair.a;
-            const WatchedBody *other = &watch->bodies[j];
-            if (!may_carry(watch, j, i) || (!other->is_static && other->carrier < 0)) continue;
-            const double depth = overlap_depth(&boxes[i], &boxes[j]), side = fmin(watch->bodies[i].side, other->side);
-            if (depth < -touch_share * side || depth > fall_share * side) continue;
-            give_carrier(watch, i, j, 0);
-            more = true;
-        }
-    }
-    free(below);
-    free(fixed);
-    free(bounds);
-    free(boxes);
-    free(pairs.pairs);
-    const bool too_many = sweep.too_many;
-    sort_and_sweep_free(&sweep);
-    if (too_many)
-        return error_input(error, "verdict", "more than %d pairs of boxes overlap, or nearly", BROAD_PHASE_MAX_PAIRS);
-    return ok || error_memory(error, "verdict");
-}
-
 bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
-    const VerdictWatch old = *watch;
     const double x = run->gravity.x, y = run->gravity.y, pull = sqrt(x * x + y * y);
     *watch = (VerdictWatch){.run = *run,
                             .worst = {.body = -1, .other = -1, .unit = "m/s"},
@@ -262,18 +243,14 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
                             .high = -INFINITY,
                             .lowest = INFINITY,
                             .kept = INFINITY,
-                            .met = -1,
-                            .bodies = old.bodies,
-                            .order = old.order,
-                            .deep = old.deep,
-                            .finder = old.finder,
-                            .capacity = old.capacity,
-                            .order_capacity = old.order_capacity,
-                            .deep_capacity = old.deep_capacity};
+                            .met = -1};
     double sizes = 0;
     int moving = 0, starting = 0;
     for (int i = 0; i < count; i++) {
-        if (bodies[i].inv_mass == 0 || i == run->bomb) continue;
+        if (bodies[i].inv_mass == 0) continue;
+        const Pose pose = pose_of(&bodies[i]);
+        watch->lowest = fmin(watch->lowest, height_of(watch, &pose));
+        if (i == run->bomb) continue;
         sizes += verdict_size(&bodies[i]);
         moving++;
         watch->fastest = larger(watch->fastest, vec2_distance(bodies[i].velocity, vec2(0, 0)));
@@ -281,34 +258,13 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
     watch->mean = moving > 0 ? sizes / moving : 1;
     set_unit(watch);
     if (!add_bodies(watch, bodies, count, 0, error)) return false;
-    const double slowest = (run->poses_only ? start_poses : start_share) * watch->mean / larger(watch->unit, 1e-9);
-    for (int i = 0; i < count; i++) {
-        WatchedBody *body = &watch->bodies[i];
-        body->starts = !body->is_static && !body->is_bomb && vec2_distance(bodies[i].velocity, vec2(0, 0)) > slowest;
-        starting += body->starts;
-    }
+    for (int i = 0; i < count; i++) starting += watch->bodies[i].starts;
     watch->struck = (run->bomb >= 0 && moving > 0) || (starting > 0 && starting < moving);
-    if (pull > 0 && !find_carriers(watch, 0, error)) return false;
-    return !run->finds_contacts || contact_finder_find(&watch->finder, bodies, count, run->skin, error);
+    return find_carriers(watch, unit_sizes * watch->mean, error) &&
+           (!run->finds_contacts || contact_finder_find(&watch->finder, bodies, count, run->skin, error));
 }
 
-/* Whether a body is beside all static bodies, and all that chains of contacts join to them. */
-static bool is_beside(const VerdictWatch *watch, const WatchedBody *body) {
-    const double across = across_of(watch, &body->last), low = across - body->corner, high = across + body->corner;
-    if (body->held == watch->frame || (high > watch->low && low < watch->high)) return false;
-    bool all_lower = true, all_higher = true;
-    for (int i = 0; i < watch->body_count; i++) {
-        const WatchedBody *other = &watch->bodies[i];
-        if (other->is_static || other->held != watch->frame) continue;
-        const double at = across_of(watch, &other->last);
-        all_lower &= at + other->corner < low;
-        all_higher &= at - other->corner > high;
-    }
-    return (low > watch->high && all_lower) || (high < watch->low && all_higher);
-}
-
-/* Whether a body is lower than half its side below its reference, or has turned, or left the scene. Bodies come behind
-   what carries them. */
+/* Bodies come behind what carries them. */
 static void judge_falls(VerdictWatch *watch) {
     for (int k = 0; k < watch->carried; k++) {
         const int i = watch->order[k];
@@ -320,40 +276,50 @@ static void judge_falls(VerdictWatch *watch) {
         bool fell = fabs(turn_between(body->last.angle, body->reference.angle)) > fall_turn;
         if (!fell && drop > limit + body->gaps) {
             const double sag = below->is_static ? 0 : body->carrier_up - height_of(watch, &below->last);
-            fell = drop - sag > limit + body->gap || below->fell > 0;
+            fell = below->fell > 0 || drop - sag - larger(0, depth_of(body, below, 0)) > limit + body->gap;
         }
         body->fell = !fell ? 0 : body->fell > 0 ? body->fell : watch->frame;
     }
-    for (int i = 0; watch->pull > 0 && isfinite(watch->floor) && i < watch->body_count; i++) {
+    if (watch->pull == 0 || isinf(watch->floor)) return;
+    for (int i = 0; i < watch->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
         if (body->is_static) continue;
-        const double up = height_of(watch, &body->last);
-        body->gone = up < watch->floor && up + reach_up(watch, body, &body->last) < watch->floor;
-        body->left = body->gone || is_beside(watch, body);
+        const double up = height_of(watch, &body->last), across = across_of(watch, &body->last);
+        body->left = up + body->corner < watch->floor ||
+                     (body->held != watch->frame &&
+                      (across + body->corner < watch->held[0] || across - body->corner > watch->held[1]));
         if (body->left && body->fell == 0) body->fell = watch->frame;
         if (!body->left && body->carrier < 0) body->fell = 0;
     }
 }
 
-/* Whether the bomb may have touched a dynamic body in this step: afterwards their gap is no wider than they moved. */
-static bool strikes(const VerdictWatch *watch, const VerdictStep *step) {
-    const int bomb = watch->run.bomb;
-    const Box box = box_make(step->bodies[bomb].position, step->bodies[bomb].size, step->bodies[bomb].angle);
-    const WatchedBody *striker = &watch->bodies[bomb];
-    for (int i = 0; i < watch->body_count && i < step->body_count; i++) {
-        const WatchedBody *body = &watch->bodies[i];
-        const Body *now = &step->bodies[i], *bomb_now = &step->bodies[bomb];
-        if (body->is_static || i == bomb) continue;
-        const double x = (double)now->position.x - body->last.x - ((double)bomb_now->position.x - striker->last.x),
-                     y = (double)now->position.y - body->last.y - ((double)bomb_now->position.y - striker->last.y);
-        const double way = sqrt(x * x + y * y) + fabs(turn_between(now->angle, body->last.angle)) * body->corner +
-                           fabs(turn_between(bomb_now->angle, striker->last.angle)) * striker->corner;
-        const double gap = way + touch_share * fmin(body->side, striker->side) + 2 * (double)watch->run.skin;
-        if (vec2_distance(now->position, bomb_now->position) > body->corner + striker->corner + gap) continue;
-        const Box other = box_make(now->position, now->size, now->angle);
-        if (-overlap_depth(&box, &other) < gap) return true;
+/* Gives the bodies their new poses. Returns what a corner has moved at most, m. */
+static double move_bodies(VerdictWatch *watch, const VerdictStep *step) {
+    double farthest = 0;
+    watch->held[0] = watch->low;
+    watch->held[1] = watch->high;
+    for (int i = 0; i < step->body_count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        if (body->is_static) continue;
+        const Pose pose = pose_of(&step->bodies[i]);
+        const double x = pose.x - body->place.x, y = pose.y - body->place.y;
+        const double free = place_share * body->size - fabs(turn_between(pose.angle, body->place.angle)) * body->corner;
+        if (free < 0 || x * x + y * y > free * free) {
+            body->stays[0] = body->stays[1];
+            body->stays[1] = step->frame - body->since;
+            body->since = step->frame;
+            body->place = pose;
+        }
+        farthest = larger(farthest, way_between(&pose, &body->last) +
+                                        fabs(turn_between(pose.angle, body->last.angle)) * body->corner);
+        body->before = body->last;
+        body->last = pose;
+        if (body->held != step->frame) continue;
+        const double across = across_of(watch, &pose);
+        watch->held[0] = fmin(watch->held[0], across - body->corner);
+        watch->held[1] = larger(watch->held[1], across + body->corner);
     }
-    return false;
+    return farthest;
 }
 
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *error) {
@@ -367,45 +333,25 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *er
     watch->frame = step.frame;
     if (!check_finite(watch, &step)) return true;
     while (watch->body_count > step.body_count) /* what is removed takes its energy along */
-        if (watch->bodies[--watch->body_count].counted) watch->brought -= watch->bodies[watch->body_count].energy;
+        if (energy_counts(watch, &watch->bodies[--watch->body_count]))
+            watch->brought -= watch->bodies[watch->body_count].energy;
+    if (!check_contacts(watch, &step, error)) return false;
     const int had = watch->body_count;
     if (!add_bodies(watch, step.bodies, step.body_count, step.frame, error)) return false;
-    if (watch->met < 0 && run->bomb >= 0 && run->bomb < had && strikes(watch, &step)) {
-        /* The bomb brings its energy, and what drops is judged from here on: it would fall that far in a unit. */
-        watch->met = step.frame - 1;
-        energy_count(watch, &watch->bodies[run->bomb]);
-        if (watch->pull > 0 && !find_carriers(watch, unit_sizes * watch->mean, error)) return false;
-    }
-    double farthest = 0; /* m: what a corner has moved in this step */
-    for (int i = 0; i < step.body_count; i++) {
-        WatchedBody *body = &watch->bodies[i];
-        if (body->is_static) body->held = step.frame;
-        if (body->is_static) continue;
-        const Body *now = &step.bodies[i];
-        const Pose pose = {now->position.x, now->position.y, now->angle};
-        const double x = pose.x - body->place.x, y = pose.y - body->place.y;
-        const double free = place_share * body->size - fabs(turn_between(pose.angle, body->place.angle)) * body->corner;
-        if (free < 0 || x * x + y * y > free * free) {
-            body->stays[0] = body->stays[1];
-            body->stays[1] = step.frame - body->since;
-            body->since = step.frame;
-            body->place = pose;
-        }
-        const double turn = fabs(turn_between(pose.angle, body->last.angle));
-        farthest = larger(farthest, way_between(&pose, &body->last) + turn * body->corner);
-        body->prior = body->before;
-        body->before = body->last;
-        body->last = pose;
-    }
+    const double farthest = move_bodies(watch, &step);
     watch->fastest = larger(watch->fastest, farthest / (double)run->dt);
     set_unit(watch);
-    if (!check_depth(watch, &step, error) ||
-        (farthest > pass_share / 2 * watch->smallest && !check_passes(watch, error)))
-        return false;
+    for (int i = 0; watch->met < 0 && run->bomb >= 0 && run->bomb < had && i < had; i++) {
+        WatchedBody *body = &watch->bodies[i], *bomb = &watch->bodies[run->bomb];
+        if (body->is_static || body == bomb || !bodies_touch(watch, body, bomb)) continue;
+        watch->met = step.frame - 1;
+        count_energy(watch, bomb);
+        if (!find_carriers(watch, 0, error)) return false;
+    }
+    if (farthest > pass_share / 2 * watch->smallest && !check_passes(watch, error)) return false;
     check_energy(watch, &step);
     judge_falls(watch);
-    if (step.frame % steps_of(watch, hang_units / HANG_CHECKS) == 0 && !check_hanging(watch, step.bodies, error))
-        return false;
+    if (!check_hanging(watch, error)) return false;
     if (watch->rested_frame == 0 && step.frame == steps_of(watch, VERDICT_DRIFT_UNITS)) {
         watch->rested_frame = step.frame;
         watch->rested = watch->energy;
@@ -426,21 +372,18 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
 }
 
 void verdict_watch_failed(VerdictWatch *watch, int frame, const Error *failure) {
-    static const char before[] = "adapter failed: ";
+    static const char before[] = "adapter failed: ", behind[] = ", in step ";
     if (watch->worst.verdict >= VERDICT_NON_FINITE) return;
+    const bool adapter = failure->failure == FAILURE_ADAPTER;
     watch->frame = frame;
-    if (failure->failure != FAILURE_ADAPTER) {
-        verdict_note(watch, VERDICT_NON_FINITE, -1, watch->speed, "m/s");
-        return;
-    }
-    verdict_note(watch, VERDICT_ADAPTER_FAILED, -1, watch->speed, "m/s");
-    /* Without the place, which is that of the verdict. */
-    const char *text = strstr(failure->message, before), *place = NULL;
+    verdict_note(watch, adapter ? VERDICT_ADAPTER_FAILED : VERDICT_NON_FINITE, -1, watch->speed, "m/s");
+    if (!adapter) return;
+    const char *text = strstr(failure->message, before); /* without the place, which is that of the verdict */
     text = text != NULL ? text + strlen(before) : failure->message;
-    for (const char *at = strstr(text, ", in step "); at != NULL; at = strstr(at + 1, ", in step ")) place = at;
-    char whole[sizeof failure->message];
-    snprintf(whole, sizeof whole, "%.*s", (int)(place != NULL ? (size_t)(place - text) : strlen(text)), text);
-    snprintf(watch->worst.reason, VERDICT_REASON_SIZE, "%.*s", (int)utf8_cut(whole, VERDICT_REASON_SIZE - 1), whole);
+    size_t length = strlen(text);
+    for (const char *at = text; (at = strstr(at, behind)) != NULL; at++) length = (size_t)(at - text);
+    const size_t fits = utf8_cut(text, VERDICT_REASON_SIZE - 1);
+    snprintf(watch->worst.reason, VERDICT_REASON_SIZE, "%.*s", (int)(length < fits ? length : fits), text);
 }
 
 double verdict_watch_units(const VerdictWatch *watch, double units) {
@@ -454,73 +397,61 @@ bool verdict_watch_fell(const VerdictWatch *watch, int i) {
     return i < watch->body_count && !body->is_static && !body->is_bomb && body->fell > 0;
 }
 
+/* Counts, rest and figures; then, of a sound run, the word. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     VerdictReading reading = watch->worst;
-    VerdictCount count = {.body = -1};
+    VerdictCount *count = &reading.count;
     const int least = steps_of(watch, rest_units);
-    int dropped = 0, staying = 0, starting = 0, last = -1;
-    bool still = true, moved = false;
+    const bool after = watch->rested_frame > 0 && watch->frame > watch->rested_frame;
+    int dropped = 0, starting = 0, last = -1;
+    count->body = -1;
+    reading.drift = after ? 0 : NAN;
     for (int i = 0; i < watch->body_count; i++) {
         const WatchedBody *body = &watch->bodies[i];
+        if (after) reading.drift = larger(reading.drift, way_between(&body->rested, &body->last));
         if (body->is_static || body->is_bomb) continue;
-        count.bodies++;
+        count->bodies++;
         dropped += body->carrier < 0;
         starting += body->starts;
-        count.fell += body->fell > 0;
-        count.left += body->left;
-        if (body->fell > 0 && (count.body < 0 || body->fell < count.first)) count.first = body->fell, count.body = i;
-        const double x = body->last.x - body->reference.x, y = body->last.y - body->reference.y;
-        const double beside = x * watch->up_y - y * watch->up_x, above = larger(0, x * watch->up_x + y * watch->up_y);
-        const double way = sqrt(beside * beside + above * above);
+        count->fell += body->fell > 0;
+        count->left += body->left;
+        if (body->fell > 0 && (count->body < 0 || body->fell < count->first))
+            count->first = body->fell, count->body = i;
+        const double up = height_of(watch, &body->last) - height_of(watch, &body->reference);
+        const double way = hypot(across_of(watch, &body->last) - across_of(watch, &body->reference), larger(0, up));
         if (body->fell == 0 && body->carrier >= 0 && way > moved_share * body->size) {
-            count.moved++;
-            count.farthest = larger(count.farthest, way);
+            count->moved++;
+            count->farthest = larger(count->farthest, way);
         }
-        if (body->gone) continue;
-        const int stay = watch->frame - body->since,
-                  shorter = body->stays[0] < body->stays[1] ? body->stays[0] : body->stays[1];
+        const int stay = watch->frame - body->since, shorter = (int)fmin(body->stays[0], body->stays[1]);
         const bool known = body->stays[0] != INT_MAX && body->stays[1] != INT_MAX;
-        staying++;
-        moved |= body->since > 0;
-        still &= stay >= least && (!known || stay > 2 * shorter);
+        reading.moving |= stay < least || (known && stay <= 2 * shorter);
         if (last < 0 || body->since > watch->bodies[last].since) last = i;
     }
-    reading.count = count;
     reading.struck = watch->struck;
-    reading.too_short = watch->frame < least && !moved && staying > 0;
-    reading.moving = !still;
     reading.since = last >= 0 ? watch->bodies[last].since : 0;
+    reading.too_short = watch->frame < least && reading.since == 0 && count->bodies > 0;
     reading.fallbacks = watch->fallbacks;
     reading.deepest = watch->deepest;
     reading.excess = energy_is_judged(watch) ? larger(watch->excess, 0) : NAN;
-    reading.drift = reading.gained = NAN;
-    if (watch->rested_frame > 0 && watch->frame > watch->rested_frame) {
-        reading.drift = 0;
-        reading.gained = watch->energy - watch->rested;
-        for (int i = 0; i < watch->body_count; i++)
-            reading.drift = larger(reading.drift, way_between(&watch->bodies[i].rested, &watch->bodies[i].last));
-    }
+    reading.gained = after ? watch->energy - watch->rested : NAN;
     if (reading.verdict >= VERDICT_HANGS) return reading;
-    reading.body = -1;
     reading.value = watch->speed;
-    reading.unit = "m/s";
-    if (count.fell > 0) {
-        const bool by_itself = watch->run.bomb >= 0 && starting == 0 && (watch->met < 0 || count.first <= watch->met);
-        reading.verdict =
-            by_itself || !watch->struck || 2 * count.fell < count.bodies - dropped ? VERDICT_FALLS : VERDICT_COLLAPSES;
-        reading.frame = count.first;
-        reading.body = count.body;
-        reading.value = count.fell;
+    reading.frame = reading.moving || reading.too_short ? watch->frame : reading.since;
+    if (count->fell > 0) {
+        const bool by_itself = watch->run.bomb >= 0 && starting == 0 && (watch->met < 0 || count->first <= watch->met);
+        const bool few = 2 * count->fell < count->bodies - dropped;
+        reading.verdict = by_itself || !watch->struck || few ? VERDICT_FALLS : VERDICT_COLLAPSES;
+        reading.frame = count->first;
+        reading.body = count->body;
+        reading.value = count->fell;
         reading.unit = "boxes";
-    } else if (watch->struck && dropped < count.bodies) {
+    } else if (watch->struck && dropped < count->bodies) {
         reading.verdict = VERDICT_STANDS;
-        reading.frame = still && reading.since > watch->met ? reading.since
-                        : still && watch->met > 0           ? watch->met
-                                                            : watch->frame;
+        if (reading.frame < watch->met) reading.frame = watch->met;
     } else {
-        reading.verdict = reading.too_short ? VERDICT_TOO_SHORT : still ? VERDICT_SETTLES : VERDICT_MOVES;
-        reading.frame = still && !reading.too_short ? reading.since : watch->frame;
-        if (!still) reading.body = last;
+        reading.verdict = reading.too_short ? VERDICT_TOO_SHORT : reading.moving ? VERDICT_MOVES : VERDICT_SETTLES;
+        if (reading.moving) reading.body = last;
     }
     return reading;
 }

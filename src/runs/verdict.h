@@ -11,30 +11,32 @@
    The verdict needs poses, sizes, masses and gravity. It is the same in other units of length, time and mass. Up is
    against gravity. The size of a body is the root of its area, its side the smaller one. The unit of time is that in
    which a body falls five mean sizes; without gravity, that in which the fastest corner so far goes as far: it never
-   depends on dt. Bodies are the dynamic ones but the bomb.
+   depends on dt. Bodies are the dynamic ones but the bomb. Two touch if the gap between them is no more than 3% of a
+   side, beside what they have moved past each other in the step.
 
    Sound, unless a body's state is not finite, or the run
    - explodes: the energy of all dynamic bodies exceeds what they brought by 1% of what is available to be lost, or the
      least that it stayed below for a unit by 5%; or a body has five times the energy per kg of the liveliest one at the
-     start. The bomb brings what it has in the step before it first touches a dynamic body. Where boxes overlap at the
-     start by 2% of a side, energy is judged from one unit on.
+     start. The bomb brings what it has in the step before it first touches a body. Where boxes overlap at the start by
+     2% of a side, energy is judged from one unit on.
    - sinks: two bodies are deeper in each other than a quarter of the smaller side for half a unit.
-   - tunnels: between two frames, bodies are deeper in each other than in either by half a side; or a pair that was
-     deeper than that is apart again on the other side.
-   - hangs: a body that no chain of contacts joins to a static one keeps its height for half a unit.
+   - tunnels: a body is on the other side of another, past which it went by more than half a side deep: between two
+     frames, or while they were deeper in each other than a quarter of a side.
+   - hangs: a body that no chain of touching bodies joins to a static one keeps its height for half a unit.
 
    Rest. A body has a place: the pose from which its corners have since moved by no more than 2% of its size; when it
    moves farther, it takes a new place there. It rests if it took its last place half a unit ago and more than twice the
-   shorter of its last two stays, so that constant gliding never rests. A run rests since its last body does. The bomb
-   and what is below all static bodies need not rest.
+   shorter of its last two stays, so that constant gliding never rests. A run rests since its last body does; the bomb
+   need not.
+
+   Carrier. A body's carrier is what it touches first if it moves down by up to half its side or, if it starts at rest,
+   as far as it would fall in a unit; or what it touches beside itself, as in an arch. Its reference is its pose at the
+   start or, of what has no carrier then, when the bomb strikes; without a carrier it is judged by rest and leaving only.
 
    Fell, at the end: a body is lower than at its reference by more than half its side and the gaps below it, and so
-   relative to what carried it, unless that fell, too: sag is no fall. Or it has turned by 30 degrees; or it left: it is
-   below all static bodies, or beside all that chains of contacts join to them. Its carrier is what it touches first if
-   moved down by up to half its side, or what holds it from the side, as in an arch. The reference is the start; for a
-   body without a carrier there that does not fly sideways, the moment when the bomb strikes, and its carrier is what it
-   would reach in a unit. Others without a carrier drop, and are judged by rest and leaving only.
-   Moved: has not fallen, and is a tenth of its size beside its reference, or above it. */
+   relative to its carrier, beside how deep it is in that; or its carrier fell, too: neither sag nor pressing in is a
+   fall. Or it has turned by 30 degrees; or it left: it is below all static bodies, or beside all that contacts join to
+   them. Moved: has not fallen, and is a tenth of its size beside its reference, or above it. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -138,7 +140,6 @@ typedef struct VerdictRun {
     float skin;
     bool masses_unknown; /* the energy of a struck run is not judged */
     bool finds_contacts; /* between the bodies before a step: those that steps state do not count */
-    bool poses_only;     /* velocities are differences of poses */
     /* Energy is no gain that the converged run has within a unit before or after. At least as many frames; outlives the
        watch. NULL: none. */
     const EnergyLog *converged;
@@ -161,21 +162,21 @@ typedef struct VerdictStep {
 typedef struct WatchedBody WatchedBody;
 typedef struct DeepPair DeepPair;
 
-/* Zero-initialise; free with verdict_watch_free(); may be begun again. */
+/* Zero-initialise; free with verdict_watch_free(). */
 typedef struct VerdictWatch {
     VerdictRun run;
     VerdictReading worst; /* so far, from hangs on */
     int frame, body_count;
     double up_x, up_y, pull;   /* unit vector; m/s^2 */
     double mean, smallest;     /* m: mean size of the bodies at the start; smallest side of a dynamic one */
-    double floor;              /* m: the lowest point of all static bodies */
-    double low, high;          /* m: their ends across gravity */
+    double floor, low, high;   /* m: the lowest point of all static bodies; their ends across gravity */
+    double held[2];            /* m: the same ends, with what contacts join to them in this step */
     double unit;               /* s */
     double energy, kinetic;    /* J: in the last frame: of all dynamic bodies; their mean */
     double speed, fastest;     /* m/s: of the fastest body in the last frame; of the fastest corner so far */
     double brought, available; /* J: what bodies brought; of that, and of their height, what they can lose */
     double lowest, liveliest;  /* m, J/kg: of dynamic bodies at the start, and of added ones */
-    double weight, lift, mass, largest, farthest; /* N, J, kg, m, m: floor of what counts as gained energy */
+    double weight, lift, largest, farthest; /* N, J, m, m: floor of what counts as gained energy */
     double peak, kept, excess, least; /* J, above `brought`: this unit's most, the least of whole units, most, least */
     int unit_began;
     double judged_from; /* J: energy is judged above this; INFINITY: not yet, as boxes overlap at the start */

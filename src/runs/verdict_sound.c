@@ -10,8 +10,6 @@
 #include "scenes/scenes.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Of the energy that is available to be lost: what the solver's penetrations store and release again is less. */
 static const double gain_share = 0.01;
@@ -19,9 +17,8 @@ static const double regain_share = 0.05;  /* a stack that sank under its weight 
 static const double burst_factor = 5;     /* a heavy body's elastic blow gives a light one 4 times its energy per kg */
 static const double least_share = 0.1;    /* of a size: at least what lifts all bodies so far is available */
 static const double overlap_share = 0.02; /* of a side: such overlaps at the start are pushed apart */
-static const double deep_share = 0.25;    /* of the smaller side; an impact's penetration is corrected sooner */
-static const double deep_units = 0.5;
-static const double hang_share = 0.15; /* of g t^2: a free flight's heights differ by half of it within 2 t */
+static const double deep_units = 0.5, hang_units = 0.5;
+static const double hang_share = 0.15; /* of g t^2: three heights of a free flight, t apart, differ by a third of it */
 /* float32 rounds a position by 6e-8 of it; its steps add up like a random walk. */
 static const double rounding = 1e-6;
 
@@ -47,24 +44,7 @@ bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
     return true;
 }
 
-/* Energy. */
-
-void energy_add_body(VerdictWatch *watch, const Body *from, WatchedBody *body) {
-    const double up = height_of(watch, &body->last);
-    if (isinf(watch->lowest)) watch->lowest = up;
-    const double per_kg = body_energy(from, vec2(0, 0)) * from->inv_mass + watch->pull * (up - watch->lowest);
-    body->mass = 1 / (double)from->inv_mass;
-    body->energy = body->mass * (per_kg + watch->pull * watch->lowest);
-    watch->liveliest = larger(watch->liveliest, per_kg);
-    watch->largest = larger(watch->largest, body->size);
-    watch->mass += body->mass;
-    watch->weight += body->mass * watch->pull;
-    watch->lift += body->mass * watch->pull * body->size;
-    if (!body->is_bomb) energy_count(watch, body);
-}
-
-void energy_count(VerdictWatch *watch, WatchedBody *body) {
-    body->counted = true;
+void count_energy(VerdictWatch *watch, const WatchedBody *body) {
     watch->brought += body->energy;
     watch->available += body->energy - body->mass * watch->pull * watch->lowest;
 }
@@ -99,7 +79,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
         kinetic += own;
         moving++;
         all += body->energy;
-        if (body->counted) sum += body->energy;
+        if (energy_counts(watch, body)) sum += body->energy;
         watch->farthest = larger(watch->farthest, larger(fabs(body->last.x), fabs(body->last.y)));
         if (own > most) most = own, hottest = i;
         if (energy_is_judged(watch) && own / body->mass + watch->pull * (up - watch->lowest) > burst &&
@@ -117,8 +97,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     /* Free of charge: what gravity does in a step, rounding, and a lift by skins. */
     const double skin =
         isfinite(watch->smallest) ? 2 * (double)watch->run.skin * (watch->weight + available / watch->smallest) : 0;
-    const double fall = watch->pull * dt;
-    const double free = skin + watch->mass * fall * fall / 2 +
+    const double free = skin + watch->weight * watch->pull * dt * dt / 2 +
                         rounding * (watch->weight * watch->farthest * sqrt(step->frame) + fabs(watch->brought));
     const double over = larger(gained - (watch->judged_from + larger(gain_share * available, free)),
                                gained - (watch->kept + larger(regain_share * available, free)));
@@ -131,42 +110,53 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     watch->unit_began = step->frame;
 }
 
-/* Depth. */
-
-/* Whether b was on one side of a before, and is on the other side now, along one of a's axes: beside it both times, and
-   not farther along the other axis than it reaches. */
-static bool changed_sides(const WatchedBody *a, const WatchedBody *b, const Pose poses[2][2]) {
-    double at[2][2]; /* before and now, along both axes of a, in reaches */
+/* Whether b has gone through a: along an axis of a it was on one side and is on the other, along the other one it was
+   in a by more than `pass_share`. What turned by 60 degrees has other sides. */
+static bool has_passed(const WatchedBody *a, const WatchedBody *b, const Pose of_a[2], const Pose of_b[2]) {
+    const double limit = pass_share * fmin(a->side, b->side), w = (double)b->box.x, h = (double)b->box.y;
+    double at[2][2], reach[2][2]; /* m: before and now, along both axes */
     for (int now = 0; now < 2; now++) {
-        const Pose *of_a = &poses[now][0], *of_b = &poses[now][1];
-        const double c = cos(of_a->angle), s = sin(of_a->angle), x = of_b->x - of_a->x, y = of_b->y - of_a->y;
-        const double p = fabs(cos(of_b->angle - of_a->angle)), q = fabs(sin(of_b->angle - of_a->angle));
-        const double w = (double)b->box.x, h = (double)b->box.y;
-        at[now][0] = 2 * (c * x + s * y) / ((double)a->box.x + p * w + q * h);
-        at[now][1] = 2 * (c * y - s * x) / ((double)a->box.y + q * w + p * h);
+        const double c = cos(of_a[now].angle), s = sin(of_a[now].angle), turn = of_b[now].angle - of_a[now].angle;
+        const double p = fabs(cos(turn)), q = fabs(sin(turn));
+        const double x = of_b[now].x - of_a[now].x, y = of_b[now].y - of_a[now].y;
+        at[now][0] = c * x + s * y, reach[now][0] = ((double)a->box.x + p * w + q * h) / 2;
+        at[now][1] = c * y - s * x, reach[now][1] = ((double)a->box.y + q * w + p * h) / 2;
     }
-    for (int axis = 0; axis < 2; axis++)
-        if (at[0][axis] * at[1][axis] < 0 && fmin(fabs(at[0][axis]), fabs(at[1][axis])) > 0.7 &&
-            fabs(at[0][1 - axis] + at[1][1 - axis]) < 1.2)
-            return true;
+    for (int k = 0; k < 2; k++)
+        if (at[0][k] * at[1][k] < 0 && fabs(at[0][k]) > reach[0][k] - limit && fabs(at[1][k]) > reach[1][k] - limit &&
+            fabs(at[0][!k] + at[1][!k]) < reach[0][!k] + reach[1][!k] - 2 * limit)
+            return fabs(turn_between(of_a[1].angle, of_a[0].angle)) < M_PI / 3;
     return false;
 }
 
-static void note_pass(VerdictWatch *watch, int a, int b, double speed) {
-    const bool first = watch->bodies[b].is_static;
+static void check_pass(VerdictWatch *watch, int a, int b, const Pose of_a[2], const Pose of_b[2], double speed) {
+    const WatchedBody *one = &watch->bodies[a], *other = &watch->bodies[b];
     if (watch->worst.verdict >= VERDICT_TUNNELS) return;
-    verdict_note(watch, VERDICT_TUNNELS, first ? a : b, speed, "m/s");
-    watch->worst.other = first ? b : a;
+    if (!has_passed(one, other, of_a, of_b) && !has_passed(other, one, of_b, of_a)) return;
+    verdict_note(watch, VERDICT_TUNNELS, other->is_static ? a : b, speed, "m/s");
+    watch->worst.other = other->is_static ? b : a;
 }
 
-bool check_depth(VerdictWatch *watch, const VerdictStep *step, Error *error) {
-    /* Contacts are of the poses before the step. */
+bool check_passes(VerdictWatch *watch, Error *error) {
+    if (!find_near(watch, 0, error)) return false;
+    for (size_t k = 0; k < watch->finder.pairs.count; k++) {
+        const BodyPair pair = watch->finder.pairs.pairs[k];
+        const WatchedBody *a = &watch->bodies[pair.a], *b = &watch->bodies[pair.b];
+        const double way = larger(way_between(&a->last, &a->before), way_between(&b->last, &b->before));
+        check_pass(watch, pair.a, pair.b, (Pose[2]){a->before, a->last}, (Pose[2]){b->before, b->last},
+                   way / (double)watch->run.dt);
+    }
+    return true;
+}
+
+bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) {
+    const int half = steps_of(watch, deep_units), longest = half > 4 ? half : 4;
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
         const double depth = -(double)contact->separation;
         if (contact->b >= watch->body_count) continue;
         WatchedBody *a = &watch->bodies[contact->a], *b = &watch->bodies[contact->b];
-        a->held = b->held = a->held > b->held ? a->held : b->held;
+        a->held = b->held = a->is_static || b->is_static ? step->frame : a->held > b->held ? a->held : b->held;
         if (depth <= 0) continue;
         watch->deepest = larger(watch->deepest, depth);
         const double side = a->side < b->side ? a->side : b->side;
@@ -179,143 +169,59 @@ bool check_depth(VerdictWatch *watch, const VerdictStep *step, Error *error) {
                                sizeof *watch->deep))
                 return error_memory(error, "verdict");
             pair = &watch->deep[watch->deep_count++];
-            *pair = (DeepPair){.a = contact->a,
-                               .b = contact->b,
-                               .since = step->frame,
-                               .entry_a = a->prior,
-                               .entry_b = b->prior,
-                               .turn_a = {a->prior.angle, a->prior.angle},
-                               .turn_b = {b->prior.angle, b->prior.angle}};
+            *pair = (DeepPair){contact->a, contact->b, step->frame, 0, 0, {a->before}, {b->before}};
         }
         pair->seen = step->frame;
         pair->deepest = larger(pair->deepest, depth);
-        const int longest = steps_of(watch, deep_units);
-        if (step->frame - pair->since > (longest > 4 ? longest : 4))
+        if (step->frame - pair->since > longest)
             verdict_note(watch, VERDICT_SINKS, b->is_static ? pair->a : pair->b, depth, "m");
     }
     int kept = 0;
     for (int i = 0; i < watch->deep_count; i++) {
         DeepPair *pair = &watch->deep[i];
         if (pair->b >= watch->body_count) continue;
-        const WatchedBody *a = &watch->bodies[pair->a], *b = &watch->bodies[pair->b];
-        const double of_a = a->before.angle, of_b = b->before.angle;
-        pair->turn_a[0] = fmin(pair->turn_a[0], of_a), pair->turn_a[1] = larger(pair->turn_a[1], of_a);
-        pair->turn_b[0] = fmin(pair->turn_b[0], of_b), pair->turn_b[1] = larger(pair->turn_b[1], of_b);
-        if (pair->seen == step->frame) {
+        pair->of_a[1] = watch->bodies[pair->a].last;
+        pair->of_b[1] = watch->bodies[pair->b].last;
+        if (pair->seen == step->frame)
             watch->deep[kept++] = *pair;
-        } else if (pair->since > 1 && pair->deepest > pass_share * fmin(a->side, b->side)) {
-            const Pose ab[2][2] = {{pair->entry_a, pair->entry_b}, {a->before, b->before}},
-                       ba[2][2] = {{pair->entry_b, pair->entry_a}, {b->before, a->before}};
-            const double most = M_PI / 3; /* what turned farther has other sides */
-            if ((pair->turn_a[1] - pair->turn_a[0] < most && changed_sides(a, b, ab)) ||
-                (pair->turn_b[1] - pair->turn_b[0] < most && changed_sides(b, a, ba)))
-                note_pass(watch, pair->a, pair->b, watch->speed);
-        }
+        else if (pair->since > 1 &&
+                 pair->deepest > pass_share * fmin(watch->bodies[pair->a].side, watch->bodies[pair->b].side))
+            check_pass(watch, pair->a, pair->b, pair->of_a, pair->of_b, watch->speed);
     }
     watch->deep_count = kept;
     return true;
 }
 
-/* Whether two bodies are deeper in each other on their way through this step than before and after it. */
-static bool pass(const WatchedBody *a, const WatchedBody *b) {
-    enum { MOST = 64 };
-    const Pose by_a = {a->last.x - a->before.x, a->last.y - a->before.y, turn_between(a->last.angle, a->before.angle)},
-               by_b = {b->last.x - b->before.x, b->last.y - b->before.y, turn_between(b->last.angle, b->before.angle)};
-    const double x = by_a.x - by_b.x, y = by_a.y - by_b.y, side = fmin(a->side, b->side);
-    const double way = sqrt(x * x + y * y) + fabs(by_a.angle) * a->corner + fabs(by_b.angle) * b->corner;
-    if (way <= pass_share * side) return false;
-    const int pieces = (int)fmin(MOST, ceil(4 * way / side));
-    double ends = 0;
-    for (int k = 0; k <= pieces; k++) { /* both ends first */
-        const double part = k == 0 ? 0 : k == 1 ? 1 : (double)(k - 1) / pieces;
-        const Pose at_a = {a->before.x + by_a.x * part, a->before.y + by_a.y * part,
-                           a->before.angle + by_a.angle * part},
-                   at_b = {b->before.x + by_b.x * part, b->before.y + by_b.y * part,
-                           b->before.angle + by_b.angle * part};
-        const Box box_a = box_of(a, &at_a), box_b = box_of(b, &at_b);
-        const double depth = overlap_depth(&box_a, &box_b);
-        if (k < 2)
-            ends = larger(ends, depth);
-        else if (depth > ends + pass_share * side)
-            return true;
-    }
-    return false;
-}
-
-bool check_passes(VerdictWatch *watch, Error *error) {
-    const size_t count = (size_t)watch->body_count;
-    SortAndSweep *sweep = &watch->finder.broad_phase;
-    Bounds *bounds = malloc((count + 1) * sizeof *bounds);
-    bool *fixed = malloc(count + 1);
-    bool ok = bounds != NULL && fixed != NULL;
-    for (size_t i = 0; ok && i < count; i++) {
-        const WatchedBody *body = &watch->bodies[i];
-        const double r = body->corner;
-        bounds[i] = (Bounds){
-            vec2((float)(fmin(body->last.x, body->before.x) - r), (float)(fmin(body->last.y, body->before.y) - r)),
-            vec2((float)(larger(body->last.x, body->before.x) + r), (float)(larger(body->last.y, body->before.y) + r))};
-        fixed[i] = body->is_static;
-    }
-    ok = ok && sort_and_sweep_find(sweep, &watch->finder.pairs, bounds, fixed, (int)count);
-    for (size_t k = 0; ok && k < watch->finder.pairs.count; k++) {
-        const BodyPair pair = watch->finder.pairs.pairs[k];
-        const WatchedBody *a = &watch->bodies[pair.a], *b = &watch->bodies[pair.b];
-        if (pass(a, b))
-            note_pass(watch, pair.a, pair.b,
-                      larger(way_between(&a->last, &a->before), way_between(&b->last, &b->before)) /
-                          (double)watch->run.dt);
-    }
-    free(fixed);
-    free(bounds);
-    return ok || sweep->too_many || error_memory(error, "verdict");
-}
-
-/* Hanging. */
-
-static int root_of(const VerdictWatch *watch, int i) {
-    while (watch->bodies[i].root != i) i = watch->bodies[i].root = watch->bodies[watch->bodies[i].root].root;
+/* The body that i hangs on, and that on another, to the last. */
+static int end_of(const VerdictWatch *watch, int i) {
+    while (watch->bodies[i].link != i) i = watch->bodies[i].link = watch->bodies[watch->bodies[i].link].link;
     return i;
 }
 
-/* Joins what touches, within a gap that a step's motion may be. A chain's root is a static body, if it has one. */
-static bool find_chains(VerdictWatch *watch, const Body *bodies, Error *error) {
-    const double widest = 0.25 * watch->smallest; /* m: the most that a step's motion may open */
-    const float skin = watch->run.skin + (float)widest / 2;
-    if (!contact_finder_find(&watch->finder, bodies, watch->body_count, skin, error)) return false;
-    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].root = i;
-    for (int k = 0; k < watch->finder.set.contact_count; k++) {
-        const ContactPoint *contact = &watch->finder.set.contacts[k];
-        const WatchedBody *one = &watch->bodies[contact->a], *other = &watch->bodies[contact->b];
-        const double moved = way_between(&one->last, &one->before) + way_between(&other->last, &other->before);
-        const double gap = (double)contact->separation - 2 * (double)watch->run.skin;
-        if (gap > touch_share * fmin(one->side, other->side) + moved) continue;
-        const int a = root_of(watch, contact->a), b = root_of(watch, contact->b);
-        if (watch->bodies[a].is_static)
-            watch->bodies[b].root = a;
-        else
-            watch->bodies[a].root = b;
-    }
-    return true;
-}
-
-bool check_hanging(VerdictWatch *watch, const Body *bodies, Error *error) {
-    if (watch->pull == 0 || isinf(watch->floor)) return true;
+bool check_hanging(VerdictWatch *watch, Error *error) {
+    const int longest = steps_of(watch, hang_units), often = steps_of(watch, hang_units / 4);
     const double time = hang_units / 2 * watch->unit, limit = hang_share * watch->pull * time * time;
-    const int longest = steps_of(watch, hang_units);
-    bool known = false;
+    if (watch->pull == 0 || isinf(watch->floor) || watch->frame % often != 0) return true;
+    bool hangs = false;
     for (int i = 0; i < watch->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
         const double up = height_of(watch, &body->last);
-        double high = up, low = up;
-        for (int k = 0; k < HANG_CHECKS; k++) {
-            high = larger(high, body->heights[k]);
-            low = body->heights[k] < low ? body->heights[k] : low;
-            body->heights[k] = k + 1 < HANG_CHECKS ? body->heights[k + 1] : up;
-        }
-        if (body->is_static || high - low > limit || watch->frame - body->held <= longest) continue;
-        if (!known && !find_chains(watch, bodies, error)) return false;
-        known = true;
-        if (!watch->bodies[root_of(watch, i)].is_static)
+        body->link = i;
+        if (fabs(up - body->level) > limit) body->level = up, body->level_since = watch->frame;
+        hangs |= !body->is_static && watch->frame - body->level_since >= longest && watch->frame - body->held > longest;
+    }
+    if (!hangs) return true;
+    if (!find_near(watch, 0, error)) return false;
+    for (size_t k = 0; k < watch->finder.pairs.count; k++) {
+        const BodyPair pair = watch->finder.pairs.pairs[k];
+        if (!bodies_touch(watch, &watch->bodies[pair.a], &watch->bodies[pair.b])) continue;
+        const int a = end_of(watch, pair.a), b = end_of(watch, pair.b);
+        watch->bodies[watch->bodies[a].is_static ? b : a].link = watch->bodies[a].is_static ? a : b;
+    }
+    for (int i = 0; i < watch->body_count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        if (!watch->bodies[end_of(watch, i)].is_static && watch->frame - body->level_since >= longest &&
+            watch->frame - body->held > longest)
             verdict_note(watch, VERDICT_HANGS, i, hang_units * watch->unit, "s");
     }
     return true;

@@ -22,34 +22,27 @@ static bool count_bodies(const Trajectory *run, int frame, int *count, Error *er
     return true;
 }
 
-/* The velocity that leads from one frame to the next, as semi-implicit Euler moves bodies by it. */
-static void set_difference(const Trajectory *run, int from, int i, Body *body) {
-    const size_t before = trajectory_at(run, from, i), after = trajectory_at(run, from + 1, i);
-    const float rate = 1 / run->dt, turn = 6.2831853f; /* some engines keep angles within one */
-    body->velocity = vec2_scale(rate, vec2_sub(run->position[after], run->position[before]));
-    body->angular_velocity = rate * remainderf(run->angle[after] - run->angle[before], turn);
-}
-
-/* Of a run without velocities, those that lead to the frame, or from it, whichever are slower: what pushes an overlap
-   apart lasts a step. */
+/* A body's state. Of a run without velocities, they are those that lead from or to the neighbouring frame, as
+   semi-implicit Euler moves bodies, whichever are slower: what pushes an overlap apart lasts a step. */
 static void set_body(const Trajectory *run, int frame, int i, Body *body) {
     const size_t now = trajectory_at(run, frame, i);
+    const float rate = 1 / run->dt, whole_turn = 6.2831853f; /* some engines keep angles within one */
+    bool known = !run->no_velocities;
     body->position = run->position[now];
     body->angle = run->angle[now];
     body->velocity = run->velocity[now];
     body->angular_velocity = run->angular_velocity[now];
-    if (!run->no_velocities) return;
-    Body to = *body, from = *body;
-    const bool has_to = frame > 0 && trajectory_has(run, frame - 1, i),
-               has_from = frame + 1 < run->frames && trajectory_has(run, frame + 1, i);
-    if (has_to) set_difference(run, frame - 1, i, &to);
-    if (has_from) set_difference(run, frame, i, &from);
-    if (!has_to) to = from;
-    if (!has_from) from = to;
-    const bool slower = vec2_dot(from.velocity, from.velocity) < vec2_dot(to.velocity, to.velocity);
-    body->velocity = slower ? from.velocity : to.velocity;
-    body->angular_velocity =
-        fabsf(from.angular_velocity) < fabsf(to.angular_velocity) ? from.angular_velocity : to.angular_velocity;
+    for (int from = frame - 1; run->no_velocities && from <= frame; from++) {
+        if (from < 0 || from + 1 >= run->frames || !trajectory_has(run, from, i) || !trajectory_has(run, from + 1, i))
+            continue;
+        const size_t a = trajectory_at(run, from, i), b = trajectory_at(run, from + 1, i);
+        const Vec2 velocity = vec2_scale(rate, vec2_sub(run->position[b], run->position[a]));
+        const float spin = rate * remainderf(run->angle[b] - run->angle[a], whole_turn);
+        if (!known || vec2_dot(velocity, velocity) < vec2_dot(body->velocity, body->velocity))
+            body->velocity = velocity;
+        if (!known || fabsf(spin) < fabsf(body->angular_velocity)) body->angular_velocity = spin;
+        known = true;
+    }
 }
 
 Scene *trajectory_scene(const Trajectory *run, Error *error) {
@@ -76,7 +69,7 @@ Scene *trajectory_scene(const Trajectory *run, Error *error) {
     return scene;
 }
 
-static bool verdict_stored_fits(const Scene *scene, const Trajectory *run, const World *world, Error *error) {
+static bool fits(const Scene *scene, const Trajectory *run, const World *world, Error *error) {
     const Body *bodies = world_bodies(world);
     if (run->bodies != scene->body_count && run->bodies != world_body_count(world))
         return error_input(error, scene->name, "has %d bodies, but the run has %d", scene->body_count, run->bodies);
@@ -90,43 +83,23 @@ static bool verdict_stored_fits(const Scene *scene, const Trajectory *run, const
     return true;
 }
 
-/* A frame as a step: its bodies get the poses of the run. */
-static bool watch_frame(VerdictWatch *watch, const VerdictRun *judged, const Trajectory *run, int frame, Body *bodies,
-                        Error *error) {
-    VerdictStep step = {.frame = frame, .bodies = bodies};
-    if (!count_bodies(run, frame, &step.body_count, error)) return false;
-    for (int i = 0; i < step.body_count; i++) set_body(run, frame, i, &bodies[i]);
-    return frame > 0 ? verdict_watch_step(watch, &step, error)
-                     : verdict_watch_begin(watch, judged, bodies, step.body_count, error);
-}
-
-static bool verdict_stored_judge(SimulateVerdict *verdict, const Trajectory *run, const RunScene *by,
-                                 const World *world, Error *error) {
-    const Scene *scene = by->scene;
-    const VerdictRun judged = {.gravity = scene->gravity,
-                               .dt = scene->dt,
-                               .bomb = !scene->bomb.present ? -1
-                                       : run->bomb >= 0     ? run->bomb
-                                                            : scene->body_count,
-                               .skin = by->skin,
-                               .masses_unknown = by->assumed && !trajectory_has_masses(run),
-                               .finds_contacts = true,
-                               .poses_only = run->no_velocities};
+/* Each frame is a step, in which the bodies of the world get the poses of the run. */
+static bool watch_frames(VerdictWatch *watch, const VerdictRun *judged, const Trajectory *run, const World *world,
+                         Error *error) {
     const size_t size = (size_t)run->bodies * sizeof(Body);
     Body *bodies = malloc(size + 1);
     if (bodies == NULL) return error_memory(error, run->scene);
     if (size > 0) memcpy(bodies, world_bodies(world), size);
     bool ok = true;
-    for (int frame = 0; ok && frame < run->frames; frame++)
-        ok = watch_frame(&verdict->watch, &judged, run, frame, bodies, error);
+    for (int frame = 0; ok && frame < run->frames; frame++) {
+        VerdictStep step = {.frame = frame, .bodies = bodies};
+        ok = count_bodies(run, frame, &step.body_count, error);
+        for (int i = 0; ok && i < step.body_count; i++) set_body(run, frame, i, &bodies[i]);
+        ok = ok && (frame > 0 ? verdict_watch_step(watch, &step, error)
+                              : verdict_watch_begin(watch, judged, bodies, step.body_count, error));
+    }
     free(bodies);
     return ok;
-}
-
-/* What a run that ended in NaN says of itself; its frames are finite. */
-static bool ended_in_nan(const Trajectory *run) {
-    const char *word = verdict_name(VERDICT_NON_FINITE);
-    return strncmp(run->verdict, word, strlen(word)) == 0;
 }
 
 bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const Trajectory *run, Error *error) {
@@ -135,14 +108,24 @@ bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const
     scene->dt = run->dt;
     scene->frames = run->frames - 1;
     scene->bomb.present &= run->bomb >= 0 || run->bodies > scene->body_count;
+    const VerdictRun judged = {.gravity = scene->gravity,
+                               .dt = scene->dt,
+                               .bomb = !scene->bomb.present ? -1
+                                       : run->bomb >= 0     ? run->bomb
+                                                            : scene->body_count,
+                               .skin = by->skin,
+                               .masses_unknown = by->assumed && !trajectory_has_masses(run),
+                               .finds_contacts = true};
     World *world = scene_world(scene, error);
     const bool later = scene->bomb.present && scene->bomb.frame > 0;
     const bool ok = world != NULL && (!later || scene_add_bomb(scene, world, error)) &&
-                    verdict_stored_fits(scene, run, world, error) &&
-                    verdict_stored_judge(verdict, run, by, world, error);
+                    fits(scene, run, world, error) && watch_frames(&verdict->watch, &judged, run, world, error);
     world_destroy(world);
     if (!ok) return false;
+    /* A run that ended in NaN says so of itself; its frames are finite. */
+    const char *ended = verdict_name(VERDICT_NON_FINITE);
     Error failure = {0};
-    if (ended_in_nan(run)) error_failure(&failure, FAILURE_NOT_FINITE, run->scene, "NaN or infinite");
+    if (strncmp(run->verdict, ended, strlen(ended)) == 0)
+        error_failure(&failure, FAILURE_NOT_FINITE, run->scene, "NaN or infinite");
     return simulate_verdict_end(verdict, &failure);
 }

@@ -33,43 +33,29 @@ bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure) {
 
 void simulate_verdict_free(SimulateVerdict *verdict) { verdict_watch_free(&verdict->watch); }
 
-/* "explodes at 0.9 s (body 3, 68.5 J gained)" */
-static void write_unsound(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
-    const VerdictReading *reading = &verdict->reading;
-    char what[VERDICT_REASON_SIZE];
-    switch (reading->verdict) {
-    case VERDICT_HANGS:
-        snprintf(what, sizeof what, "body %d, in the air for %.3g s", reading->body, reading->value);
-        break;
-    case VERDICT_SINKS: snprintf(what, sizeof what, "body %d, %.3g m deep", reading->body, reading->value); break;
-    case VERDICT_TUNNELS:
-        snprintf(what, sizeof what, "body %d, at %.3g m/s through body %d", reading->body, reading->value,
-                 reading->other);
-        break;
-    case VERDICT_EXPLODES:
-        snprintf(what, sizeof what,
-                 strcmp(reading->unit, "J") == 0 ? "body %d is the most energetic, %.3g J gained"
-                                                 : "body %d bursts away at %.3g m/s",
-                 reading->body, reading->value);
-        break;
-    case VERDICT_ADAPTER_FAILED: snprintf(what, sizeof what, "%s", reading->reason); break;
-    default:
-        snprintf(what, sizeof what, "a body's state is NaN or infinite; fastest body before: %.3g m/s", reading->value);
-    }
-    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s at %.3g s (%s)", verdict_name(reading->verdict),
-             reading->frame * (double)verdict->scene->dt, what);
-}
-
 void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
     enum { SIZE = TRAJECTORY_VERDICT_SIZE };
     const VerdictReading *reading = &verdict->reading;
     const VerdictCount *count = &reading->count;
     const VerdictWatch *watch = &verdict->watch;
-    const double dt = (double)verdict->scene->dt;
-    if (verdict_sound(reading->verdict))
-        snprintf(words, SIZE, "%s", verdict_name(reading->verdict));
-    else
-        write_unsound(verdict, words);
+    const double dt = (double)verdict->scene->dt, value = reading->value;
+    const int body = reading->body;
+    snprintf(words, SIZE, "%s", verdict_name(reading->verdict));
+    if (!verdict_sound(reading->verdict)) text_add(words, SIZE, " at %.3g s (", reading->frame * dt);
+    if (reading->verdict == VERDICT_HANGS)
+        text_add(words, SIZE, "body %d, in the air for %.3g s)", body, value);
+    else if (reading->verdict == VERDICT_SINKS)
+        text_add(words, SIZE, "body %d, %.3g m deep)", body, value);
+    else if (reading->verdict == VERDICT_TUNNELS)
+        text_add(words, SIZE, "body %d, at %.3g m/s through body %d)", body, value, reading->other);
+    else if (reading->verdict == VERDICT_EXPLODES && strcmp(reading->unit, "J") == 0)
+        text_add(words, SIZE, "body %d is the most energetic, %.3g J gained)", body, value);
+    else if (reading->verdict == VERDICT_EXPLODES)
+        text_add(words, SIZE, "body %d bursts away at %.3g m/s)", body, value);
+    else if (reading->verdict == VERDICT_NON_FINITE)
+        text_add(words, SIZE, "a body's state is NaN or infinite; fastest body before: %.3g m/s)", value);
+    else if (reading->verdict == VERDICT_ADAPTER_FAILED)
+        text_add(words, SIZE, "%s)", reading->reason);
     if (reading->verdict >= VERDICT_NON_FINITE) return;
     if (count->fell > 0) {
         text_add(words, SIZE, "; %d of %d fell, first at %.3g s", count->fell, count->bodies, count->first * dt);
