@@ -116,6 +116,11 @@ const char *npz_path(const NpzFile *file) { return file->path; }
 
 bool npz_has(const NpzFile *file, const char *name) { return npz_find(file, name) != NULL; }
 
+bool npz_is_wide(const NpzFile *file, const char *name) {
+    const StoredArray *array = npz_find(file, name);
+    return array != NULL && !array->head.is_foreign && array->head.type > NPZ_FLOAT32 && array->head.type < NPZ_UINT8;
+}
+
 static bool is_stored_as(const NpyHead *head, NpzType type, int rank) {
     return head->type == type && head->rank == rank && !head->big_endian && !(head->fortran && rank > 1);
 }

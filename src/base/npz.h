@@ -59,6 +59,9 @@ const char *npz_path(const NpzFile *file);
 
 bool npz_has(const NpzFile *file, const char *name);
 
+/* True for numbers of 32 or 64 bits that float32 does not hold: float64, and integers. */
+bool npz_is_wide(const NpzFile *file, const char *name);
+
 /* What the arrays of a file may take in memory together, as they are stored and as they are converted: NPZ_ALWAYS bytes
    and NPZ_RATIO times its size, at most 2 GiB. Files of npz_write() do: its fastest deflate, which large arrays get,
    shrinks zeros to 1/230. A program that deflates better reaches 1/1032, but only with arrays that hold almost

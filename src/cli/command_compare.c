@@ -28,7 +28,7 @@ static const Option option_table[] = {
     {"--tolerance", 0, "MAX",
      "Pictures: ignore pixels in which no channel differs by more than MAX (0 to 255). Runs, two or those of two "
      "folders: pass them where the centres of a body are at most MAX metres apart; MAX,RAD also limits its rotation "
-     "(default: 0, every bit of pose and velocity counts). In folders of pictures and runs, a whole number is for the "
+     "(default: 0, every bit counts). In folders of pictures and runs, a whole number is for the "
      "pictures, any other limit for the runs",
      OPTION_TEXT(CompareOptions, limit)},
     {OPTION_JSON(CompareOptions, json)},
@@ -77,11 +77,13 @@ static const CommandSpec spec = {
               OPTION_PATHS(CompareOptions, paths, count)},
     .inputs = {2, 2, "input"},
     .help =
-        "Compare two runs (.npz) or two PNG sequences (folders with their subfolders, or single files). Exit status 0: "
+        "Compare two runs (.npz, or .csv of any program) or two PNG sequences (folders with their subfolders, or "
+        "single files). Exit status 0: "
         "equal, 1: different, 2: not comparable.\n"
-        "Runs are equal if every bit of every pose and velocity is equal. Otherwise the first frame, body and contact "
-        "that differ are found, whether the solver or an earlier step is the cause, and how fast the distance grows "
-        "from there.\n"
+        "Runs are equal if every bit of all that both state is equal: poses, velocities, hashes of states. Otherwise "
+        "the "
+        "first frame, body and contact that differ are found, the kind of difference, whether the solver or an earlier "
+        "step is the cause, and how fast the distance grows from there.\n"
         "Pictures are equal if every decoded pixel is. Frames are matched by name, or by the stem and the number of "
         "their names. Runs that are in both folders, and the states named in twinbox's own pictures, tell whether the "
         "physics or the renderer changed.\v"
@@ -125,7 +127,7 @@ static bool read_antialias(const Option *option, const char *text, void *value, 
 }
 
 static bool is_trajectory(const char *path) {
-    return path_is_standard(path) || file_name_ends_with(path, ".npz"); /* pictures come in folders */
+    return path_is_standard(path) || file_name_ends_with(path, ".npz") || is_trace(path); /* pictures come in folders */
 }
 
 /* "M" or "M,RAD"; 0 alone is none. */
@@ -154,7 +156,7 @@ static bool read_options(CompareOptions *options, int argc, char **argv, Error *
     if (options->report != NULL && !output_check_folder_name(options->report, error)) return false;
     const bool first = is_trajectory(paths[0]), second = is_trajectory(paths[1]);
     if (first != second)
-        return error_input(error, paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is", paths[first ? 0 : 1]);
+        return error_input(error, paths[first ? 1 : 0], "is not a run (.npz or .csv), but %s is", paths[first ? 0 : 1]);
     if (first && (options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0))
         return error_input(error, paths[0], "--rules, masks and limits of pixels apply to pictures only");
     if (!first && (options->scene != NULL || options->csv != NULL))

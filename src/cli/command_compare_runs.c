@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How twinbox compare compares two runs: why and how fast they diverge, as text and as JSON. */
 #include "base/base.h"
+#include "base/file.h"
 #include "base/json.h"
 #include "base/machine.h"
 #include "cli/json_output.h"
@@ -9,6 +10,7 @@
 #include "cli/progress_bar.h"
 #include "runs/compare_runs.h"
 #include "runs/divergence.h"
+#include "runs/run_files.h"
 #include "runs/trajectory.h"
 
 #include <inttypes.h>
@@ -92,6 +94,10 @@ static void print_cause(FILE *out, const TrajectoryParting *parting) {
             frame - 1, contacts->count_a, frame);
         return;
     case PART_UNKNOWN:
+        if (parting->no_contacts) {
+            fprintf(out, "cause: unknown, as a run has no contacts\n  all states of frame %d are equal\n", frame - 1);
+            return;
+        }
         fprintf(out,
                 "cause: unknown, as a run has no impulses: the solver, its warm start or another kind of step\n  all "
                 "states of frame %d are equal; body %d has %d contact%s in step %d\n",
@@ -137,9 +143,10 @@ static void print_parting(FILE *out, const RunComparison *c) {
         fprintf(out, "different lengths, %d and %d frames: only the first %d are compared\n", a->frames,
                 c->runs[1]->frames, parting->frames);
     if (parting->first.frame < 0) {
-        fprintf(out, "equal%s: %d frames of %d bodies, every bit of pose%s\n",
-                same_length(c) ? "" : " as far as both go", parting->frames, a->bodies,
-                parting->poses_only ? "" : " and velocity");
+        fprintf(out, "equal%s: %d frames of %d bodies, %s\n", same_length(c) ? "" : " as far as both go",
+                parting->frames, a->bodies, trajectory_compared(a, c->runs[1]).text);
+        if (trajectory_different_steps(a, c->runs[1]))
+            fprintf(out, "but dt is %.9g and %.9g s\n", (double)a->dt, (double)c->runs[1]->dt);
         if (parting->step >= 0) {
             fprintf(out, "the states do not show it, but ");
             print_hidden(out, parting);
@@ -147,8 +154,9 @@ static void print_parting(FILE *out, const RunComparison *c) {
         }
         return;
     }
-    fprintf(out, "first difference: ");
+    fprintf(out, "compared: %s\nfirst difference: ", trajectory_compared(a, c->runs[1]).text);
     print_body(out, a, &parting->first, parting->poses_only);
+    fprintf(out, "kind: %s\n", trajectory_part_kind(a, c->runs[1], parting).text);
     print_cause(out, parting);
     if (c->options->poses.given) print_beyond(out, a, parting, &c->options->poses);
     if (c->difference.max_frame >= 0)
@@ -160,7 +168,10 @@ static void print_parting(FILE *out, const RunComparison *c) {
         fprintf(out, "mean squared difference of positions: %.3g m^2\n", c->difference.rollout_mse);
 }
 
-static void print_rate(FILE *out, const Growth *growth, double dt) {
+/* s; of a trace that does not state it, in frames. */
+static double step_of(const RunComparison *c) { return c->runs[0]->dt > 0 ? (double)c->runs[0]->dt : 1; }
+
+static void print_rate(FILE *out, const Growth *growth, const char *unit, double dt) {
     if (growth->count == 0) {
         fprintf(out, "%s\n", growth->saturated ? "above 0.1 m at once" : "there are no frames with a distance");
         return;
@@ -172,7 +183,7 @@ static void print_rate(FILE *out, const Growth *growth, double dt) {
         return;
     }
     double doubling = growth_doubling(growth, dt);
-    fprintf(out, "\n  %.3g / s, ", growth->rate);
+    fprintf(out, "\n  %.3g / %s, ", growth->rate, unit);
     if (isfinite(doubling))
         fprintf(out, "%s every %.3g frames", doubling > 0 ? "doubles" : "halves", fabs(doubling));
     else
@@ -194,7 +205,7 @@ static void print_chaos(FILE *out, const Chaos *chaos, const Growth *growth, con
             "note: running the scene again gives another run 1 from frame %d on: another network, or another program\n",
             chaos->rerun_differs);
     fprintf(out, "shifted run (body %d shifted by %.2g m, the same frames): ", chaos->body, chaos->shift);
-    print_rate(out, shifted, dt);
+    print_rate(out, shifted, "s", dt);
     fprintf(out, "verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);
 }
 
@@ -222,7 +233,9 @@ static void print_all(FILE *out, const RunComparison *c) {
     if (a->scene_hash != b->scene_hash && a->scene_hash != 0 && b->scene_hash != 0)
         fprintf(out, "different scenes: hashes %016" PRIx64 " and %016" PRIx64 "; this may be the cause\n",
                 a->scene_hash, b->scene_hash);
-    if (!trajectory_both_move(a, b)) fprintf(out, "only poses are compared: a run has no velocities\n");
+    if ((a->exact == NULL) != (b->exact == NULL) && !a->no_poses && !b->no_poses)
+        fprintf(out, "run %d states float64, which is rounded as run %d is\n", a->exact != NULL ? 1 : 2,
+                a->exact != NULL ? 2 : 1);
     if (!c->same_world) {
         fprintf(out, "%s\n", c->difference.what);
         return;
@@ -237,8 +250,26 @@ static void print_all(FILE *out, const RunComparison *c) {
     if (c->parting.first.frame < 0) return;
     fprintf(out, "not compared: contacts and their impulses of later steps\n");
     fprintf(out, "growth of the largest distance: ");
-    print_rate(out, &c->growth, (double)a->dt);
-    if (c->chaos.distance != NULL) print_chaos(out, &c->chaos, &c->growth, &c->shifted, (double)a->dt);
+    print_rate(out, &c->growth, a->dt > 0 ? "s" : "frame", step_of(c));
+    if (c->chaos.distance != NULL) print_chaos(out, &c->chaos, &c->growth, &c->shifted, step_of(c));
+}
+
+/* A trace from standard input is compared with one from a file. */
+static Trajectory *read_run(const char *const paths[2], int i, Error *error) {
+    const bool trace = is_trace(paths[i]) || (path_is_standard(paths[i]) && is_trace(paths[1 - i]));
+    return trace ? csv_trace_read(paths[i], error) : trajectory_read(paths[i], error);
+}
+
+/* A trace need not state sizes that the other run has. */
+static void share_sizes(Trajectory *to, const Trajectory *from) {
+    for (int body = 0; body < to->bodies && body < from->bodies; body++)
+        if (!(to->size[body].x > 0)) to->size[body] = from->size[body];
+}
+
+static bool all_boxes(const Trajectory *run) {
+    for (int body = 0; body < run->bodies; body++)
+        if (!(run->size[body].x > 0)) return false;
+    return !run->no_poses;
 }
 
 /* Reads and compares both runs, and measures how their distance grows. */
@@ -246,14 +277,16 @@ static bool measure(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
     Trajectory *const *runs = c->runs;
     for (int i = 0; i < 2; i++)
-        if ((c->runs[i] = trajectory_read(options->paths[i], error)) == NULL) return false;
-    c->found_contacts = runs[0]->no_contacts || runs[1]->no_contacts;
+        if ((c->runs[i] = read_run(options->paths, i, error)) == NULL) return false;
+    share_sizes(runs[0], runs[1]);
+    share_sizes(runs[1], runs[0]);
+    c->found_contacts = (runs[0]->no_contacts || runs[1]->no_contacts) && all_boxes(runs[0]) && all_boxes(runs[1]);
     for (int i = 0; c->found_contacts && i < 2; i++)
         if (!trajectory_find_contacts(runs[i], error)) return false;
     trajectory_compare(runs[0], runs[1], &c->difference);
     /* Runs of different worlds differ, but no distance of theirs means anything. */
     c->parting = (TrajectoryParting){.first = {.frame = -1}, .beyond = {.frame = -1}, .step = -1};
-    c->same_world = !trajectory_different_worlds(runs[0], runs[1], c->difference.what, sizeof c->difference.what);
+    c->same_world = !trajectory_different_bodies(runs[0], runs[1], c->difference.what, sizeof c->difference.what);
     if (!c->same_world)
         return (options->scene == NULL && options->csv == NULL) ||
                error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0],
@@ -261,7 +294,7 @@ static bool measure(RunComparison *c, Error *error) {
     if (!trajectory_part(runs[0], runs[1], &options->poses, &c->parting, error)) return false;
 
     const int frames = c->parting.frames;
-    const double dt = (double)runs[0]->dt;
+    const double dt = step_of(c);
     c->distance = malloc((size_t)frames * sizeof *c->distance);
     if (c->distance == NULL) return error_memory(error, "compare");
     for (int frame = 0; frame < frames; frame++) c->distance[frame] = trajectory_distance(runs[0], runs[1], frame);
@@ -287,7 +320,8 @@ static bool show(RunComparison *c, Error *error) {
     size_t size;
     FILE *out = open_memstream(&c->text, &size);
     if (out == NULL) return error_memory(error, "compare");
-    c->passed = c->same_world && c->parting.beyond.frame < 0 && same_length(c);
+    c->passed = c->same_world && c->parting.beyond.frame < 0 && same_length(c) &&
+                !trajectory_different_steps(c->runs[0], c->runs[1]);
     print_all(out, c);
     if (fclose(out) != 0) return error_memory(error, "compare");
     if (options->report != NULL && !compare_runs_report(c, options->report, error)) return false;

@@ -7,6 +7,7 @@
 #include "methods/programs.h"
 #include "nets/kernels.h"
 #include "pictures/player.h"
+#include "runs/run_files.h"
 #include "runs/trajectory.h"
 
 static const char only[] = "this build has compare only, for pictures; the package twinbox has the rest";
@@ -28,6 +29,8 @@ const Command commands[] = {{"compare", "find where two PNG sequences differ", "
 bool compare_runs(const CompareOptions *options, Error *error) {
     return error_input(error, options->paths[0], "%s", only);
 }
+
+Trajectory *csv_trace_read(const char *path, Error *error) { return error_input(error, path, "%s", only), NULL; }
 
 /* So that a folder's .npz files are counted as not compared (regression/comparison_words.c). */
 Trajectory *trajectory_read(const char *path, Error *error) { return error_input(error, path, "%s", only), NULL; }

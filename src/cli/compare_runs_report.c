@@ -149,6 +149,8 @@ void compare_runs_write_json(JsonWriter *json, const void *context) {
         json_end(json);
     }
     json_put_number(json, "rollout_mse", c->difference.rollout_mse);
+    json_put_text(json, "compared", trajectory_compared(a, c->runs[1]).text);
+    json_put_text(json, "kind", c->same_world && differ ? trajectory_part_kind(a, c->runs[1], parting).text : NULL);
     json_put_text(json, "cause", c->same_world ? causes[parting->cause] : NULL);
     json_put_bool(json, "contacts_found_again", c->found_contacts);
     json_begin_array(json, "not_compared", JSON_LINES);
@@ -165,8 +167,10 @@ void compare_runs_write_json(JsonWriter *json, const void *context) {
     write_parted(json, "beyond", c, &parting->beyond);
     write_contacts(json, "beyond_contacts", beyond ? parting->beyond.frame : -1, &parting->beyond_contacts,
                    parting->no_impulses);
-    if (!json_put_absent(json, "growth", !differ)) write_growth(json, "growth", &c->growth, (double)a->dt);
-    if (!json_put_absent(json, "shifted", !differ || c->chaos.distance == NULL)) write_chaos(json, c, (double)a->dt);
+    if (!json_put_absent(json, "growth", !differ))
+        write_growth(json, "growth", &c->growth, a->dt > 0 ? (double)a->dt : 1);
+    if (!json_put_absent(json, "shifted", !differ || c->chaos.distance == NULL))
+        write_chaos(json, c, a->dt > 0 ? (double)a->dt : 1);
 }
 
 /* The files of a report: those that pictures have, and a page that plays both runs. */
@@ -202,8 +206,9 @@ static ReportCase case_of(const void *context, int i) {
                        .seconds = c->seconds};
     (void)i;
     if (parted->frame >= 0)
-        snprintf(made.words.text, sizeof made.words.text, "frame %d, body %d; cause of the first difference: %s",
-                 parted->frame, parted->body, causes[c->parting.cause]);
+        snprintf(made.words.text, sizeof made.words.text,
+                 "frame %d, body %d; cause of the first difference: %s; kind: %s", parted->frame, parted->body,
+                 causes[c->parting.cause], trajectory_part_kind(c->runs[0], c->runs[1], &c->parting).text);
     else
         snprintf(made.words.text, sizeof made.words.text, "%s", c->difference.what);
     return made;

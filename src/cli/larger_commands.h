@@ -2,6 +2,7 @@
 /* The parts of the larger commands: compare, train. */
 #pragma once
 #include "base/base.h"
+#include "base/file.h"
 #include "base/json.h"
 #include "cli/cli.h"
 #include "cli/json_output.h"
@@ -61,6 +62,9 @@ JsonOutputWrite compare_runs_write_json; /* of a RunComparison */
 
 /* Writes report.html, junit.xml, results.json and, if the runs differ, run.html, which plays both. */
 bool compare_runs_report(RunComparison *comparison, const char *folder, Error *error);
+
+/* Whether the file is read as a trace (runs/run_files.h). */
+static inline bool is_trace(const char *path) { return file_name_ends_with(path, ".csv"); }
 
 /* Compares two runs and prints the result. False if they differ, or with error set. */
 bool compare_runs(const CompareOptions *options, Error *error);

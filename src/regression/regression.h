@@ -150,6 +150,9 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
                     const Progress *progress, Error *error);
 void regression_free(Regression *regression);
 
+/* A run (.npz), or a trace (.csv), as it is compared. */
+Trajectory *regression_read_run(const char *path, Error *error);
+
 bool regression_passed(const Regression *regression);
 
 /* False with error set if frames or trajectories could not be compared: the first by their order, and how many more. */

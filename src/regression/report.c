@@ -159,7 +159,7 @@ static bool write_run(Report *report, int index, size_t *left, Error *error) {
     Trajectory *runs[SIDES] = {NULL, NULL};
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
-        ok = (runs[side] = trajectory_read(run->paths[side], error)) != NULL;
+        ok = (runs[side] = regression_read_run(run->paths[side], error)) != NULL;
     if (ok) {
         TrajectoryDifference now;
         trajectory_compare(runs[EXPECTED], runs[ACTUAL], &now);

@@ -6,6 +6,7 @@
 #include "base/machine.h"
 #include "regression/regression.h"
 #include "regression/regression_internal.h"
+#include "runs/run_files.h"
 #include "runs/trajectory.h"
 
 #include <errno.h>
@@ -17,7 +18,15 @@
 /* The limit of a trajectory file. */
 static const size_t MAX_RUN_SIZE = (size_t)2 << 30;
 
-static bool is_run(const char *name) { return file_name_ends_with(name, ".npz") && name_is_text(name); }
+static bool is_trace(const char *name) { return file_name_ends_with(name, ".csv"); }
+
+Trajectory *regression_read_run(const char *path, Error *error) {
+    return is_trace(path) ? csv_trace_read(path, error) : trajectory_read(path, error);
+}
+
+static bool is_run(const char *name) {
+    return (file_name_ends_with(name, ".npz") || is_trace(name)) && name_is_text(name);
+}
 
 /* Adds a file of one folder. That the other folder has no such file is a failure, unless there are pictures: then the
    runs only explain them. */
@@ -77,7 +86,7 @@ static bool measure(RegressionRun *run, const Trajectory *a, const Trajectory *b
     if (run->differs == NULL) return error_memory(error, run->name);
     for (int frame = 0; frame < run->frames; frame++) {
         run->differs[frame] = other_worlds || frame >= common;
-        for (int body = 0; body < a->bodies && !run->differs[frame]; body++)
+        for (int body = 0; (body < a->bodies || body < b->bodies) && !run->differs[frame]; body++)
             run->differs[frame] = !trajectory_same_state(a, b, frame, body);
     }
     TrajectoryParting parting;
@@ -109,7 +118,7 @@ static bool judge_run(const Regression *regression, RegressionRun *run, bool *fo
     *foreign = true;
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         if (run->alone[1 - side] || (one && !alone && side == ACTUAL)) continue;
-        read[side] = trajectory_read(run->paths[side], &failures[side]);
+        read[side] = regression_read_run(run->paths[side], &failures[side]);
         *foreign = *foreign && read[side] == NULL;
         if (failures[side].kind == ERROR_SYSTEM) *error = failures[side], system = true;
     }

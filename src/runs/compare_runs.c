@@ -9,6 +9,100 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool trajectory_both_hashed(const Trajectory *a, const Trajectory *b) { return a->hash != NULL && b->hash != NULL; }
+
+bool trajectory_both_exact(const Trajectory *a, const Trajectory *b) { return a->exact != NULL && b->exact != NULL; }
+
+bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
+
+/* The numbers of two runs in the narrower of their two types: a float32 is compared with what a float64 rounds to. */
+typedef struct NumberPair {
+    double x, y;
+} NumberPair;
+
+static NumberPair pair(const Trajectory *a, int of_a, const Trajectory *b, int of_b, int body, int column) {
+    const double x = trajectory_number(a, trajectory_at(a, of_a, body), column);
+    const double y = trajectory_number(b, trajectory_at(b, of_b, body), column);
+    if (trajectory_both_exact(a, b)) return (NumberPair){x, y};
+    return (NumberPair){(double)(float)x, (double)(float)y};
+}
+
+bool trajectory_same_states(const Trajectory *a, int of_a, const Trajectory *b, int of_b, int body) {
+    const bool in_a = trajectory_there(a, of_a, body), in_b = trajectory_there(b, of_b, body);
+    if (!in_a || !in_b) return in_a == in_b;
+    if (trajectory_both_hashed(a, b) && a->hash[trajectory_at(a, of_a, body)] != b->hash[trajectory_at(b, of_b, body)])
+        return false;
+    if (a->no_poses || b->no_poses) return true;
+    for (int column = 0; column < (trajectory_both_move(a, b) ? STATE_COLUMNS : 3); column++) {
+        const NumberPair of = pair(a, of_a, b, of_b, body, column);
+        if (memcmp(&of.x, &of.y, sizeof of.x) != 0) return false;
+    }
+    return true;
+}
+
+bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
+    return trajectory_same_states(a, frame, b, frame, body);
+}
+
+StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
+    StateDifference d = {.in_a = trajectory_there(a, frame, body), .in_b = trajectory_there(b, frame, body)};
+    if (!d.in_a || !d.in_b || a->no_poses || b->no_poses) return d;
+    double by[STATE_COLUMNS] = {0};
+    for (int column = 0; column < (trajectory_both_move(a, b) ? STATE_COLUMNS : 3); column++) {
+        const NumberPair of = pair(a, frame, b, frame, body, column);
+        by[column] = of.x - of.y;
+    }
+    d.distance = sqrt(by[0] * by[0] + by[1] * by[1]);
+    d.angle = fabs(by[2]);
+    d.speed = sqrt(by[3] * by[3] + by[4] * by[4]);
+    d.spin = fabs(by[5]);
+    return d;
+}
+
+bool trajectory_different_bodies(const Trajectory *a, const Trajectory *b, char *what, size_t size) {
+    const bool traces = a->there != NULL || b->there != NULL; /* which may lack bodies, sizes and dt */
+    if (!traces && a->bodies != b->bodies) return snprintf(what, size, "bodies: %d and %d", a->bodies, b->bodies) > 0;
+    for (int body = 0; body < a->bodies && body < b->bodies; body++) {
+        Vec2 p = a->size[body], q = b->size[body];
+        if (memcmp(&p, &q, sizeof p) != 0 && p.x > 0 && q.x > 0)
+            return snprintf(what, size, "size of body %d: %.9g x %.9g and %.9g x %.9g m", body, (double)p.x,
+                            (double)p.y, (double)q.x, (double)q.y) > 0;
+        if (a->fixed[body] != b->fixed[body] && !a->fixed_guessed && !b->fixed_guessed)
+            return snprintf(what, size, "body %d: %s and %s", body, a->fixed[body] ? "static" : "dynamic",
+                            b->fixed[body] ? "static" : "dynamic") > 0;
+    }
+    if ((a->no_poses && b->hash == NULL) || (b->no_poses && a->hash == NULL))
+        return snprintf(what, size, "run %d has hashes only, and run %d has none", a->no_poses ? 1 : 2,
+                        a->no_poses ? 2 : 1) > 0;
+    return false;
+}
+
+bool trajectory_different_steps(const Trajectory *a, const Trajectory *b) {
+    return a->dt > 0 && b->dt > 0 && memcmp(&a->dt, &b->dt, sizeof a->dt) != 0;
+}
+
+bool trajectory_different_worlds(const Trajectory *a, const Trajectory *b, char *what, size_t size) {
+    return trajectory_different_bodies(a, b, what, size) ||
+           (trajectory_different_steps(a, b) &&
+            snprintf(what, size, "dt: %.9g and %.9g s", (double)a->dt, (double)b->dt) > 0);
+}
+
+ComparedText trajectory_compared(const Trajectory *a, const Trajectory *b) {
+    ComparedText words = {""};
+    const bool poses = !a->no_poses && !b->no_poses;
+    if (trajectory_both_hashed(a, b))
+        text_add(words.text, sizeof words.text, "the hash of every state%s", poses ? ", and " : "");
+    if (poses)
+        text_add(words.text, sizeof words.text, "every bit of float%d poses%s", trajectory_both_exact(a, b) ? 64 : 32,
+                 trajectory_both_move(a, b) ? " and velocities" : "");
+    return words;
+}
+
+/* Bodies that at least one of the two has. */
+static int most_bodies(const Trajectory *a, const Trajectory *b) {
+    return a->bodies > b->bodies ? a->bodies : b->bodies;
+}
+
 void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDifference *d) {
     *d = (TrajectoryDifference){.frame = -1, .body = -1, .max_frame = -1, .max_body = -1, .rollout_mse = NAN};
     d->poses_only = !trajectory_both_move(a, b);
@@ -17,9 +111,10 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
     int64_t count = 0;
     double squares = 0;
     for (int frame = 0; frame < frames; frame++) {
-        for (int body = 0; body < a->bodies; body++) {
-            const bool fixed = a->fixed[body] && b->fixed[body];
-            count += !fixed && trajectory_has(a, frame, body) && trajectory_has(b, frame, body);
+        for (int body = 0; body < most_bodies(a, b); body++) {
+            const bool both = trajectory_there(a, frame, body) && trajectory_there(b, frame, body);
+            const bool fixed = both && a->fixed[body] && b->fixed[body];
+            count += !fixed && both;
             if (trajectory_same_state(a, b, frame, body)) continue;
             const StateDifference state = trajectory_state_difference(a, b, frame, body);
             if (d->frame < 0) { /* the first */
@@ -32,7 +127,7 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
                     snprintf(d->what, sizeof d->what, "body %d exists in frame %d of the %s only", body, frame,
                              state.in_a ? "first" : "second");
             }
-            if (!fixed) squares += state.distance * state.distance;
+            if (!fixed && isfinite(state.distance)) squares += state.distance * state.distance;
             if (!(state.distance > d->max_distance)) continue;
             d->max_distance = state.distance;
             d->max_frame = frame;
@@ -46,9 +141,8 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
 }
 
 double trajectory_distance(const Trajectory *a, const Trajectory *b, int frame) {
-    int bodies = a->bodies < b->bodies ? a->bodies : b->bodies;
     double largest = 0;
-    for (int body = 0; body < bodies; body++)
+    for (int body = 0; body < most_bodies(a, b); body++)
         largest = fmax(largest, trajectory_state_difference(a, b, frame, body).distance);
     return largest;
 }
@@ -126,6 +220,8 @@ static bool contact_difference(const Trajectory *a, const Trajectory *b, int ste
             add_only(d, order < 0 ? x : y, order < 0 ? &d->only_a : &d->only_b);
             continue;
         }
+        d->reordered =
+            d->reordered || x - (a->contacts + a->contact_start[step]) != y - (b->contacts + b->contact_start[step]);
         d->moved +=
             memcmp(&x->point, &y->point, sizeof x->point) != 0 || memcmp(&x->normal, &y->normal, sizeof x->normal) != 0;
         if (memcmp(&x->normal_impulse, &y->normal_impulse, sizeof(float)) == 0 &&
@@ -135,6 +231,7 @@ static bool contact_difference(const Trajectory *a, const Trajectory *b, int ste
         d->largest_a = *x;
         d->largest_b = *y;
     }
+    d->reordered = d->reordered && d->only_a + d->only_b == 0;
     free(of_a.items);
     free(of_b.items);
     return ok;
@@ -146,8 +243,9 @@ static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body,
     if (trajectory_same_state(a, b, frame, body)) return false;
     if (!tolerance->given) return true;
     StateDifference by = trajectory_state_difference(a, b, frame, body);
-    return !by.in_a || !by.in_b || by.distance > tolerance->distance ||
-           fabs(remainder(by.angle, turn)) > tolerance->angle;
+    /* NaN is within no tolerance. */
+    return !by.in_a || !by.in_b || a->no_poses || b->no_poses || !(by.distance <= tolerance->distance) ||
+           !(fabs(remainder(by.angle, turn)) <= tolerance->angle);
 }
 
 static void count_frames(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
@@ -155,7 +253,7 @@ static void count_frames(const Trajectory *a, const Trajectory *b, const PoseTol
     static const PoseTolerance exact = {0};
     for (int frame = 0; frame < parting->frames; frame++) {
         bool equal = true, within = true;
-        for (int body = 0; body < a->bodies && within; body++) {
+        for (int body = 0; body < most_bodies(a, b) && within; body++) {
             equal = equal && !apart(a, b, frame, body, &exact);
             within = equal || !apart(a, b, frame, body, tolerance);
         }
@@ -169,7 +267,7 @@ static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int fram
                               const PoseTolerance *tolerance) {
     PartedBody parted = {.frame = -1, .body = -1};
     for (; parted.frame < 0 && frame < frames; frame++)
-        for (int body = 0; body < a->bodies; body++) {
+        for (int body = 0; body < most_bodies(a, b); body++) {
             if (!apart(a, b, frame, body, tolerance) || parted.bodies++ > 0) continue;
             parted.frame = frame;
             parted.body = body;
@@ -185,8 +283,8 @@ static PartCause find_cause(const Trajectory *a, const Trajectory *b, const Traj
     if (frame == 0) return PART_START;
     /* Every body that differs has just been added. The previous frames are equal, so one run suffices. */
     bool launched = true;
-    for (int body = 0; launched && body < a->bodies; body++)
-        launched = !trajectory_has(a, frame - 1, body) || trajectory_same_state(a, b, frame, body);
+    for (int body = 0; launched && body < most_bodies(a, b); body++)
+        launched = !trajectory_there(a, frame - 1, body) || trajectory_same_state(a, b, frame, body);
     if (launched) return PART_LAUNCH;
     if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
     if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
@@ -197,8 +295,10 @@ static PartCause find_cause(const Trajectory *a, const Trajectory *b, const Traj
 bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
                      TrajectoryParting *parting, Error *error) {
     int frames = a->frames < b->frames ? a->frames : b->frames;
-    *parting = (TrajectoryParting){
-        .frames = frames, .poses_only = !trajectory_both_move(a, b), .no_impulses = a->no_impulses || b->no_impulses};
+    *parting = (TrajectoryParting){.frames = frames,
+                                   .poses_only = !trajectory_both_move(a, b),
+                                   .no_contacts = a->no_contacts || b->no_contacts,
+                                   .no_impulses = a->no_impulses || b->no_impulses};
     parting->first = find_parted(a, b, 0, frames, &(PoseTolerance){0});
     parting->beyond = parting->first;
     count_frames(a, b, tolerance, parting);

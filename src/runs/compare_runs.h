@@ -39,8 +39,24 @@ double trajectory_distance(const Trajectory *a, const Trajectory *b, int frame);
 /* True if the velocities of both are known; else only poses are compared. */
 bool trajectory_both_move(const Trajectory *a, const Trajectory *b);
 
-/* Equal bit by bit. 0 and -0 differ: the runs have computed differently. A body that exists in neither is equal. */
+/* True if both have hashes of states. */
+bool trajectory_both_hashed(const Trajectory *a, const Trajectory *b);
+
+/* True if both state float64; else numbers are compared as float32. */
+bool trajectory_both_exact(const Trajectory *a, const Trajectory *b);
+
+/* What the two are compared by, and nothing else: "every bit of float64 poses". */
+typedef struct ComparedText {
+    char text[96];
+} ComparedText;
+ComparedText trajectory_compared(const Trajectory *a, const Trajectory *b);
+
+/* Equal bit by bit. 0 and -0 differ: the runs have computed differently. A body that exists in neither is equal. NaN is equal
+   to NaN. */
 bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body);
+
+/* The same of two frames. */
+bool trajectory_same_states(const Trajectory *a, int of_a, const Trajectory *b, int of_b, int body);
 
 /* Zeros unless the body exists in both; speed and spin are 0 if the velocities of one are unknown. */
 typedef struct StateDifference {
@@ -53,8 +69,12 @@ typedef struct StateDifference {
 
 StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body);
 
-/* True, with a description, if the worlds differ: number, sizes or kinds of bodies, or dt. */
+/* True, with a description, if the worlds differ: number, sizes or kinds of bodies, or dt. A trace may lack each. */
 bool trajectory_different_worlds(const Trajectory *a, const Trajectory *b, char *what, size_t size);
+
+/* The two parts of it; of runs of different steps, frames can be compared. */
+bool trajectory_different_bodies(const Trajectory *a, const Trajectory *b, char *what, size_t size);
+bool trajectory_different_steps(const Trajectory *a, const Trajectory *b);
 
 /* Why two trajectories diverge: the first frame in which any bit differs, and the step that leads to it.
 
@@ -68,6 +88,7 @@ typedef struct ContactDifference {
     int only_a, only_b;                     /* that the other does not have */
     int moved;                              /* matched, with another point or normal */
     int changed;                            /* matched, with another impulse */
+    bool reordered;                         /* all are matched, but recorded in another order */
     TrajectoryContact only;                 /* the first that exists in one run only, if any: */
     bool only_first_a;                      /* a, or b */
     TrajectoryContact largest_a, largest_b; /* with the largest difference of impulses, if any; the first of equals */
@@ -97,6 +118,7 @@ typedef struct TrajectoryParting {
     PartedBody first;                  /* any bit of pose or velocity */
     PartedBody beyond;                 /* above the tolerance, or in one run only */
     int equal, within;                 /* frames: equal in every bit; else within the tolerance */
+    bool no_contacts;                  /* those of one or both are unknown */
     bool no_impulses;                  /* those of one or both are unknown, and not compared */
     PartCause cause;                   /* of the first */
     int step;                          /* the first whose contacts differ; -1: none up to the first frame */
@@ -115,3 +137,11 @@ typedef struct PoseTolerance {
    error set when memory is short. */
 bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
                      TrajectoryParting *parting, Error *error);
+
+/* What kind of difference it is, in words that begin with one of: "frames" (an offset), "a body", "a hash", "not finite",
+   "x", "y", "angle" (mirrored, or in other units), "a mass", "whole turns", "what poses do not show", "an order", "roundings",
+   "a step", "motion". Empty if no state differs. */
+typedef struct PartingKind {
+    char text[160];
+} PartingKind;
+PartingKind trajectory_part_kind(const Trajectory *a, const Trajectory *b, const TrajectoryParting *parting);

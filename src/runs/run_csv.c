@@ -8,7 +8,7 @@
 #include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 
-#include <float.h>
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -103,7 +103,18 @@ static bool take_name(char name[TRAJECTORY_NAME_SIZE], const char *text) {
 }
 
 /* What a key states; in the order of the keys. */
-enum { KEY_SCENE, KEY_METHOD, KEY_SCENE_HASH, KEY_ITERATIONS, KEY_DT, KEY_BOMB, KEY_CAMERA, KEY_SIZE, KEYS };
+enum {
+    KEY_SCENE,
+    KEY_METHOD,
+    KEY_SCENE_HASH,
+    KEY_ITERATIONS,
+    KEY_DT,
+    KEY_BOMB,
+    KEY_CAMERA,
+    KEY_NUMBERS,
+    KEY_SIZE,
+    KEYS
+};
 static const struct {
     const char *name, *form;
 } keys[KEYS] = {
@@ -114,6 +125,7 @@ static const struct {
     {"dt", "a time in seconds such as 0.01 or 1/60"},
     {"bomb", "the number of a body"},
     {"camera", "X,Y,WIDTH,HEIGHT"},
+    {"numbers", "float32 or float64"},
     {"size", "BODY,WIDTH,HEIGHT from 1e-06 to 1e+06 m, perhaps with static or dynamic"},
 };
 
@@ -135,6 +147,10 @@ static bool take_value(CsvHead *head, const char *path, int key, char *text, Err
         if (!*right) break;
         head->camera[0] = vec2(camera[0], camera[1]);
         head->camera[1] = vec2(camera[2], camera[3]);
+        break;
+    case KEY_NUMBERS:
+        head->single = strcmp(text, "float32") == 0;
+        *right = head->single || strcmp(text, "float64") == 0;
         break;
     default: return take_size(head, path, text, error, right);
     }
@@ -164,7 +180,9 @@ static int compare_bodies(const void *left, const void *right) {
     return (a->number > b->number) - (a->number < b->number);
 }
 
-bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error) {
+bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const CsvRunOptions *options,
+                   Error *error) {
+    const char *sizes = options->sizes;
     *head = (CsvHead){.bomb = -1};
     if (strncmp(*text, "\xef\xbb\xbf", 3) == 0) *text += 3;
     const char first = (*text)[strspn(*text, " \t\r\n")];
@@ -189,7 +207,7 @@ bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line
     for (size_t i = 1; i < head->count; i++)
         if (head->bodies[i].number == head->bodies[i - 1].number)
             return error_input(error, path, "body %" PRId64 " has two sizes", head->bodies[i].number);
-    return head->count > 0 ||
+    return head->count > 0 || options->as_trace ||
            error_input(error, path,
                        "the sizes of the bodies are missing: give --sizes FILE.csv with body,width,height, or "
                        "lines '# size: BODY,WIDTH,HEIGHT' above the header");
@@ -203,49 +221,61 @@ int csv_head_body(const CsvHead *head, int64_t number) {
 
 enum { CSV_ROWS_LINE_SIZE = 1024, FIELDS_MAX = 64, INDEX_MAX = INT32_MAX - 1 };
 
-static const char *const names[COL_COUNT] = {"frame", "body", "x", "y", "angle", "vx", "vy", "omega", "time"};
+static const char *const names[COL_COUNT] = {"frame", "body", "x", "y", "angle", "vx", "vy", "omega", "hash", "time"};
 
-/* A line, cut into fields in place. */
+/* The fields of a line, in the file's text. */
+typedef struct Field {
+    const char *begin, *end; /* without quotes and blanks around it */
+    int column;              /* in the line, from 1 */
+} Field;
 typedef struct Fields {
     int count;
-    char *text[FIELDS_MAX];
-    int column[FIELDS_MAX]; /* in the line, from 1 */
-    char line[CSV_ROWS_LINE_SIZE];
+    Field list[FIELDS_MAX];
 } Fields;
 
 /* Takes the next line. */
 static bool split(CsvRows *rows, Fields *fields, Error *error) {
-    size_t length = strcspn(rows->at, "\n"), used = length;
+    const char *begin = rows->at, *line_end = strchr(begin, '\n'), *end = line_end;
+    if (end == NULL) line_end = end = begin + strlen(begin);
     fields->count = 0;
-    if (used > 0 && rows->at[used - 1] == '\r') used--;
-    if (used == 0) return csv_fail(rows->path, rows->line, 0, error, "the line is empty");
-    if (used >= CSV_ROWS_LINE_SIZE)
+    if (end > begin && end[-1] == '\r') end--;
+    if (end == begin) return csv_fail(rows->path, rows->line, 0, error, "the line is empty");
+    if (end - begin >= CSV_ROWS_LINE_SIZE)
         return csv_fail(rows->path, rows->line, 0, error, "longer than %d bytes", CSV_ROWS_LINE_SIZE - 1);
-    memcpy(fields->line, rows->at, used);
-    fields->line[used] = '\0';
-    rows->at += length + (rows->at[length] == '\n');
-    for (char *next = fields->line; next != NULL;) {
-        char *field = next + strspn(next, " \t"), *end;
-        const int column = fields->column[fields->count % FIELDS_MAX] = (int)(next - fields->line) + 1;
-        const bool quoted = *field == '"';
+    rows->at = line_end + (*line_end == '\n');
+    for (const char *next = begin; next != NULL;) {
         if (fields->count == FIELDS_MAX)
             return csv_fail(rows->path, rows->line, 0, error, "more than %d fields", FIELDS_MAX);
-        if (quoted) {
-            char *from = ++field;
-            for (end = field; *from != '\0' && (*from != '"' || from[1] == '"'); *end++ = *from++) from += *from == '"';
-            if (*from != '"') return csv_fail(rows->path, rows->line, column, error, "this quote is not closed");
-            next = from + 1 + strspn(from + 1, " \t");
+        Field *field = &fields->list[fields->count++];
+        *field = (Field){.begin = next, .column = (int)(next - begin) + 1};
+        while (*field->begin == ' ' || *field->begin == '\t') field->begin++;
+        if (*field->begin == '"') {
+            const char *close = ++field->begin;
+            while (close < end && (*close != '"' || close[1] == '"')) close += *close == '"' ? 2 : 1;
+            if (close >= end) return csv_fail(rows->path, rows->line, field->column, error, "this quote is not closed");
+            field->end = close++;
+            for (next = close; *next == ' ' || *next == '\t';) next++;
         } else {
-            next = end = field + strcspn(field, ",");
-            while (end > field && strchr(" \t", end[-1]) != NULL) end--;
+            for (next = field->begin; next < end && *next != ',';) next++;
+            for (field->end = next; field->end > field->begin && (field->end[-1] == ' ' || field->end[-1] == '\t');)
+                field->end--;
         }
-        if (*next != ',' && *next != '\0')
-            return csv_fail(rows->path, rows->line, column, error, "expected a comma after the closing quote");
-        next = *next == ',' ? next + 1 : NULL;
-        *end = '\0';
-        fields->text[fields->count++] = field;
+        if (next < end && *next != ',')
+            return csv_fail(rows->path, rows->line, field->column, error, "expected a comma after the closing quote");
+        next = next < end ? next + 1 : NULL;
     }
     return true;
+}
+
+/* What a field has, for messages and names; longer ones are cut. */
+typedef struct FieldText {
+    char text[64];
+} FieldText;
+
+static FieldText field_text(const Field *field) {
+    FieldText of;
+    snprintf(of.text, sizeof of.text, "%.*s", (int)(field->end - field->begin), field->begin);
+    return of;
 }
 
 static bool is_absent(const CsvRows *rows, int column) { return rows->field[column] < 0; }
@@ -257,46 +287,49 @@ static bool find_columns(CsvRows *rows, const Fields *fields, Error *error) {
     for (int i = 0; i < COL_COUNT; i++) rows->field[i] = -1;
     for (int i = 0; i < fields->count; i++) {
         int column = 0;
-        while (column < COL_COUNT && strcmp(names[column], fields->text[i]) != 0) column++;
+        while (column < COL_COUNT && strcmp(names[column], field_text(&fields->list[i]).text) != 0) column++;
         if (column == COL_COUNT) continue;
         if (!is_absent(rows, column))
-            return csv_fail(rows->path, rows->line, fields->column[i], error, "the column '%s' appears twice",
+            return csv_fail(rows->path, rows->line, fields->list[i].column, error, "the column '%s' appears twice",
                             names[column]);
         rows->field[column] = i;
     }
     for (int i = 0; i < COL_COUNT; i++)
-        if (is_absent(rows, i)) missing[lacks++] = names[i];
+        if (is_absent(rows, i) && i != COL_HASH) missing[lacks++] = names[i]; /* 'mass' is no mistyped hash */
     for (int i = 0; i < fields->count; i++) {
-        const char *name = fields->text[i];
+        const FieldText name = field_text(&fields->list[i]);
         bool known = false;
         for (int column = 0; column < COL_COUNT; column++) known = known || rows->field[column] == i;
         if (known) continue;
-        const char *right = strlen(name) > 3 ? nearest_word(name, missing, lacks) : NULL;
-        const CsvShown shown = csv_show(name);
+        const char *right = strlen(name.text) > 3 ? nearest_word(name.text, missing, lacks) : NULL;
+        const CsvShown shown = csv_show(name.text);
         if (right != NULL)
-            return csv_fail(rows->path, rows->line, fields->column[i], error,
+            return csv_fail(rows->path, rows->line, fields->list[i].column, error,
                             "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text, right);
         text_join(rows->ignored, sizeof rows->ignored, ", ", "%s", shown.text);
     }
     return true;
 }
 
-bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, Error *error) {
+bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, bool as_trace, Error *error) {
     Fields fields;
-    *rows = (CsvRows){.path = path, .at = text, .line = line};
+    *rows = (CsvRows){.path = path, .at = text, .line = line, .as_trace = as_trace};
     if (*text == '\0') return csv_fail(rows->path, line, 0, error, "there is no header 'frame,body,x,y,angle'");
     if (!split(rows, &fields, error)) return false;
-    const char *separator = fields.count == 1 ? strpbrk(fields.text[0], ";\t|") : NULL;
+    const FieldText first = field_text(&fields.list[0]);
+    const char *separator = fields.count == 1 ? strpbrk(first.text, ";\t|") : NULL;
     if (separator != NULL)
         return csv_fail(rows->path, line, 0, error, "the fields are separated by %s; expected commas",
                         *separator == ';'   ? "semicolons"
                         : *separator == '|' ? "bars"
                                             : "tabs");
     if (!find_columns(rows, &fields, error)) return false;
+    /* A trace may have a hash of each state instead of its numbers. */
+    const bool hashed = as_trace && !is_absent(rows, COL_HASH);
     for (int i = COL_FRAME; i <= COL_ANGLE; i++)
-        if (is_absent(rows, i))
-            return csv_fail(rows->path, line, 0, error, "the column '%s' is missing; expected frame,body,x,y,angle",
-                            names[i]);
+        if (is_absent(rows, i) && (i <= COL_BODY || !hashed || is_absent(rows, COL_X) != is_absent(rows, i)))
+            return csv_fail(rows->path, line, 0, error, "the column '%s' is missing; expected frame,body,x,y,angle%s",
+                            names[i], as_trace ? ", or frame,body,hash" : "");
     for (int i = COL_VX; i <= COL_OMEGA; i++)
         if (is_absent(rows, i) != is_absent(rows, COL_VX))
             return csv_fail(rows->path, line, 0, error, "give all of vx, vy and omega, or none of them");
@@ -312,23 +345,64 @@ void csv_rows_rewind(CsvRows *rows) {
 }
 
 static bool fail_field(const CsvRows *rows, const Fields *fields, int column, Error *error, const char *what) {
-    const int field = rows->field[column];
-    return csv_fail(rows->path, rows->line, fields->column[field], error, "%s: '%s' %s", names[column],
-                    csv_show(fields->text[field]).text, what);
+    const Field *field = &fields->list[rows->field[column]];
+    return csv_fail(rows->path, rows->line, field->column, error, "%s: '%s' %s", names[column],
+                    csv_show(field_text(field).text).text, what);
 }
 
 static bool take_index(const CsvRows *rows, const Fields *fields, int column, int64_t *index, Error *error) {
-    return parse_int(fields->text[rows->field[column]], 0, INDEX_MAX, index) ||
+    const Field *field = &fields->list[rows->field[column]];
+    const char *c = field->begin;
+    for (*index = 0; c < field->end && *c >= '0' && *c <= '9' && *index <= INDEX_MAX; c++)
+        *index = *index * 10 + *c - '0';
+    return (c == field->end && c > field->begin && *index <= INDEX_MAX) ||
            fail_field(rows, fields, column, error, "is not a whole number from 0 to 2147483646");
 }
 
-/* Decimal, or hexadecimal as "%a" of C prints it; or, which no float32 holds, NaN, infinite or too large. */
-static bool take_number(const char *text, double *value) {
-    const char *digits = text + (*text == '-' || *text == '+');
+__extension__ typedef unsigned __int128 Wide;
+
+/* The float64 nearest to digits / 10^places, ties to even; digits > 0. */
+static double nearest_double(uint64_t digits, int places) {
+    uint64_t power = 1;
+    for (int i = 0; i < places; i++) power *= 10;
+    const int shift = __builtin_clzll(digits) + 64;
+    const Wide dividend = (Wide)digits << shift, quotient = dividend / power; /* at least 64 bits */
+    const uint64_t high = (uint64_t)(quotient >> 64);
+    const int dropped = (high > 0 ? 128 - __builtin_clzll(high) : 64) - 54;
+    const uint64_t kept = (uint64_t)(quotient >> dropped); /* 54 bits: a float64, and the bit behind it */
+    const bool exact = ((Wide)kept << dropped) * power == dividend;
+    return ldexp((double)((kept >> 1) + ((kept & 1) != 0 && (!exact || (kept & 2) != 0))), dropped + 1 - shift);
+}
+
+/* Decimal, or hexadecimal as "%a" of C prints it, or nan or inf; rounded to the nearest float64. The thread has the C
+   locale. Up to 19 digits without an exponent, as most numbers are, are read without strtod(), which takes five times
+   as long. */
+static bool take_number(const Field *field, double *value) {
+    enum { DIGITS = 19 }; /* that a uint64_t holds */
+    const char *first = field->begin + (*field->begin == '-' || *field->begin == '+'), *c = first;
+    uint64_t digits = 0;
+    int places = -1;
+    for (; c < field->end && ((*c >= '0' && *c <= '9') || (*c == '.' && places < 0)); c++) {
+        places += places >= 0 || *c == '.';
+        if (*c != '.') digits = digits * 10 + (uint64_t)(*c - '0');
+    }
+    const int64_t count = c - first - (places >= 0);
+    if (c == field->end && count > 0 && count <= DIGITS) {
+        *value = digits == 0 ? 0.0 : nearest_double(digits, places > 0 ? places : 0);
+        if (*field->begin == '-') *value = -*value;
+        return true;
+    }
     char *end;
-    if (parse_double(text, value)) return true;
-    *value = strtod(text, &end);
-    return end != text && *end == '\0' && (strncasecmp(digits, "0x", 2) == 0 || !(fabs(*value) <= (double)FLT_MAX));
+    *value = strtod(field->begin, &end);
+    if (isnan(*value)) *value = NAN; /* its sign and payload mean nothing */
+    return end == field->end && end > field->begin;
+}
+
+static bool take_hash(const Field *field, uint64_t *hash) {
+    const char *first = field->begin + (strncasecmp(field->begin, "0x", 2) == 0 ? 2 : 0);
+    char *end;
+    *hash = strtoull(first, &end, 16);
+    return end == field->end && isxdigit((unsigned char)*first) && end - first <= 16;
 }
 
 /* The value of one in the last digit of a decimal number. */
@@ -338,41 +412,32 @@ static double last_digit(const char *text) {
     return pow(10, whole < length ? exponent - (int)(length - whole - 1) : exponent);
 }
 
-/* Notes the first number that is not the text's in as many digits as the text has: as stored in float32. */
-static void note_rounding(CsvRows *rows, const char *text, float value, double full) {
-    if (rows->rounded[0] != '\0' || (double)value == full || strlen(text) <= FLT_DIG ||
-        (strpbrk(text, "xX") == NULL && fabs(full - (double)value) <= 0.500001 * last_digit(text)))
-        return;
-    snprintf(rows->rounded, sizeof rows->rounded, "%s in line %d is stored as %.9g", csv_show(text).text, rows->line,
-             (double)value);
-}
-
 bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
     Fields fields;
     *row = (CsvRow){.line = rows->line};
-    if (rows->at[strspn(rows->at, " \t\r\n")] == '\0' || !split(rows, &fields, error)) return false;
+    if (*rows->at == '\0' || rows->at[strspn(rows->at, " \t\r\n")] == '\0' || !split(rows, &fields, error))
+        return false;
     if (fields.count != rows->width)
         return csv_fail(rows->path, rows->line, 0, error, "%d fields, but the header has %d", fields.count,
                         rows->width);
     if (!take_index(rows, &fields, COL_FRAME, &row->frame, error) ||
         !take_index(rows, &fields, COL_BODY, &row->body, error))
         return false;
-    for (int column = COL_X; column <= COL_OMEGA; column++) {
-        const char *text = is_absent(rows, column) ? "0" : fields.text[rows->field[column]];
-        float *state = &row->state[column - COL_X];
-        double value;
-        if (!parse_number(text, state, &value)) {
-            if (!take_number(text, &value)) return fail_field(rows, &fields, column, error, "is not a finite number");
-            *state = (float)value;
-            row->not_finite = row->not_finite || !isfinite(*state);
-        }
-        if (isfinite(*state)) note_rounding(rows, text, *state, value);
+    for (int column = COL_X; column <= COL_OMEGA && !rows->indices_only; column++) {
+        double *number = &row->state[column - COL_X];
+        if (is_absent(rows, column)) continue;
+        if (!take_number(&fields.list[rows->field[column]], number))
+            return fail_field(rows, &fields, column, error, "is not a finite number");
+        row->not_finite = row->not_finite || !isfinite((float)*number);
     }
+    if (!is_absent(rows, COL_HASH) && !rows->indices_only && rows->as_trace &&
+        !take_hash(&fields.list[rows->field[COL_HASH]], &row->hash))
+        return fail_field(rows, &fields, COL_HASH, error, "is not a hash of 1 to 16 hexadecimal digits");
     if (!is_absent(rows, COL_TIME)) {
-        const char *text = fields.text[rows->field[COL_TIME]];
-        if (!take_number(text, &row->time) || !isfinite(row->time))
+        const Field *field = &fields.list[rows->field[COL_TIME]];
+        if (!take_number(field, &row->time) || !isfinite(row->time))
             return fail_field(rows, &fields, COL_TIME, error, "is not a finite number");
-        row->time_digit = last_digit(text);
+        row->time_digit = last_digit(field_text(field).text);
     }
     rows->line++;
     return true;
@@ -387,12 +452,12 @@ int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body) {
     return 0;
 }
 
-/* Nine digits keep every bit of a float32. */
+/* Nine digits keep every bit of a float32, 17 those of a float64. */
 static void print_head(FILE *out, const Trajectory *run) {
     fprintf(out, "# scene: %s\n# method: %s\n", run->scene, run->method);
     if (run->iterations > 0) fprintf(out, "# iterations: %d\n", run->iterations);
     if (run->scene_hash != 0) fprintf(out, "# scene_hash: %016" PRIx64 "\n", run->scene_hash);
-    fprintf(out, "# dt: %.9g\n", (double)run->dt);
+    fprintf(out, "# numbers: %s\n# dt: %.9g\n", run->exact == NULL ? "float32" : "float64", (double)run->dt);
     if (run->bomb >= 0) fprintf(out, "# bomb: %d\n", run->bomb);
     if (run->camera_size.x > 0 && run->camera_size.y > 0)
         fprintf(out, "# camera: %.9g,%.9g,%.9g,%.9g\n", (double)run->camera_center.x, (double)run->camera_center.y,
@@ -404,10 +469,12 @@ static void print_head(FILE *out, const Trajectory *run) {
 
 /* Whether two frames have the same bits of a body's state. */
 static bool same(const Trajectory *run, size_t i, size_t k) {
-    return memcmp(&run->position[i], &run->position[k], sizeof(Vec2)) == 0 &&
-           memcmp(&run->angle[i], &run->angle[k], sizeof(float)) == 0 &&
-           memcmp(&run->velocity[i], &run->velocity[k], sizeof(Vec2)) == 0 &&
-           memcmp(&run->angular_velocity[i], &run->angular_velocity[k], sizeof(float)) == 0;
+    bool equal = true;
+    for (int column = 0; equal && column < (run->no_velocities ? 3 : STATE_COLUMNS); column++) {
+        const double a = trajectory_number(run, i, column), b = trajectory_number(run, k, column);
+        equal = memcmp(&a, &b, sizeof a) == 0;
+    }
+    return equal;
 }
 
 static void print_run(FILE *out, const void *context) {
@@ -426,11 +493,9 @@ static void print_run(FILE *out, const void *context) {
             if (run->fixed[body] && !alone && frame > 0 && trajectory_has(run, frame - 1, body) &&
                 same(run, i, i - (size_t)run->bodies))
                 continue;
-            fprintf(out, "%d,%d,%.9g,%.9g,%.9g", frame, body, (double)run->position[i].x, (double)run->position[i].y,
-                    (double)run->angle[i]);
-            if (!run->no_velocities)
-                fprintf(out, ",%.9g,%.9g,%.9g", (double)run->velocity[i].x, (double)run->velocity[i].y,
-                        (double)run->angular_velocity[i]);
+            fprintf(out, "%d,%d", frame, body);
+            for (int column = 0; column < (run->no_velocities ? 3 : STATE_COLUMNS); column++)
+                fprintf(out, ",%.*g", run->exact == NULL ? 9 : 17, trajectory_number(run, i, column));
             fputc('\n', out);
         }
     }

@@ -44,13 +44,9 @@ static void put_state(JsonWriter *json, const Trajectory *run, int frame, int bo
     const size_t i = trajectory_at(run, frame, body);
     if (json_put_absent(json, NULL, !trajectory_has(run, frame, body))) return;
     json_begin_array(json, NULL, JSON_ONE_LINE);
-    put_float(json, NULL, run->position[i].x);
-    put_float(json, NULL, run->position[i].y);
-    put_float(json, NULL, run->angle[i]);
-    if (!run->no_velocities) {
-        put_float(json, NULL, run->velocity[i].x);
-        put_float(json, NULL, run->velocity[i].y);
-        put_float(json, NULL, run->angular_velocity[i]);
+    for (int column = 0; column < (run->no_velocities ? 3 : STATE_COLUMNS); column++) {
+        const double number = trajectory_number(run, i, column);
+        run->exact != NULL ? json_put_number(json, NULL, number) : put_float(json, NULL, (float)number);
     }
     json_end(json);
 }

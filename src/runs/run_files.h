@@ -15,6 +15,7 @@ typedef struct CsvRunOptions {
     const char *sizes; /* CSV of body,width,height and perhaps static; NULL: the file's comments have the sizes */
     float dt;          /* s; 0: the file states it */
     bool degrees;      /* angles and angular velocities of the file are in degrees */
+    bool as_trace;     /* csv_trace_read() */
 } CsvRunOptions;
 
 /* What the reader assumed: a line each. */
@@ -29,6 +30,11 @@ typedef struct CsvRunNotes {
    two of its own, two rows of a body in a frame, bodies without a size or without rows, anything that is not a finite
    number, times that are not equidistant, or a file above 1 GiB. */
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error);
+
+/* Reads what another program states of its run, to compare it: poses of bodies of any shape, or hashes of their states.
+   Frames and bodies keep the numbers of the file, and may be absent; sizes and the time step may be unknown; NaN and
+   infinite numbers are states. For comparisons only: `there` is set. */
+Trajectory *csv_trace_read(const char *path, Error *error);
 
 /* Writes what csv_run_read() gives back bit by bit: all but contacts and verdict. */
 bool csv_run_write(const Trajectory *run, const char *path, Error *error);

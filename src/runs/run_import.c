@@ -11,22 +11,43 @@
 #include "runs/verdict.h"
 
 #include <inttypes.h>
+#include <locale.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Bodies of a run are numbered from 0 on, those of a trace as in the file. */
+static int body_index(const CsvImport *import, int64_t number) {
+    return import->options->as_trace ? (int)number : csv_head_body(&import->head, number);
+}
+
+static int64_t body_number(const CsvImport *import, int body) {
+    return import->options->as_trace ? body : import->head.bodies[body].number;
+}
+
+static void set_numbers(Trajectory *run, size_t i, const double state[STATE_COLUMNS]) {
+    if (run->no_poses) return;
+    run->position[i] = vec2((float)state[0], (float)state[1]);
+    run->angle[i] = (float)state[2];
+    for (int column = 0; run->exact != NULL && column < (run->no_velocities ? 3 : STATE_COLUMNS); column++)
+        run->exact[trajectory_exact_at(run, i, column)] = state[column];
+    if (run->no_velocities) return;
+    run->velocity[i] = vec2((float)state[3], (float)state[4]);
+    run->angular_velocity[i] = (float)state[5];
+}
+
 /* A body may come and go once. */
 static bool check_body(CsvImport *import, int body, Error *error) {
     const Trajectory *run = import->run;
-    const int64_t number = import->head.bodies[body].number;
+    const int64_t number = body_number(import, body);
     int last = -1;
     for (int frame = 0; frame < run->frames; frame++) {
         if (!trajectory_has(run, frame, body)) continue;
         const int gap = last + 1, before = last;
         last = frame;
         if (before < 0 || gap == frame) continue;
-        const int line = csv_rows_find(&import->rows, import->first + frame, number);
+        const int line = csv_rows_find(&import->rows, import->origin + frame, number);
         return csv_fail(import->path, line, 0, error,
                         "body %" PRId64 " is in frame %" PRId64 " and in frame %" PRId64 ", but not in frame %" PRId64,
                         number, import->first + before, import->first + frame, import->first + gap);
@@ -45,10 +66,14 @@ static bool finish_bodies(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     const bool stated = import->head.states_static;
     run->fixed_guessed = !stated;
+    for (size_t k = 0; k < import->head.count; k++) {
+        const int body = body_index(import, import->head.bodies[k].number);
+        run->size[body] = import->head.bodies[k].size;
+        run->fixed[body] = import->head.bodies[k].fixed;
+    }
     for (int body = 0; body < run->bodies; body++) {
-        run->size[body] = import->head.bodies[body].size;
-        run->fixed[body] = import->head.bodies[body].fixed;
         /* A body that is declared static, or has one row at the start of a run that declares none, stays. */
+        if (import->options->as_trace && !(stated && run->fixed[body])) continue;
         if (stated ? !run->fixed[body]
                    : run->frames == 1 || import->row_counts[body] != 1 || !trajectory_has(run, 0, body)) {
             if (!check_body(import, body, error)) return false;
@@ -56,24 +81,26 @@ static bool finish_bodies(CsvImport *import, Error *error) {
         }
         for (int frame = 1; frame < run->frames; frame++) {
             const size_t i = trajectory_at(run, frame, body), before = trajectory_at(run, frame - 1, body);
-            if (trajectory_has(run, frame, body)) continue;
-            run->position[i] = run->position[before];
-            run->angle[i] = run->angle[before];
-            run->velocity[i] = run->velocity[before];
-            run->angular_velocity[i] = run->angular_velocity[before];
+            if (trajectory_there(run, frame, body)) continue;
+            double state[STATE_COLUMNS];
+            for (int column = 0; column < (run->no_poses ? 0 : run->no_velocities ? 3 : STATE_COLUMNS); column++)
+                state[column] = trajectory_number(run, before, column);
+            set_numbers(run, i, state);
+            if (run->there != NULL) run->there[i] = run->there[before];
+            if (run->hash != NULL) run->hash[i] = run->hash[before];
         }
         int begins = 0;
         while (begins < run->frames - 1 && !trajectory_has(run, begins, body)) begins++;
         for (int frame = begins + 1; stated && frame < run->frames; frame++) {
             const size_t i = trajectory_at(run, frame, body), first = trajectory_at(run, begins, body);
-            const int64_t number = import->head.bodies[body].number;
+            const int64_t number = body_number(import, body);
             if (run->position[i].x != run->position[first].x || run->position[i].y != run->position[first].y ||
                 run->angle[i] != run->angle[first])
-                return csv_fail(import->path, csv_rows_find(&import->rows, import->first + frame, number), 0, error,
+                return csv_fail(import->path, csv_rows_find(&import->rows, import->origin + frame, number), 0, error,
                                 "body %" PRId64 " is static, but moves", number);
         }
     }
-    if (stated) return true;
+    if (stated || import->options->as_trace) return true;
     trajectory_guess_fixed(run);
     char list[96] = "";
     int count = 0;
@@ -96,29 +123,33 @@ static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole 
 
 static bool count_rows(CsvImport *import, Error *error) {
     const CsvHead *head = &import->head;
+    const bool as_trace = import->options->as_trace;
     CsvRow row;
     import->first = INT64_MAX;
     import->last = -1;
     import->count = 0;
-    memset(import->row_counts, 0, head->count * sizeof *import->row_counts);
+    if (head->count > 0) memset(import->row_counts, 0, head->count * sizeof *import->row_counts);
     csv_rows_rewind(&import->rows);
+    import->rows.indices_only = as_trace;
     while (csv_rows_next(&import->rows, &row, error)) {
-        const int body = csv_head_body(head, row.body);
+        const int body = body_index(import, row.body);
         if (body < 0) return csv_fail(import->path, row.line, 0, error, "body %" PRId64 " has no size", row.body);
-        /* A run may end in NaN, from which no body comes back: it is read up to there. */
-        int64_t *end = &import->ends[body];
-        if (row.not_finite && row.frame < *end) *end = row.frame;
-        if (*end < import->end) import->end = *end, import->ended = body;
-        if (!row.not_finite && row.frame > *end)
+        if (as_trace && body >= import->bodies) import->bodies = body + 1;
+        /* A run may end in NaN, from which no body comes back: it is read up to there. In a trace, NaN is a state. */
+        int64_t *end = as_trace ? NULL : &import->ends[body];
+        if (end != NULL && row.not_finite && row.frame < *end) *end = row.frame;
+        if (end != NULL && *end < import->end) import->end = *end, import->ended = body;
+        if (end != NULL && !row.not_finite && row.frame > *end)
             return csv_fail(import->path, row.line, 0, error,
                             "body %" PRId64 " is finite in frame %" PRId64 ", but not in frame %" PRId64, row.body,
                             row.frame, *end);
         if (row.frame >= import->end) continue;
-        import->row_counts[body]++;
+        if (!as_trace) import->row_counts[body]++;
         import->count++;
         if (row.frame < import->first) import->first = row.frame, import->first_time = row.time;
         if (row.frame > import->last) import->last = row.frame, import->last_time = row.time;
     }
+    import->rows.indices_only = false;
     return error->kind == ERROR_NONE;
 }
 
@@ -130,7 +161,7 @@ static bool survey(CsvImport *import, Error *error) {
         return error_input(error, import->path, "body %" PRId64 ": a number of its first frame is NaN or infinite",
                            head->bodies[import->ended].number);
     if (import->count == 0) return error_input(error, import->path, "has no rows");
-    for (size_t i = 0; i < head->count; i++)
+    for (size_t i = 0; i < head->count && !import->options->as_trace; i++)
         if (import->row_counts[i] == 0 && import->end == INT64_MAX)
             return error_input(error, import->path, "body %" PRId64 " has a size but no row", head->bodies[i].number);
     return true;
@@ -138,10 +169,11 @@ static bool survey(CsvImport *import, Error *error) {
 
 /* What a run takes must be in proportion to its text, as in .npz files. */
 static bool check_frames_and_size(CsvImport *import, Error *error) {
-    const uint64_t frames = (uint64_t)(import->last - import->first) + 1, bodies = import->head.count;
-    const uint64_t pose = 2 * sizeof(Vec2) + 2 * sizeof(float), budget = npz_budget(import->size);
+    const uint64_t frames = (uint64_t)(import->last - import->origin) + 1, bodies = (uint64_t)import->bodies;
+    const uint64_t pose = 3 * (2 * sizeof(Vec2) + 2 * sizeof(float)), budget = npz_budget(import->size);
     CsvRow row;
-    if (import->last - import->first >= import->count) { /* a frame number far away: a huge run of few rows */
+    if (!import->options->as_trace &&
+        import->last - import->first >= import->count) { /* a frame number far away: a huge run of few rows */
         csv_rows_rewind(&import->rows);
         while (csv_rows_next(&import->rows, &row, error) && row.frame != import->last) continue;
         return csv_fail(import->path, row.line, 0, error,
@@ -178,6 +210,7 @@ static bool choose_step(CsvImport *import, float *dt, Error *error) {
         if (!(given > 0)) import->step = (double)stated;
         return true;
     }
+    if (!timed && import->options->as_trace) return true; /* unknown */
     if (!timed)
         return error_input(
             error, import->path,
@@ -193,15 +226,14 @@ static bool choose_step(CsvImport *import, float *dt, Error *error) {
 
 static void set_state(CsvImport *import, const CsvRow *row, int body) {
     Trajectory *run = import->run;
-    const size_t i = trajectory_at(run, row->frame - import->first, body);
-    const float *state = row->state;
-    const bool degrees = import->options->degrees;
-    const double unit = acos(-1) / 180;
-    run->position[i] = vec2(state[0], state[1]);
-    run->angle[i] = degrees ? (float)((double)state[2] * unit) : state[2];
-    if (run->no_velocities) return;
-    run->velocity[i] = vec2(state[3], state[4]);
-    run->angular_velocity[i] = degrees ? (float)((double)state[5] * unit) : state[5];
+    const size_t i = trajectory_at(run, row->frame - import->origin, body);
+    double state[STATE_COLUMNS];
+    memcpy(state, row->state, sizeof state);
+    for (int column = 2; import->options->degrees && column < STATE_COLUMNS; column += 3)
+        state[column] *= acos(-1) / 180;
+    set_numbers(run, i, state);
+    if (run->there != NULL) run->there[i] = 1;
+    if (run->hash != NULL) run->hash[i] = row->hash;
 }
 
 /* The second pass. */
@@ -213,10 +245,10 @@ static bool fill(CsvImport *import, Error *error) {
     const double dt = import->step;
     csv_rows_rewind(&import->rows);
     while (csv_rows_next(&import->rows, &row, error)) {
-        const int body = csv_head_body(&import->head, row.body);
+        const int body = body_index(import, row.body);
         if (row.frame >= import->end) continue;
         const double due = import->first_time + dt * (double)(row.frame - import->first);
-        if (trajectory_has(run, (int)(row.frame - import->first), body)) {
+        if (trajectory_there(run, (int)(row.frame - import->origin), body)) {
             const int line = row.line, before = csv_rows_find(&import->rows, row.frame, row.body);
             return csv_fail(import->path, line, 0, error,
                             "body %" PRId64 " is twice in frame %" PRId64 ": also in line %d", row.body, row.frame,
@@ -262,7 +294,7 @@ static bool finish_head(CsvImport *import, Error *error) {
     snprintf(run->method, sizeof run->method, "%s", head->method[0] != '\0' ? head->method : name);
     run->scene_hash = head->scene_hash;
     run->iterations = (int)head->iterations;
-    run->bomb = head->bomb < 0 ? -1 : csv_head_body(head, head->bomb);
+    run->bomb = head->bomb < 0 ? -1 : body_index(import, head->bomb);
     run->camera_center = head->camera[0];
     run->camera_size = head->camera[1];
     return head->bomb < 0 || run->bomb >= 0 ||
@@ -280,32 +312,46 @@ static void note_numbers(const CsvImport *import) {
     if (head->scene[0] == '\0') add_note(notes, "the scene is called '%s'", import->run->scene);
     if (head->method[0] == '\0') add_note(notes, "the method is called '%s'", import->run->method);
     if (import->run->no_velocities) add_note(notes, "velocities are unknown: there are no columns vx, vy and omega");
-    if (import->rows.rounded[0] != '\0') add_note(notes, "numbers are rounded to float32: %s", import->rows.rounded);
     if (import->rows.ignored[0] != '\0') add_note(notes, "unknown columns are left out: %s", import->rows.ignored);
     add_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
 }
 
 static bool make_run(CsvImport *import, const char *text, Error *error) {
     CsvHead *head = &import->head;
+    const bool as_trace = import->options->as_trace;
     float dt = 0;
     int line;
-    if (!csv_head_read(head, import->path, &text, &line, import->options->sizes, error) ||
-        !csv_rows_begin(&import->rows, import->path, text, line, error))
+    if (!csv_head_read(head, import->path, &text, &line, import->options, error) ||
+        !csv_rows_begin(&import->rows, import->path, text, line, as_trace, error))
         return false;
-    import->row_counts = calloc(head->count, sizeof *import->row_counts);
-    import->ends = malloc(head->count * sizeof *import->ends);
+    import->row_counts = calloc(head->count + 1, sizeof *import->row_counts);
+    import->ends = malloc((head->count + 1) * sizeof *import->ends);
     if (import->row_counts == NULL || import->ends == NULL) return error_memory(error, import->path);
     for (size_t i = 0; i < head->count; i++) import->ends[i] = INT64_MAX;
-    if (!survey(import, error) || !check_frames_and_size(import, error) || !choose_step(import, &dt, error))
-        return false;
-    Trajectory *run = import->run = trajectory_create((int)(import->last - import->first + 1), (int)head->count, error);
+    import->bodies = !as_trace ? (int)head->count : head->count > 0 ? (int)head->bodies[head->count - 1].number + 1 : 0;
+    if (!survey(import, error)) return false;
+    import->origin = as_trace ? 0 : import->first; /* frames of a trace have the numbers of the file, too */
+    if (!check_frames_and_size(import, error) || !choose_step(import, &dt, error)) return false;
+    Trajectory *run = import->run = trajectory_create((int)(import->last - import->origin + 1), import->bodies, error);
     if (run == NULL) return false;
     run->dt = dt;
     run->no_contacts = true;
     run->no_velocities = import->rows.field[COL_VX] < 0;
-    if (!fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
+    run->no_poses = import->rows.field[COL_X] < 0;
+    const size_t states = (size_t)run->frames * (size_t)run->bodies,
+                 numbers = (size_t)(run->no_poses        ? 0
+                                    : run->no_velocities ? 3
+                                                         : STATE_COLUMNS) *
+                           states;
+    if ((!head->single && (run->exact = malloc(numbers * sizeof *run->exact + 1)) == NULL) ||
+        (as_trace && (run->there = calloc(states, 1)) == NULL) ||
+        (import->rows.field[COL_HASH] >= 0 && as_trace && (run->hash = calloc(states, sizeof *run->hash)) == NULL))
+        return error_memory(error, import->path);
+    for (size_t i = 0; run->exact != NULL && i < numbers; i++) run->exact[i] = NAN;
+    if (!fill(import, error) || (!as_trace && !check_frames(import, error)) || !finish_bodies(import, error) ||
         !finish_head(import, error))
         return false;
+    if (as_trace) return true;
     note_numbers(import);
     if (import->end < INT64_MAX) {
         add_note(import->notes, "the run ends before frame %" PRId64 ", in which body %" PRId64 " is NaN or infinite",
@@ -334,9 +380,12 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
             free(text);
             return error_input(error, path, "is %s; only CSV can be imported", others[i].kind), NULL;
         }
-    bool done = text != NULL && (import.size > 0 || error_input(error, path, "the file is empty")) &&
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0), previous = c != (locale_t)0 ? uselocale(c) : c;
+    bool done = text != NULL && (c != (locale_t)0 || error_memory(error, path)) &&
+                (import.size > 0 || error_input(error, path, "the file is empty")) &&
                 (strlen(text) == import.size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
                 make_run(&import, text, error);
+    if (c != (locale_t)0) uselocale(previous), freelocale(c);
     free(text);
     free(import.row_counts);
     free(import.ends);
@@ -344,4 +393,11 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
     if (done) return import.run;
     trajectory_destroy(import.run);
     return NULL;
+}
+
+Trajectory *csv_trace_read(const char *path, Error *error) {
+    char name[TRAJECTORY_NAME_SIZE];
+    CsvRunNotes notes;
+    trajectory_name_from_path(path, name);
+    return csv_run_read(path, &(CsvRunOptions){.name = name, .as_trace = true}, &notes, error);
 }

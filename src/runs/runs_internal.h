@@ -68,13 +68,15 @@ typedef struct CsvHead {
     int64_t bomb;       /* number in the file; -1: none */
     Vec2 camera[2];
     bool states_static; /* whether bodies are static */
+    bool single;        /* numbers are those of float32 */
     size_t count, capacity;
     CsvBody *bodies; /* by rising number */
 } CsvHead;
 
 /* Reads lines "# key: value" from *text on, which is moved behind them; *line becomes the number of the next line.
-   `sizes`: a CSV file of body,width,height,static, or NULL. The caller frees bodies, also on failure. */
-bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error);
+   The caller frees bodies, also on failure. */
+bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const CsvRunOptions *options,
+                   Error *error);
 
 /* Index of the body with this number; -1: it has no size. */
 int csv_head_body(const CsvHead *head, int64_t number);
@@ -131,7 +133,19 @@ void run_array_shape(const RunArray *array, int64_t frames, int64_t bodies, int6
 
 /* The rows of a run's CSV, one at a time: a file of a million rows takes no memory but its text. Part of csv_run. */
 
-enum CsvRowsColumn { COL_FRAME, COL_BODY, COL_X, COL_Y, COL_ANGLE, COL_VX, COL_VY, COL_OMEGA, COL_TIME, COL_COUNT };
+enum CsvRowsColumn {
+    COL_FRAME,
+    COL_BODY,
+    COL_X,
+    COL_Y,
+    COL_ANGLE,
+    COL_VX,
+    COL_VY,
+    COL_OMEGA,
+    COL_HASH, /* of traces only */
+    COL_TIME,
+    COL_COUNT
+};
 
 typedef struct CsvRows {
     const char *path;
@@ -142,20 +156,21 @@ typedef struct CsvRows {
     const char *first;    /* the first row, */
     int first_line;       /* and its number */
     char ignored[128];    /* columns that mean nothing, separated by ", " */
-    char rounded
-        [128]; /* the first number that has more digits than a float32: "0.50000001 in line 5 is stored as 0.5" */
+    bool as_trace;
+    bool indices_only; /* numbers and hashes are not read */
 } CsvRows;
 
 typedef struct CsvRow {
     int line;
     int64_t frame, body;
-    float state[6];          /* x, y, angle, vx, vy, omega; the last three 0 if absent */
+    double state[STATE_COLUMNS]; /* 0 where absent */
+    uint64_t hash;
     double time, time_digit; /* s, 0 if absent; one in its last digit */
-    bool not_finite;         /* a number of the state is NaN or infinite */
+    bool not_finite;         /* a number of the state is NaN or infinite, or too large for float32 */
 } CsvRow;
 
 /* Reads the header at `text`, which is line `line` of the file and stays the caller's. */
-bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, Error *error);
+bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, bool as_trace, Error *error);
 
 /* False at the end, and with error set. */
 bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error);
@@ -179,6 +194,8 @@ typedef struct CsvImport {
     int *row_counts;              /* of each body */
     int64_t end, *ends;           /* the first frame that is not finite, and of each body; INT64_MAX: none */
     int ended;                    /* a body that is not finite in frame `end` */
-    double step;                  /* s, that the times must have */
+    int bodies;
+    int64_t origin; /* frame of the file that is frame 0 of the run */
+    double step;    /* s, that the times must have */
     Trajectory *run;
 } CsvImport;

@@ -8,7 +8,6 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/names.h"
-#include "runs/compare_runs.h"
 #include "runs/runs_internal.h"
 
 #include <assert.h>
@@ -64,6 +63,9 @@ void trajectory_destroy(Trajectory *t) {
     free(t->angle);
     free(t->velocity);
     free(t->angular_velocity);
+    free(t->exact);
+    free(t->there);
+    free(t->hash);
     free(t->contact_start);
     free(t->contacts);
     free(t);
@@ -85,6 +87,11 @@ bool trajectory_has(const Trajectory *t, int frame, int body) {
     return isfinite(position.x) && isfinite(position.y);
 }
 
+bool trajectory_there(const Trajectory *t, int frame, int body) {
+    if (frame >= t->frames || body >= t->bodies) return false;
+    return t->there != NULL ? t->there[trajectory_at(t, frame, body)] != 0 : trajectory_has(t, frame, body);
+}
+
 /* Sets contact_start of steps without contacts, from the last step with contacts up to `step`. */
 static void end_steps(Trajectory *t, int step, int64_t count) {
     for (int k = t->last_step + 1; k <= step; k++) t->contact_start[k + 1] = count;
@@ -92,7 +99,8 @@ static void end_steps(Trajectory *t, int step, int64_t count) {
 }
 
 double trajectory_bytes(const Trajectory *t) {
-    return measure(t->frames, t->bodies, (double)t->contact_start[t->frames]);
+    const double pose = t->exact != NULL ? 2 * sizeof(Vec2) + 2 * sizeof(float) : 0; /* float64: twice */
+    return measure(t->frames, t->bodies, (double)t->contact_start[t->frames]) + t->frames * (t->bodies * pose);
 }
 
 TrajectoryContact *trajectory_add_contacts(Trajectory *t, int frame, int added, Error *error) {
@@ -211,43 +219,8 @@ uint64_t trajectory_hash(const Trajectory *run) {
     return add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
 }
 
-bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
-
-bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
-    bool in_a = trajectory_has(a, frame, body), in_b = trajectory_has(b, frame, body);
-    if (!in_a || !in_b) return in_a == in_b;
-    size_t i = trajectory_at(a, frame, body), k = trajectory_at(b, frame, body);
-    return memcmp(&a->position[i], &b->position[k], sizeof(Vec2)) == 0 &&
-           memcmp(&a->angle[i], &b->angle[k], sizeof(float)) == 0 &&
-           (!trajectory_both_move(a, b) ||
-            (memcmp(&a->velocity[i], &b->velocity[k], sizeof(Vec2)) == 0 &&
-             memcmp(&a->angular_velocity[i], &b->angular_velocity[k], sizeof(float)) == 0));
-}
-
-StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
-    StateDifference d = {.in_a = trajectory_has(a, frame, body), .in_b = trajectory_has(b, frame, body)};
-    if (!d.in_a || !d.in_b) return d;
-    size_t i = trajectory_at(a, frame, body), k = trajectory_at(b, frame, body);
-    d.distance = vec2_distance(a->position[i], b->position[k]);
-    d.angle = fabs((double)a->angle[i] - b->angle[k]);
-    if (!trajectory_both_move(a, b)) return d;
-    d.speed = vec2_distance(a->velocity[i], b->velocity[k]);
-    d.spin = fabs((double)a->angular_velocity[i] - b->angular_velocity[k]);
-    return d;
-}
-
-bool trajectory_different_worlds(const Trajectory *a, const Trajectory *b, char *what, size_t size) {
-    if (a->bodies != b->bodies) return snprintf(what, size, "bodies: %d and %d", a->bodies, b->bodies) > 0;
-    for (int body = 0; body < a->bodies; body++) {
-        Vec2 p = a->size[body], q = b->size[body];
-        if (memcmp(&p, &q, sizeof p) != 0)
-            return snprintf(what, size, "size of body %d: %.9g x %.9g and %.9g x %.9g m", body, (double)p.x,
-                            (double)p.y, (double)q.x, (double)q.y) > 0;
-        if (a->fixed[body] != b->fixed[body] && !a->fixed_guessed && !b->fixed_guessed)
-            return snprintf(what, size, "body %d: %s and %s", body, a->fixed[body] ? "static" : "dynamic",
-                            b->fixed[body] ? "static" : "dynamic") > 0;
-    }
-    if (memcmp(&a->dt, &b->dt, sizeof a->dt) != 0)
-        return snprintf(what, size, "dt: %.9g and %.9g s", (double)a->dt, (double)b->dt) > 0;
-    return false;
+double trajectory_number(const Trajectory *t, size_t i, int column) {
+    if (t->exact != NULL && (column < 3 || !t->no_velocities)) return t->exact[trajectory_exact_at(t, i, column)];
+    const Vec2 of = column < 2 ? t->position[i] : t->velocity[i];
+    return (double)(column == 2 ? t->angle[i] : column == 5 ? t->angular_velocity[i] : column % 3 == 0 ? of.x : of.y);
 }

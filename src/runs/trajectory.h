@@ -51,7 +51,13 @@ typedef struct Trajectory {
     Vec2 *velocity;                     /* [T, N] m/s */
     float *angular_velocity;            /* [T, N] rad/s */
     bool no_velocities;                 /* both are unknown: all NaN; files do not have them */
-    bool no_contacts;                   /* contacts were not recorded: none are here, nor in files */
+    double *exact; /* these four in float64, of which they are the roundings: [T, N, 2], [T, N], [T, N, 2], [T, N], one
+                      behind the other; NULL: the run states float32, as twinbox's own do */
+    /* Of a trace (run_files.h) only, else NULL: */
+    uint8_t *there;              /* [T, N] 1: the file states the body in this frame, if only as NaN */
+    uint64_t *hash;              /* [T, N] of each state, as the other program made it; NULL: none */
+    bool no_poses;               /* only hashes are known */
+    bool no_contacts;            /* contacts were not recorded: none are here, nor in files */
     bool no_impulses;            /* contacts were found later (trajectory_find_contacts): impulses are unknown, 0 */
     int64_t *contact_start;      /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
     TrajectoryContact *contacts; /* [contact_start[T]] */
@@ -63,7 +69,8 @@ typedef struct Trajectory {
 } Trajectory;
 
 /* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], mass[N],
-   body_name[N,32], position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1],
+   body_name[N,32], position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N] (these four in float64 if the run
+   has it), contact_start[T+1],
    contact_bodies[C,2], contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program,
    verdict, verdict_frame, verdict_body. Without the masses, the names, the velocities, the contacts, the program or the
    verdict where they are unknown. */
@@ -83,11 +90,27 @@ static inline size_t trajectory_at(const Trajectory *trajectory, int64_t frame, 
     return (size_t)frame * (size_t)trajectory->bodies + (size_t)body;
 }
 
+/* Columns of a state: x, y, angle, vx, vy, omega. */
+enum { STATE_COLUMNS = 6 };
+
+/* Where `exact` has a column of the state with index i. */
+static inline size_t trajectory_exact_at(const Trajectory *trajectory, size_t i, int column) {
+    const size_t states = (size_t)trajectory->frames * (size_t)trajectory->bodies;
+    const size_t vector = column < 2 ? 0 : column == 2 ? 2 : column < 5 ? 3 : 5;
+    return vector * states + (column == 2 || column == 5 ? i : 2 * i + (size_t)(column % 3));
+}
+
+/* A number of the state with index i, as precise as the run states it. */
+double trajectory_number(const Trajectory *trajectory, size_t i, int column);
+
 /* True if the body exists in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 
 /* The first step in which the bomb touches a dynamic body; -1: none. */
 int trajectory_impact(const Trajectory *trajectory);
+
+/* True if the run states the body in this frame: of a trace, also as NaN; false beyond its frames and bodies. */
+bool trajectory_there(const Trajectory *trajectory, int frame, int body);
 
 /* FNV-1a 64 over the little-endian bytes of x, y, angle, vx, vy, omega of each dynamic body that exists, by rising
    index: the hash of the reference trajectories. */

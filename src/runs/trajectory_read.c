@@ -255,6 +255,27 @@ void trajectory_guess_fixed(Trajectory *t) {
     }
 }
 
+/* Of numbers that float32 does not hold, at least in one array, all are kept as float64. */
+static bool read_exact(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    const size_t states = (size_t)t->frames * (size_t)t->bodies;
+    const int last = t->no_velocities ? ARRAY_ANGLE : ARRAY_ANGULAR_VELOCITY;
+    bool wide = false;
+    for (int i = ARRAY_POSITION; i <= last; i++) wide = wide || npz_is_wide(file, run_arrays[i].name);
+    if (!wide) return true;
+    if ((t->exact = malloc((STATE_COLUMNS * states + 1) * sizeof *t->exact)) == NULL) return error_memory(error, path);
+    for (size_t i = 0; i < STATE_COLUMNS * states; i++) t->exact[i] = NAN;
+    for (int i = ARRAY_POSITION, column = 0; i <= last; column += run_arrays[i++].rank - 1) {
+        int64_t shape[NPZ_MAX_RANK];
+        run_array_shape(&run_arrays[i], t->frames, t->bodies, 0, shape);
+        double *numbers = npz_read(file, run_arrays[i].name, NPZ_FLOAT64, run_arrays[i].rank, shape, error);
+        if (numbers == NULL) return false;
+        memcpy(t->exact + trajectory_exact_at(t, 0, column), numbers,
+               (size_t)(run_arrays[i].rank - 1) * states * sizeof *numbers);
+        free(numbers);
+    }
+    return true;
+}
+
 /* Bodies and their states. What is unknown is NaN; which bodies are static is guessed. */
 static bool read_bodies(Trajectory *t, NpzFile *file, const char *path, Error *error) {
     const int64_t vectors[] = {t->frames, t->bodies, 2}, per_body[] = {t->bodies, 2},
@@ -279,6 +300,7 @@ static bool read_bodies(Trajectory *t, NpzFile *file, const char *path, Error *e
     }
     if (npz_has(file, "body_name") && (t->name = npz_read(file, "body_name", NPZ_UINT8, 2, names, error)) == NULL)
         return false;
+    if (!read_exact(t, file, path, error)) return false;
     if (!t->no_velocities)
         return (t->velocity = npz_read(file, "velocity", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
                (t->angular_velocity = npz_read(file, "angular_velocity", NPZ_FLOAT32, 2, vectors, error)) != NULL;

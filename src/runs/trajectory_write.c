@@ -46,7 +46,8 @@ struct TrajectoryStream {
 /* Of arrays without data, rows are counted as they come. */
 static bool add_array(TrajectoryStream *stream, int array, const void *data, Error *error) {
     const RunArray *run_array = &run_arrays[array];
-    NpzArray added = {run_array->name, run_array->type, run_array->rank, {0}, data};
+    const bool exact = stream->head->exact != NULL && array >= ARRAY_POSITION && array <= ARRAY_ANGULAR_VELOCITY;
+    NpzArray added = {run_array->name, exact ? NPZ_FLOAT64 : run_array->type, run_array->rank, {0}, data};
     run_array_shape(run_array, 0, stream->head->bodies, 0, added.shape);
     if (data == NULL) added.shape[0] = 0;
     return (stream->array[array] = npz_stream_add(stream->npz, &added, error)) >= 0;
@@ -188,12 +189,13 @@ bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Err
         stream->bytes += trajectory_bytes(part);
         if (stream->bytes > TRAJECTORY_MAX_BYTES)
             return error_input(error, stream->path, "the run takes more than 2 GiB");
-        if (!append(stream, ARRAY_POSITION, part->position, frames, error) ||
-            !append(stream, ARRAY_ANGLE, part->angle, frames, error) ||
-            !append(stream, ARRAY_VELOCITY, part->velocity, frames, error) ||
-            !append(stream, ARRAY_ANGULAR_VELOCITY, part->angular_velocity, frames, error) ||
-            (!stream->head->no_contacts && !add_contacts(stream, part, error)))
-            return false;
+        const void *const states[] = {part->position, part->angle, part->velocity, part->angular_velocity};
+        static const int columns[] = {0, 2, 3, 5};
+        for (int i = 0; i < 4; i++) {
+            const double *exact = part->exact == NULL ? NULL : part->exact + trajectory_exact_at(part, 0, columns[i]);
+            if (!append(stream, ARRAY_POSITION + i, exact != NULL ? exact : states[i], frames, error)) return false;
+        }
+        if (!stream->head->no_contacts && !add_contacts(stream, part, error)) return false;
     }
     stream->added += part->frames;
     return true;

@@ -10,7 +10,7 @@ run 0 simulate "$stack" --frames 60 -o short.npz
 run 0 simulate "$stack" --frames 120 --bomb-x 5.000001 -o moved.npz
 
 run 0 compare engine.npz engine.npz
-says "equal: 121 frames of 12 bodies, every bit of pose and velocity"
+says "equal: 121 frames of 12 bodies, every bit of float32 poses and velocities"
 equal "lines" "$(wc -l <out)" 3
 run 1 compare engine.npz short.npz
 says "different lengths, 121 and 61 frames: only the first 61 are compared"

@@ -21,8 +21,7 @@ PYTHON
 # STATUS | what is printed | arguments
 table() {
     cat <<'END'
-0 | equal: 61 frames of 12 bodies | compare ours.npz theirs.npz
-0 | only poses are compared: a run has no velocities | compare ours.npz theirs.npz
+0 | equal: 61 frames of 12 bodies, every bit of float32 poses | compare ours.npz theirs.npz
 1 | first difference: frame 50, body 3: 0.707 m apart | compare theirs.npz other.npz
 1 | largest distance: frame 50, body 3 | compare ours.npz other.npz
 1 | first difference: frame 20, body 3: 0 m apart, 6.28 rad | compare theirs.npz turned.npz

@@ -41,7 +41,7 @@ run 0 simulate "$scenes/stack.yaml" --frames 60 --no-contacts -o without.npz
 [ "$(stat -c %s without.npz)" -lt "$(stat -c %s with.npz)" ] || fail "the contacts are still there"
 run 0 compare with.npz without.npz
 says "equal: 61 frames of 12 bodies"
-says "every bit of pose and velocity"
+says "every bit of float32 poses and velocities"
 run 0 render without.npz --frames 0:3 --size 320x180 -o frames
 run 0 figure strip without.npz -o strip.svg
 

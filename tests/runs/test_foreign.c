@@ -79,7 +79,7 @@ TEST(only_poses_are_compared_with_a_run_without_velocities) {
     TrajectoryDifference difference;
     trajectory_compare(t, moving, &difference);
     assert_true(difference.equal && difference.poses_only);
-    moving->angle[4] = 0.5F;
+    moving->exact[trajectory_exact_at(moving, 4, 2)] = 0.5;
     trajectory_compare(moving, t, &difference);
     assert_true(!difference.equal && difference.frame == 1 && difference.body == 1);
     assert_true(difference.angle == 0.5 && difference.speed == 0);
