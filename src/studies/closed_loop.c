@@ -95,7 +95,7 @@ bool closed_loop_time(const Method *method, const SnapshotList *states, int repe
     Contender engine, other = {.method = *method};
     const Contender *const both[] = {&engine, &other};
     const TimingOptions options = {
-        .launches = states->items[0].scene, .repetitions = repetitions, .no_instructions = true};
+        .launches = states->items[0].scene, .repetitions = repetitions, .one_core = true, .no_instructions = true};
     StepCost closed[2][PHASES], frozen[2][PHASES];
     if (!method_parse(&engine.method, "engine", error) ||
         !timing_measure(both, 2, &options, states, closed, frozen, NULL, error))

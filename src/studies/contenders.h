@@ -15,6 +15,13 @@ typedef struct Contender {
     Method method;                    /* both, parsed */
 } Contender;
 
+/* Whether its steps follow from the world alone: a contact solver of this program. So what launches share, all steps
+   before the bomb, need to be taken only once. */
+static inline bool contender_forgets(const Contender *contender) {
+    const MethodKind *kind = contender->method.kind;
+    return kind->solver != NULL && !kind->description->external;
+}
+
 typedef struct ContenderList {
     int count;
     Contender *items; /* [count] */

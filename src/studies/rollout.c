@@ -196,15 +196,61 @@ void rollout_free(Rollout *rollout) {
     *rollout = (Rollout){0};
 }
 
+void shared_steps_free(SharedSteps *shared) {
+    rollout_free(&shared->rollout);
+    for (int phase = 0; phase < PHASES; phase++) step_scores_free(&shared->scores[phase]);
+    shared->ended = false;
+}
+
+/* The log has begun, so it has room. */
+static void copy_log(RunLog *to, const RunLog *from) {
+    const size_t rows = (size_t)from->frames + 1;
+    memcpy(to->position, from->position, rows * (size_t)from->bodies * sizeof *to->position);
+    memcpy(to->at, from->at, rows * sizeof *to->at);
+    to->frames = from->frames;
+    to->touch = from->touch;
+    to->momentum_error = from->momentum_error;
+    to->fallen_back = from->fallen_back;
+    to->unconverged = from->unconverged;
+    to->first_unconverged = from->first_unconverged;
+}
+
+static bool copy_scores(StepScores *to, const StepScores *from) {
+    const size_t count = (size_t)from->count;
+    if (count == 0) return true;
+    if (!array_reserve((void **)&to->error, &to->error_capacity, count, sizeof *to->error) ||
+        !array_reserve((void **)&to->share, &to->share_capacity, count, sizeof *to->share) ||
+        !array_reserve((void **)&to->place, &to->place_capacity, count, sizeof *to->place))
+        return false;
+    memcpy(to->error, from->error, count * sizeof *to->error);
+    memcpy(to->share, from->share, count * sizeof *to->share);
+    memcpy(to->place, from->place, count * sizeof *to->place);
+    to->count = from->count;
+    to->criteria = from->criteria;
+    return true;
+}
+
+static bool copy_shared(Rollout *rollout, StepScores scores[PHASES], Error *error) {
+    const SharedSteps *shared = rollout->shared;
+    if (!world_copy(rollout->world, shared->rollout.world, error)) return false;
+    copy_log(&rollout->log, &shared->rollout.log);
+    rollout->unconverged = shared->rollout.unconverged;
+    for (int phase = 0; scores != NULL && phase < PHASES; phase++)
+        if (!copy_scores(&scores[phase], &shared->scores[phase])) return error_memory(error, "study");
+    return true;
+}
+
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error) {
     world_destroy(rollout->world);
     rollout->world = scene_world(launched, error);
     if (rollout->world == NULL) return false;
     if (!run_log_begin(&rollout->log, launched, rollout->world)) return error_memory(error, "study");
+    if (rollout->shared != NULL && !copy_shared(rollout, scores, error)) return false;
+    if (rollout->shared != NULL && rollout->shared->ended) return true;
     const bool push_out = !stepper_describe(stepper)->no_push_out;
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
-    for (int frame = 1; frame <= launched->frames; frame++) {
+    for (int frame = rollout->log.frames + 1; frame <= launched->frames; frame++) {
         const Step step = {.scene = launched, .frame = frame};
         Error failure = {0};
         if (!simulate_step(stepper, rollout->world, &step, &failure)) {
@@ -224,6 +270,17 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
             return error_memory(error, "study");
     }
     return true;
+}
+
+bool shared_steps_run(SharedSteps *shared, Stepper *stepper, const Scene *launched, int steps, const Sampling *sampling,
+                      Error *error) {
+    Scene first = *launched;
+    first.frames = steps;
+    const bool ok =
+        rollout_run(&shared->rollout, stepper, &first, sampling, sampling != NULL ? shared->scores : NULL, error);
+    converged_step_free(&shared->rollout.converged);
+    shared->ended = shared->rollout.log.frames < steps;
+    return ok;
 }
 
 bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *error) {

@@ -125,7 +125,8 @@ typedef struct Rollout {
     World *world;
     ConvergedStep converged;
     RunLog log;
-    int unconverged; /* steps that are not scored (converged_step_found()) */
+    int unconverged;                  /* steps that are not scored (converged_step_found()) */
+    const struct SharedSteps *shared; /* set by the caller: how the run begins; or NULL */
 } Rollout;
 
 void rollout_free(Rollout *rollout);
@@ -134,6 +135,18 @@ void rollout_free(Rollout *rollout);
    infinite, the run ends early and its log is shorter. False with error set if out of memory. */
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error);
+
+/* The first steps of several launches, before the bomb appears. Zero-initialise; free with shared_steps_free(). */
+typedef struct SharedSteps {
+    Rollout rollout;
+    StepScores scores[PHASES];
+    bool ended; /* one of them failed */
+} SharedSteps;
+
+/* Takes them with one of the launches. The runs that begin so have the same stepper and sampling. */
+bool shared_steps_run(SharedSteps *shared, Stepper *stepper, const Scene *launched, int steps, const Sampling *sampling,
+                      Error *error);
+void shared_steps_free(SharedSteps *shared);
 
 /* Logs a run by the method of this name, which ends early if its state becomes NaN or infinite. */
 bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *error);

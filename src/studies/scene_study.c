@@ -77,6 +77,10 @@ static bool begin(SceneStudy *study, const char *path, const ContenderList *cont
     if (!stepper_pool_begin(&study->steppers, study->contender_count, error)) return false;
     study->launches = launch_choice_make(launches, scene, study->size.launches, &study->launch_count, error);
     if (study->launches == NULL) return false;
+    study->shared_steps = scene->frames;
+    for (int i = 0; i < study->launch_count; i++)
+        if (study->launches[i].frame <= study->shared_steps)
+            study->shared_steps = study->launches[i].frame > 0 ? study->launches[i].frame - 1 : 0;
     /* The launches that strike a box: only these have times of an impact. */
     const ParallelWork tries = {try_launch, study};
     study->striking = calloc((size_t)study->launch_count, sizeof *study->striking);
@@ -99,6 +103,7 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
 
 void scene_study_end(SceneStudy *study) {
     stepper_pool_end(&study->steppers);
+    shared_steps_free(&study->converged);
     free(study->launches);
     free(study->striking);
     free(study->contenders);
@@ -120,7 +125,7 @@ int scene_study_timed(const SceneStudy *study) {
 typedef struct LaunchPiece {
     SceneStudy *study;
     Scene launched;
-    RunLog converged;
+    Rollout converged;
     SnapshotList snapshots;
     int first;            /* contender that is tried first */
     bool *chosen;         /* [contenders] */
@@ -136,15 +141,38 @@ static bool score(void *context, int i, Error *error) {
     LaunchScores *scores = &piece->scores[contender];
     Stepper *stepper =
         stepper_pool_stepper(&study->steppers, contender, &study->contenders[contender]->method, study->scene, error);
+    SharedSteps *shared = stepper_pool_shared(&study->steppers, contender);
     Rollout rollout = {0};
-    bool ok = stepper != NULL && rollout_run(&rollout, stepper, &piece->launched, &study->size.closed,
-                                             scores->steps[PROTOCOL_CLOSED], error);
-    if (ok) scores->measures = run_measures(&rollout.log, &piece->converged, &piece->launched);
+    bool ok = stepper != NULL;
+    if (ok && study->shared_steps > 0 && contender_forgets(study->contenders[contender])) {
+        rollout.shared = shared;
+        ok = shared->rollout.world != NULL ||
+             shared_steps_run(shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
+    }
+    ok = ok &&
+         rollout_run(&rollout, stepper, &piece->launched, &study->size.closed, scores->steps[PROTOCOL_CLOSED], error);
+    if (ok) scores->measures = run_measures(&rollout.log, &piece->converged.log, &piece->launched);
     if (ok && !stepper_describe(stepper)->whole_scenes)
         ok = snapshots_score(&piece->snapshots, stepper, rollout.world, scores->steps[PROTOCOL_FROZEN], error);
     scores->unconverged = rollout.unconverged;
     rollout_free(&rollout);
     stepper_pool_give(&study->steppers, contender);
+    return ok;
+}
+
+static bool run_converged(LaunchPiece *piece, Error *error) {
+    SceneStudy *study = piece->study;
+    Method method;
+    Stepper *stepper = method_parse(&method, "reference", error) ? stepper_create(&method, study->scene, error) : NULL;
+    bool ok = stepper != NULL;
+    if (ok && study->shared_steps > 0) {
+#pragma omp critical(converged_runs)
+        if (study->converged.rollout.world == NULL)
+            ok = shared_steps_run(&study->converged, stepper, &piece->launched, study->shared_steps, NULL, error);
+        piece->converged.shared = &study->converged;
+    }
+    ok = ok && rollout_run(&piece->converged, stepper, &piece->launched, NULL, NULL, error);
+    stepper_destroy(stepper);
     return ok;
 }
 
@@ -160,15 +188,15 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
                          .scores = calloc(count, sizeof *piece.scores)};
     ProgressStage stage = {progress, converged_share, 1 - converged_share, false};
     bool ok = (piece.chosen != NULL && piece.scores != NULL) || error_memory(error, "study");
-    ok = ok && rollout_log(&piece.converged, "reference", &piece.launched, error) &&
+    ok = ok && run_converged(&piece, error) &&
          snapshots_add(&piece.snapshots, &piece.launched, &study->size.frozen, error) &&
          parallel_for(&(ParallelWork){score, &piece}, study->contender_count, study->scene->name,
                       &(Progress){progress_stage, &stage}, error);
     if (ok)
         launch_scores_write(results, piece.scores, study->contender_count, piece.snapshots.unconverged,
-                            piece.converged.unconverged);
+                            piece.converged.log.unconverged);
     for (int i = 0; piece.scores != NULL && i < study->contender_count; i++) launch_scores_free(&piece.scores[i]);
-    run_log_free(&piece.converged);
+    rollout_free(&piece.converged);
     snapshots_free(&piece.snapshots);
     free(piece.chosen);
     free(piece.scores);
@@ -177,32 +205,22 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
 
 /* The times of all methods. */
 
-/* Frames of a run behind the phase "after", so that all three phases are timed. */
-enum { FRAMES_BEHIND = 20 };
-
-typedef struct Timed {
-    SnapshotList snapshots;
-    int touch; /* of the converged run */
-} Timed;
-
 typedef struct SceneTimes {
     const SceneStudy *study;
     int count;
-    Timed *timed;    /* [count] */
-    Scene *launches; /* [count] */
-    SnapshotList snapshots;
+    Scene *launches;                      /* [count] */
+    SnapshotList *lists;                  /* [count] of each launch */
+    SnapshotList snapshots;               /* of all */
     StepCost (*costs[PROTOCOLS])[PHASES]; /* [contenders] */
 } SceneTimes;
 
 static bool prepare_launch(void *context, int i, Error *error) {
     SceneTimes *times = context;
-    Timed *timed = &times->timed[i];
     const SceneStudy *study = times->study;
     Scene *launched = &times->launches[i];
     const int spread = (2 * i + 1) * study->striking_count / (2 * times->count);
     *launched = scene_study_launch(study, study->striking[spread]);
-    return launch_find_touch(launched, "reference", &timed->touch, error) &&
-           snapshots_add(&timed->snapshots, launched, &study->size.frozen, error);
+    return snapshots_add(&times->lists[i], launched, &study->size.frozen, error);
 }
 
 static bool measure_times(SceneTimes *times, const Progress *progress, Error *error) {
@@ -214,22 +232,20 @@ static bool measure_times(SceneTimes *times, const Progress *progress, Error *er
         return false;
     /* The frozen steps of all launches go into one list. */
     SnapshotList *all = &times->snapshots;
-    int last = 0;
     for (int i = 0; i < times->count; i++) {
-        SnapshotList *list = &times->timed[i].snapshots;
+        SnapshotList *list = &times->lists[i];
         if (!array_reserve((void **)&all->items, &all->capacity, (size_t)(all->count + list->count) + 1,
                            sizeof *all->items))
             return error_memory(error, "study");
         if (list->count > 0) memcpy(all->items + all->count, list->items, (size_t)list->count * sizeof *all->items);
         all->count += list->count;
         list->count = 0;
-        const int frame = times->timed[i].touch + study->scene->bomb.impact_frames + AFTER_FRAMES + FRAMES_BEHIND;
-        if (frame > last) last = frame;
     }
     const TimingOptions options = {.launches = times->launches,
                                    .launch_count = times->count,
                                    .repetitions = study->size.repetitions,
-                                   .last_frame = last < study->scene->frames ? last : study->scene->frames};
+                                   .last_frame = study->scene->frames,
+                                   .shared_steps = study->shared_steps};
     return timing_measure(study->contenders, study->contender_count, &options, &times->snapshots,
                           times->costs[PROTOCOL_CLOSED], times->costs[PROTOCOL_FROZEN],
                           &(Progress){progress_stage, &then}, error);
@@ -238,9 +254,9 @@ static bool measure_times(SceneTimes *times, const Progress *progress, Error *er
 bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *progress, Error *error) {
     const size_t contenders = (size_t)study->contender_count + 1;
     SceneTimes times = {.study = study, .count = scene_study_timed(study)};
-    times.timed = calloc((size_t)times.count, sizeof *times.timed);
+    times.lists = calloc((size_t)times.count, sizeof *times.lists);
     times.launches = calloc((size_t)times.count, sizeof *times.launches);
-    bool room = times.timed != NULL && times.launches != NULL;
+    bool room = times.lists != NULL && times.launches != NULL;
     for (int p = 0; p < PROTOCOLS; p++) {
         times.costs[p] = calloc(contenders, sizeof *times.costs[p]);
         room = room && times.costs[p] != NULL;
@@ -254,10 +270,10 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
                                          cost->instructions, cost->engine,    cost->varies};
                 fwrite(stored, sizeof stored, 1, results);
             }
-    for (int i = 0; times.timed != NULL && i < times.count; i++) snapshots_free(&times.timed[i].snapshots);
+    for (int i = 0; times.lists != NULL && i < times.count; i++) snapshots_free(&times.lists[i]);
     snapshots_free(&times.snapshots);
     for (int p = 0; p < PROTOCOLS; p++) free(times.costs[p]);
-    free(times.timed);
+    free(times.lists);
     free(times.launches);
     return ok;
 }

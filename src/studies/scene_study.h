@@ -40,10 +40,12 @@ typedef struct SceneStudy {
     Scene *scene;
     int launch_count, contender_count;
     Launch *launches;             /* [launch_count] */
+    int shared_steps;             /* of all launches: before the bomb appears */
     int striking_count;           /* of the launches: those that strike a box, by the engine; at least 1 */
     int *striking;                /* [striking_count] their places, rising */
     const Contender **contenders; /* [contender_count] available for this scene */
     StepperPool steppers;         /* of the contenders */
+    SharedSteps converged;        /* of the converged runs */
     bool no_push_out;             /* one of them is scored against converged velocities without push-out */
     StudySize size;
 } SceneStudy;

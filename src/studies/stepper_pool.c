@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "methods/methods.h"
 #include "scenes/scenes.h"
+#include "studies/rollout.h"
 #include "studies/stepper_pool.h"
 
 #include <omp.h>
@@ -11,6 +12,7 @@
 struct PooledStepper {
     omp_lock_t taken;
     Stepper *stepper; /* NULL: not made yet */
+    SharedSteps shared;
 };
 
 bool stepper_pool_begin(StepperPool *pool, int count, Error *error) {
@@ -31,6 +33,7 @@ void stepper_pool_empty(StepperPool *pool) {
     for (int i = 0; i < pool->count; i++) {
         stepper_destroy(pool->items[i].stepper);
         pool->items[i].stepper = NULL;
+        shared_steps_free(&pool->items[i].shared);
     }
 }
 
@@ -60,6 +63,8 @@ int stepper_pool_take(StepperPool *pool, bool *chosen, int from) {
 }
 
 void stepper_pool_give(StepperPool *pool, int index) { omp_unset_lock(&pool->items[index].taken); }
+
+SharedSteps *stepper_pool_shared(StepperPool *pool, int index) { return &pool->items[index].shared; }
 
 Stepper *stepper_pool_stepper(StepperPool *pool, int index, const Method *method, const Scene *scene, Error *error) {
     PooledStepper *item = &pool->items[index];

@@ -5,6 +5,7 @@
 #include "base/base.h"
 #include "methods/methods.h"
 #include "scenes/scenes.h"
+#include "studies/rollout.h"
 
 #include <stdbool.h>
 
@@ -25,6 +26,9 @@ void stepper_pool_empty(StepperPool *pool);
    else one that it waits for. Returns its index; stepper_pool_give() must follow. */
 int stepper_pool_take(StepperPool *pool, bool *chosen, int from);
 void stepper_pool_give(StepperPool *pool, int index);
+
+/* The first steps of all launches by the method that was taken: kept as long as its stepper; zero at first. */
+SharedSteps *stepper_pool_shared(StepperPool *pool, int index);
 
 /* The stepper of the method that was taken. NULL with error set if it cannot be made. */
 Stepper *stepper_pool_stepper(StepperPool *pool, int index, const Method *method, const Scene *scene, Error *error);

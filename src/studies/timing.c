@@ -16,8 +16,11 @@
 #include <assert.h>
 #include <linux/perf_event.h>
 #include <math.h>
+#include <omp.h>
 #include <sched.h>
+#include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
@@ -73,18 +76,18 @@ static bool metered_step(Stepper *stepper, World *world, Step step, const Meter 
     return true;
 }
 
-/* Ends early if the state becomes NaN or infinite, or a program fails. */
-static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, const Meter *meter, StepLog *log,
-                       Error *error) {
-    World *world = scene_world(launched, error);
-    if (world == NULL) return false;
+/* From a step on to the last one, or to the end of the phase after the impact; ends early, too, if the state becomes NaN
+   or infinite, or a program fails: *ended. */
+static bool run_closed(Stepper *stepper, const Scene *launched, World *world, int first, int last, const Meter *meter,
+                       StepLog *log, bool *ended, Error *error) {
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     Error failure = {0};
-    for (int frame = 1; frame <= last_frame; frame++) {
-        if (!metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, log, &failure)) break;
+    for (int frame = first; frame <= last; frame++) {
+        if (tracker.touch > 0 && frame >= tracker.touch + tracker.impact_frames + AFTER_FRAMES) break;
+        *ended = !metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, log, &failure);
+        if (*ended) break;
         log->items[log->count - 1].phase = phase_next(&tracker, world_problem(world), frame);
     }
-    world_destroy(world);
     if (failure.kind == ERROR_NONE || failure.failure != FAILURE_NONE) return true;
     *error = failure;
     return false;
@@ -106,64 +109,112 @@ static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world,
     return false;
 }
 
-/* One contender. */
+/* One contender. What is measured of it has parts: the steps that all launches share, the launches from there on, and
+   the frozen steps. */
 typedef struct Timed {
     Stepper *stepper;
-    StepLog *logs[PROTOCOLS]; /* [repetitions] each */
+    World *world;       /* in which it runs */
+    World *start;       /* after the shared steps */
+    bool shares, ended; /* there are such steps; one of them failed */
+    StepLog *logs;      /* [parts][repetitions] */
+    bool *due;          /* [parts] to be measured */
     double instructions[PROTOCOLS][PHASES];
 } Timed;
 
 typedef struct Timing {
     const TimingOptions *options;
     const SnapshotList *snapshots;
-    World *world;
-    int count;
-    Timed *items;                         /* [count] */
+    int count, parts; /* parts: launches and two */
+    Timed *items;     /* [count] */
+    const Meter *meter;
+    int repetition;
+    cpu_set_t cores;                      /* that the process may use */
+    int threads;                          /* that measure at once, each on a core of its own */
     StepCost (*costs[PROTOCOLS])[PHASES]; /* [count] each: the caller's */
     double *numbers;                      /* scratch, [repetitions] and [count] */
 } Timing;
 
 static bool is_external(const Timed *timed) { return stepper_describe(timed->stepper)->external; }
 
-static bool run_both(const Timing *timing, const Timed *timed, int launches, const Meter *meter, StepLog *closed,
-                     StepLog *frozen, Error *error) {
-    for (int i = 0; i < launches; i++)
-        if (!run_closed(timed->stepper, &timing->options->launches[i], timing->options->last_frame, meter, closed,
-                        error))
-            return false;
-    return stepper_describe(timed->stepper)->whole_scenes ||
-           run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
+static int protocol_of(const Timing *timing, int part) {
+    return part == timing->parts - 1 ? PROTOCOL_FROZEN : PROTOCOL_CLOSED;
 }
 
-/* All contenders, or those that vary, in turns. */
-static bool repeat_all(Timing *timing, bool again, const Meter *meter, const Progress *progress, Error *error) {
+static StepLog *logs_of(const Timing *timing, const Timed *timed, int part) {
+    return timed->logs + part * timing->options->repetitions;
+}
+
+static bool run_part(const Timing *timing, Timed *timed, int part, const Meter *meter, StepLog *log, Error *error) {
+    const TimingOptions *options = timing->options;
+    log->count = 0;
+    if (protocol_of(timing, part) == PROTOCOL_FROZEN)
+        return stepper_describe(timed->stepper)->whole_scenes ||
+               run_frozen(timed->stepper, timing->snapshots, timed->world, meter, log, error);
+    const int shared = timed->shares ? options->shared_steps : 0;
+    const Scene *launched = &options->launches[part > 0 ? part - 1 : 0];
+    if (part == 0 ? shared == 0 : timed->ended) return true;
+    World *world = scene_world(launched, error);
+    if (world == NULL) return false;
+    bool ended, ok;
+    if (part == 0) {
+        ok = run_closed(timed->stepper, launched, world, 1, shared, meter, log, &timed->ended, error) &&
+             world_copy(timed->start, world, error);
+    } else {
+        ok = (shared == 0 || world_copy(world, timed->start, error)) &&
+             run_closed(timed->stepper, launched, world, shared + 1, options->last_frame, meter, log, &ended, error);
+    }
+    world_destroy(world);
+    return ok;
+}
+
+/* The thread stays on a core, to avoid the cost of migration, where the system can do that. */
+static void stay(const cpu_set_t *cores, int thread) {
+    cpu_set_t core;
+    CPU_ZERO(&core);
+    for (size_t i = 0; i < CPU_SETSIZE; i++)
+        if (CPU_ISSET(i, cores) && thread-- == 0) CPU_SET(i, &core);
+    if (thread < 0) sched_setaffinity(0, sizeof core, &core);
+}
+
+/* A repetition of what is due of a contender. */
+static bool repeat(void *context, int i, Error *error) {
+    Timing *timing = context;
+    Timed *timed = &timing->items[i];
+    bool ok = true;
+    stay(&timing->cores, omp_get_thread_num());
+    for (int part = 0; ok && part < timing->parts; part++)
+        if (timed->due[part])
+            ok = run_part(timing, timed, part, timing->meter, &logs_of(timing, timed, part)[timing->repetition], error);
+    sched_setaffinity(0, sizeof timing->cores, &timing->cores);
+    return ok;
+}
+
+/* What is due of all contenders, in turns. */
+static bool repeat_all(Timing *timing, const Progress *progress, Error *error) {
     const int repetitions = timing->options->repetitions;
     for (int r = 0; r < repetitions; r++) {
-        for (int i = 0; i < timing->count; i++) {
-            const Timed *timed = &timing->items[i];
-            bool varies = !again; /* there are no costs before the first round */
-            for (int p = 0; again && p < PROTOCOLS; p++)
-                for (int phase = 0; phase < PHASES; phase++) varies |= timing->costs[p][i][phase].varies;
-            if (!varies) continue;
-            StepLog *closed = &timed->logs[PROTOCOL_CLOSED][r], *frozen = &timed->logs[PROTOCOL_FROZEN][r];
-            closed->count = frozen->count = 0;
-            if (!run_both(timing, timed, timing->options->launch_count, meter, closed, frozen, error)) return false;
-        }
-        if (!progress_report(progress, again ? repetitions : r + 1, repetitions))
+        bool ok = true;
+        timing->repetition = r;
+        if (timing->threads > 1)
+            ok = parallel_for(&(ParallelWork){repeat, timing}, timing->count, "timing", NULL, error);
+        for (int i = 0; ok && timing->threads == 1 && i < timing->count; i++) ok = repeat(timing, i, error);
+        if (!ok) return false;
+        if (!progress_report(progress, r + 1, repetitions))
             return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
     }
     return true;
 }
 
 /* Memory grows and caches fill in the first steps of a stepper: these do not count. */
-static bool warm_up(const Timing *timing, const Meter *meter, Error *error) {
-    const int launches = timing->options->launch_count > 0;
+static bool warm_up(Timing *timing, Error *error) {
+    const bool launches = timing->options->launch_count > 0;
     bool ok = true;
     for (int i = 0; ok && i < timing->count; i++) {
-        StepLog logs[PROTOCOLS] = {0};
-        ok =
-            run_both(timing, &timing->items[i], launches, meter, &logs[PROTOCOL_CLOSED], &logs[PROTOCOL_FROZEN], error);
-        for (int p = 0; p < PROTOCOLS; p++) free(logs[p].items);
+        Timed *timed = &timing->items[i];
+        StepLog log = {0};
+        ok = (!launches || run_part(timing, timed, 0, timing->meter, &log, error)) &&
+             run_part(timing, timed, launches ? 1 : timing->parts - 1, timing->meter, &log, error);
+        free(log.items);
     }
     return ok;
 }
@@ -179,24 +230,24 @@ static bool count_instructions(Timing *timing, Error *error) {
     const Meter meter = {meter_instructions, 0};
     bool ok = true;
     if (!timing->options->no_instructions) counter = (int)syscall(SYS_perf_event_open, &event, 0, -1, -1, 0);
-    for (int i = 0; ok && i < timing->count; i++) {
-        StepLog logs[PROTOCOLS] = {0};
-        const bool counts = counter >= 0 && !is_external(&timing->items[i]); /* those are not the engine's */
-        if (counts)
-            ok = run_both(timing, &timing->items[i], timing->options->launch_count, &meter, &logs[PROTOCOL_CLOSED],
-                          &logs[PROTOCOL_FROZEN], error);
-        for (int p = 0; p < PROTOCOLS; p++) {
-            int64_t sums[PHASES] = {0};
-            int steps[PHASES] = {0};
-            for (int k = 0; k < logs[p].count; k++) {
-                sums[logs[p].items[k].phase] += logs[p].items[k].solver;
-                steps[logs[p].items[k].phase]++;
+    for (int i = 0; i < timing->count; i++) {
+        Timed *timed = &timing->items[i];
+        const bool counts = counter >= 0 && !is_external(timed); /* those are not the engine's */
+        double sums[PROTOCOLS][PHASES] = {{0}};
+        int steps[PROTOCOLS][PHASES] = {{0}};
+        StepLog log = {0};
+        for (int part = 0; ok && counts && part < timing->parts; part++) {
+            const int protocol = protocol_of(timing, part);
+            ok = run_part(timing, timed, part, &meter, &log, error);
+            for (int k = 0; k < log.count; k++) {
+                sums[protocol][log.items[k].phase] += (double)log.items[k].solver;
+                steps[protocol][log.items[k].phase]++;
             }
-            for (int phase = 0; phase < PHASES; phase++)
-                timing->items[i].instructions[p][phase] =
-                    steps[phase] > 0 ? (double)sums[phase] / steps[phase] : (double)NAN;
-            free(logs[p].items);
         }
+        free(log.items);
+        for (int p = 0; p < PROTOCOLS; p++)
+            for (int phase = 0; phase < PHASES; phase++)
+                timed->instructions[p][phase] = steps[p][phase] > 0 ? sums[p][phase] / steps[p][phase] : (double)NAN;
     }
     if (counter >= 0) close(counter);
     counter = -1;
@@ -214,29 +265,33 @@ static void add_step(StepCost *sum, const StepLog *logs, int repetitions, int i,
     sum->solver_q3 += statistics_quantile(times, repetitions, 0.75);
     for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].engine / 1000;
     sum->engine += statistics_quantile(times, repetitions, 0.5);
+    sum->steps++;
 }
 
-/* times: scratch, [repetitions]. */
-static StepCost summarise(const Timed *timed, int protocol, int phase, int repetitions, double *times) {
-    const StepLog *logs = timed->logs[protocol];
-    StepCost sum = {0};
-    int steps = 0, fewest = logs[0].count;
+/* Adds the steps of a part in a phase. */
+static void add_part(const Timing *timing, const Timed *timed, int part, int phase, StepCost *sum) {
+    const StepLog *logs = logs_of(timing, timed, part);
+    const int repetitions = timing->options->repetitions;
+    int fewest = logs[0].count;
     for (int r = 1; r < repetitions; r++) fewest = logs[r].count < fewest ? logs[r].count : fewest;
-    for (int i = 0; i < fewest; i++) {
-        if ((int)logs[0].items[i].phase != phase) continue;
-        add_step(&sum, logs, repetitions, i, times);
-        steps++;
-    }
+    for (int i = 0; i < fewest; i++)
+        if ((int)logs[0].items[i].phase == phase) add_step(sum, logs, repetitions, i, timing->numbers);
+}
+
+static StepCost summarise(const Timing *timing, const Timed *timed, int protocol, int phase) {
+    StepCost sum = {0};
+    for (int part = 0; part < timing->parts; part++)
+        if (protocol_of(timing, part) == protocol) add_part(timing, timed, part, phase, &sum);
     StepCost unknown = {
         .solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .engine = NAN, .instructions = NAN};
-    if (is_external(timed) && sum.engine > 0) unknown.engine = sum.engine / steps;
-    if (steps == 0 || is_external(timed)) return unknown;
-    return (StepCost){.solver = sum.solver / steps,
-                      .solver_q1 = sum.solver_q1 / steps,
-                      .solver_q3 = sum.solver_q3 / steps,
-                      .step = sum.step / steps,
+    if (is_external(timed) && sum.engine > 0) unknown.engine = sum.engine / sum.steps;
+    if (sum.steps == 0 || is_external(timed)) return unknown;
+    return (StepCost){.solver = sum.solver / sum.steps,
+                      .solver_q1 = sum.solver_q1 / sum.steps,
+                      .solver_q3 = sum.solver_q3 / sum.steps,
+                      .step = sum.step / sum.steps,
                       .engine = NAN,
-                      .steps = steps,
+                      .steps = sum.steps,
                       .instructions = timed->instructions[protocol][phase]};
 }
 
@@ -244,55 +299,111 @@ static double distance(const StepCost *cost) { return cost->solver_q3 - cost->so
 
 static double spread(const StepCost *cost) { return distance(cost) / cost->solver; }
 
-/* Whether a time varies more than those of the others in that phase: another process may have disturbed it. */
-static bool is_disturbed(const StepCost (*costs)[PHASES], int count, int contender, int phase, double *spreads) {
+/* The largest spread of a contender in a phase that the spreads of the others explain. */
+static double largest_spread(const StepCost (*costs)[PHASES], int count, int contender, int phase, double *spreads) {
     int others = 0;
     for (int i = 0; i < count; i++)
         if (i != contender && costs[i][phase].solver > 0) spreads[others++] = spread(&costs[i][phase]);
-    const double usual = statistics_quantile(spreads, others, 0.5), own = spread(&costs[contender][phase]);
-    return own > TIMES_VARY_FACTOR * usual && own > TIMES_VARY_LEAST &&
-           distance(&costs[contender][phase]) > TIMES_VARY_US;
+    const double usual = statistics_quantile(spreads, others, 0.5);
+    return others > 0 ? fmax(TIMES_VARY_FACTOR * usual, TIMES_VARY_LEAST) : INFINITY;
 }
 
+/* A time that varies more than those of the others: another process may have disturbed it. Then the parts that vary as
+   much are due again; there is one, as the spread of all lies between theirs. */
 static void summarise_all(const Timing *timing) {
+    for (int i = 0; i < timing->count; i++) memset(timing->items[i].due, 0, (size_t)timing->parts * sizeof(bool));
     for (int p = 0; p < PROTOCOLS; p++)
         for (int phase = 0; phase < PHASES; phase++) {
             StepCost(*costs)[PHASES] = timing->costs[p];
-            for (int i = 0; i < timing->count; i++)
-                costs[i][phase] = summarise(&timing->items[i], p, phase, timing->options->repetitions, timing->numbers);
-            for (int i = 0; i < timing->count; i++)
-                costs[i][phase].varies =
-                    is_disturbed((const StepCost(*)[PHASES])costs, timing->count, i, phase, timing->numbers);
+            for (int i = 0; i < timing->count; i++) costs[i][phase] = summarise(timing, &timing->items[i], p, phase);
+            for (int i = 0; i < timing->count; i++) {
+                StepCost *cost = &costs[i][phase];
+                const double largest =
+                    largest_spread((const StepCost(*)[PHASES])costs, timing->count, i, phase, timing->numbers);
+                cost->varies = spread(cost) > largest && distance(cost) > TIMES_VARY_US;
+                for (int part = 0; cost->varies && part < timing->parts; part++) {
+                    StepCost own = {0};
+                    if (protocol_of(timing, part) == p) add_part(timing, &timing->items[i], part, phase, &own);
+                    timing->items[i].due[part] |= spread(&own) > largest;
+                }
+            }
         }
 }
 
-static bool measure(Timing *timing, const Contender *const *contenders, const Progress *progress, Error *error) {
-    const Scene *scene = &timing->options->launches[0];
-    const size_t repetitions = (size_t)timing->options->repetitions;
-    Meter clock = {meter_time, INT64_MAX};
-    timing->numbers = malloc((repetitions + (size_t)timing->count) * sizeof *timing->numbers);
-    timing->items = calloc((size_t)timing->count, sizeof *timing->items);
-    if (timing->items == NULL || timing->numbers == NULL) return error_memory(error, "timing");
-    for (int i = 0; i < timing->count; i++) {
-        Timed *timed = &timing->items[i];
-        timed->stepper = stepper_create(&contenders[i]->method, scene, error);
-        if (timed->stepper == NULL) return false;
-        for (int p = 0; p < PROTOCOLS; p++) {
-            timed->logs[p] = calloc(repetitions, sizeof *timed->logs[p]);
-            if (timed->logs[p] == NULL) return error_memory(error, "timing");
-        }
+/* Cores may share caches and power. So several are used only if the launch that a contender was warmed up with takes
+   it no longer while the others work: by at most so much. */
+static const double undisturbed = 1.03;
+
+/* Seconds of the contender's solver in a launch: each step at its quickest. */
+static double quickest(const Timing *timing, Timed *timed, Error *error) {
+    enum { TRIES = 5 };
+    StepLog logs[TRIES] = {{0}};
+    double sum = 0;
+    for (int r = 0; r < TRIES; r++)
+        if (!run_part(timing, timed, 1, timing->meter, &logs[r], error)) sum = NAN;
+    for (int i = 0; i < logs[0].count; i++) {
+        int64_t least = logs[0].items[i].solver;
+        for (int r = 1; r < TRIES; r++) least = logs[r].items[i].solver < least ? logs[r].items[i].solver : least;
+        sum += 1e-9 * (double)least;
     }
-    timing->world = scene_world(scene, error);
-    if (timing->world == NULL) return false;
+    for (int r = 0; r < TRIES; r++) free(logs[r].items);
+    return sum;
+}
+
+static void choose_threads(Timing *timing) {
+    const int most = omp_get_max_threads(),
+              threads = CPU_COUNT(&timing->cores) < most ? CPU_COUNT(&timing->cores) : most;
+    atomic_bool done = false;
+    double alone = 0, together = 0;
+    if (timing->options->one_core || timing->count < threads || threads < 2 || is_external(&timing->items[0])) return;
+    stay(&timing->cores, 0);
+    alone = quickest(timing, &timing->items[0], &(Error){0});
+#pragma omp parallel num_threads(threads)
+    {
+        const int thread = omp_get_thread_num();
+        StepLog log = {0};
+        stay(&timing->cores, thread);
+        if (thread == 0) {
+            together = quickest(timing, &timing->items[0], &(Error){0});
+            atomic_store(&done, true);
+        }
+        while (!atomic_load(&done) && run_part(timing, &timing->items[thread], 1, timing->meter, &log, &(Error){0})) {
+        }
+        free(log.items);
+        sched_setaffinity(0, sizeof timing->cores, &timing->cores);
+    }
+    if (together <= undisturbed * alone) timing->threads = threads;
+}
+
+static bool make_timed(const Timing *timing, const Contender *contender, Timed *timed, Error *error) {
+    const Scene *scene = &timing->options->launches[0];
+    const size_t parts = (size_t)timing->parts, repetitions = (size_t)timing->options->repetitions;
+    timed->stepper = stepper_create(&contender->method, scene, error);
+    timed->world = timed->stepper != NULL ? scene_world(scene, error) : NULL;
+    timed->start = timed->world != NULL ? scene_world(scene, error) : NULL;
+    if (timed->start == NULL) return false;
+    timed->shares = contender_forgets(contender) && timing->options->shared_steps > 0;
+    timed->logs = calloc(parts * repetitions, sizeof *timed->logs);
+    timed->due = malloc(parts * sizeof *timed->due);
+    if (timed->logs == NULL || timed->due == NULL) return error_memory(error, "timing");
+    memset(timed->due, true, parts * sizeof *timed->due);
+    return true;
+}
+
+static bool measure(Timing *timing, const Contender *const *contenders, const Progress *progress, Error *error) {
+    Meter clock = {meter_time, INT64_MAX};
+    timing->meter = &clock;
     for (int i = 0; i < 1000; i++) {
         const int64_t begun = meter_time(), passed = meter_time() - begun;
         if (passed < clock.overhead) clock.overhead = passed;
     }
-    if (!warm_up(timing, &clock, error) || !repeat_all(timing, false, &clock, progress, error) ||
-        !count_instructions(timing, error))
-        return false;
+    for (int i = 0; i < timing->count; i++)
+        if (!make_timed(timing, contenders[i], &timing->items[i], error)) return false;
+    if (!warm_up(timing, error)) return false;
+    choose_threads(timing);
+    if (!repeat_all(timing, progress, error) || !count_instructions(timing, error)) return false;
     summarise_all(timing);
-    if (!repeat_all(timing, true, &clock, progress, error)) return false;
+    if (!repeat_all(timing, NULL, error)) return false;
     summarise_all(timing);
     return true;
 }
@@ -303,27 +414,25 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
     Timing timing = {.options = options,
                      .snapshots = snapshots,
                      .count = count,
-                     .costs = {[PROTOCOL_CLOSED] = closed, [PROTOCOL_FROZEN] = frozen}};
-    /* The thread stays on its core, to avoid the cost of migration, where the system can do that. */
-    const int here = sched_getcpu();
-    cpu_set_t before, core;
-    CPU_ZERO(&core);
-    if (here >= 0) CPU_SET((size_t)here, &core);
-    const bool pinned =
-        here >= 0 && sched_getaffinity(0, sizeof before, &before) == 0 && sched_setaffinity(0, sizeof core, &core) == 0;
-    const bool ok = measure(&timing, contenders, progress, error);
-    if (pinned) sched_setaffinity(0, sizeof before, &before);
+                     .parts = options->launch_count + 2,
+                     .items = calloc((size_t)count, sizeof *timing.items),
+                     .threads = 1,
+                     .costs = {[PROTOCOL_CLOSED] = closed, [PROTOCOL_FROZEN] = frozen},
+                     .numbers = malloc((size_t)(options->repetitions + count) * sizeof *timing.numbers)};
+    sched_getaffinity(0, sizeof timing.cores, &timing.cores);
+    const bool ok = timing.items != NULL && timing.numbers != NULL ? measure(&timing, contenders, progress, error)
+                                                                   : error_memory(error, "timing");
     for (int i = 0; timing.items != NULL && i < count; i++) {
         const Timed *timed = &timing.items[i];
+        for (int k = 0; timed->logs != NULL && k < timing.parts * options->repetitions; k++) free(timed->logs[k].items);
         stepper_destroy(timed->stepper);
-        for (int p = 0; p < PROTOCOLS; p++) {
-            for (int r = 0; timed->logs[p] != NULL && r < options->repetitions; r++) free(timed->logs[p][r].items);
-            free(timed->logs[p]);
-        }
+        world_destroy(timed->world);
+        world_destroy(timed->start);
+        free(timed->logs);
+        free(timed->due);
     }
     free(timing.items);
     free(timing.numbers);
-    world_destroy(timing.world);
     return ok;
 }
 
@@ -333,6 +442,7 @@ bool timing_of_launch(const Contender *const *contenders, int count, const Scene
                                    .launch_count = 1,
                                    .repetitions = repetitions,
                                    .last_frame = last_frame,
+                                   .one_core = true,
                                    .no_instructions = true};
     StepCost frozen[TIMING_OF_LAUNCH][PHASES];
     assert(count <= TIMING_OF_LAUNCH);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cost of contenders, measured in turns on one core, with repetitions. The first steps of each, those of one
-   launch, do not count.
+/* The cost of contenders, measured in turns, with repetitions: on one core, or on several that do not disturb each
+   other, as is measured before. The first steps of each, those of one launch, do not count.
 
    A time varies if the distance of its quartiles, as a share of its median, is more than TIMES_VARY_FACTOR that of
    the middle one of the other contenders in the same protocol and phase, more than TIMES_VARY_LEAST, and more than a
-   clock's own error, TIMES_VARY_US. A contender with such a time is measured again, and has the times of the second
-   measurement only. */
+   clock's own error, TIMES_VARY_US. Its launches that vary so are measured again, and have the
+   times of the second measurement only; so are its frozen steps. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -33,7 +33,9 @@ typedef struct StepCost {
 typedef struct TimingOptions {
     const Scene *launches;         /* [launch_count] launched scenes, run in closed loop */
     int launch_count, repetitions; /* each repetition runs all launches */
-    int last_frame;                /* of each run */
+    int last_frame;                /* of each run, which ends with the phase after the impact */
+    int shared_steps;              /* of all launches: measured once (contender_forgets()) */
+    bool one_core;                 /* not on several */
     bool no_instructions;          /* do not count them: that takes a run more */
 } TimingOptions;
 

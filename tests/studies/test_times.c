@@ -155,6 +155,7 @@ static void measure(Measured *measured, const char *const *texts, int count, int
                                    .launch_count = 1,
                                    .repetitions = REPETITIONS,
                                    .last_frame = last_frame,
+                                   .one_core = true,
                                    .no_instructions = true};
     for (int i = 0; i < count; i++) {
         contenders[i] = &measured->contenders[i];
