@@ -3,6 +3,7 @@
 #include "base/settings.h"
 #include "made.h"
 
+#include "studies/contenders.h"
 #include "studies/rollout.h"
 #include "studies/statistics.h"
 
@@ -199,6 +200,38 @@ TEST(push_out_counts_for_methods_that_have_it) {
     scene.position_correction = false;
     assert_errors(&scene, make_still_stepper(&scene, false), 0, 1e-5);
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
+}
+
+/* Of every method that says so (contender_forgets()): the first steps of another launch lead to the same bits. */
+TEST(runs_that_share_their_first_steps_are_whole_runs) {
+    OWN(Scene) *scene = scene_named("families/gate");
+    scene->frames = 100; /* the bomb appears after step 60 */
+    Launch launch = launch_of(scene);
+    launch.x += 0.5f;
+    const Scene other = launch_scene(scene, &launch);
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const Contender contender = {.method = {.kind = kind}};
+        if (!contender_forgets(&contender) || method_lacks_network(&contender.method, scene)) continue;
+        OWN(Stepper) *stepper = stepper_by(scene, kind->description->name);
+        SharedSteps shared = {0};
+        OWN(Rollout) whole = {0};
+        OWN(Rollout) begun = {.shared = &shared};
+        StepScores scores[2][PHASES] = {0};
+        assert_ok(shared_steps_run(&shared, stepper, &other, 59, &few, &error), error);
+        assert_ok(rollout_run(&whole, stepper, scene, &few, scores[0], &error), error);
+        assert_ok(rollout_run(&begun, stepper, scene, &few, scores[1], &error), error);
+        assert_int_equal(begun.log.frames, scene->frames);
+        assert_memory_equal(begun.log.position, whole.log.position,
+                            (size_t)(scene->frames + 1) * (size_t)whole.log.bodies * sizeof(Vec2));
+        for (int phase = 0; phase < PHASES; phase++) {
+            assert_int_equal(scores[1][phase].count, scores[0][phase].count);
+            assert_memory_equal(scores[1][phase].error, scores[0][phase].error,
+                                (size_t)scores[0][phase].count * sizeof(double));
+        }
+        shared_steps_free(&shared);
+        free_scores(scores[0]);
+        free_scores(scores[1]);
+    }
 }
 
 RUN_TESTS(NULL, NULL)
