@@ -26,7 +26,6 @@ typedef struct Options {
     FigureSpec figure;
     bool transparent, outlines;
     const char *view_from; /* RUN.npz, or NULL */
-    const char *caption;   /* FILE.tex, or NULL */
 } Options;
 
 static OptionRead read_input, read_times, read_bodies, read_width;
@@ -54,9 +53,6 @@ static const Option option_table[] = {
      OPTION_DOUBLE(Options, figure.dpi, SKETCH_DPI_MIN, SKETCH_DPI_MAX)},
     {"--font-size", 0, "PT", "Font size in points (default: 8; 5 to 14)",
      OPTION_DOUBLE(Options, figure.points, FIGURE_POINTS_MIN, FIGURE_POINTS_MAX)},
-    {"--caption-text", 0, "FILE.tex",
-     "Also write a caption for LaTeX: scene, methods, times and version, as \\caption{...}",
-     OPTION_TEXT(Options, caption)},
     {"--transparent", 0, NULL, "Transparent background instead of white", OPTION_FLAG(Options, transparent)},
     {"--caption", 0, "TEXT",
      "Caption of a run, instead of its method's name (may be repeated: one per run, in their order; \"\" keeps the "
@@ -166,9 +162,6 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
         return false;
     if (options->outlines && format != SKETCH_SVG)
         return error_input(error, "--outlines", "is for SVG, not for %s", options->output);
-    if (options->caption != NULL && !file_name_ends_with(options->caption, ".tex"))
-        return error_input(error, "--caption-text", "the name of a caption must end in .tex (got '%s')",
-                           options->caption);
     if (figure->time_count > 0 && !kind->takes_times) return figure_refuse("--at", kind, error);
     if (figure->moments > 0 && !kind->takes_moments) return figure_refuse("--moments", kind, error);
     if (figure->scene != NULL && !kind->takes_scene) return figure_refuse("--scene", kind, error);
@@ -189,9 +182,7 @@ static bool figure_draw_and_write(const FigureKind *kind, const Options *options
     bool ok = figure_draw(kind, &sketch, &options->figure, error) && sketch_check_texts(&sketch, kind->name, error) &&
               sketch_check_pixels(sketch.width, sketch.height, options->figure.dpi, error) &&
               sketch_write(&sketch, options->output, &output, error);
-    if (ok && options->caption != NULL) ok = figure_write_caption(kind, &options->figure, options->caption, error);
     if (ok) printf("%s, %.1f x %.1f mm -> %s\n", kind->name, sketch.width, sketch.height, options->output);
-    if (ok && options->caption != NULL) printf("caption -> %s\n", options->caption);
     sketch_free(&sketch);
     return ok;
 }
@@ -233,9 +224,7 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
 }
 
 bool command_figure(int argc, char **argv, Error *error) {
-    FigureFacts facts = {0};
-    Options options = {
-        .figure = {.facts = &facts, .width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI}};
+    Options options = {.figure = {.width = FIGURE_PAGE_WIDTH, .points = FIGURE_POINTS, .dpi = SKETCH_DPI}};
     char help[HELP_SIZE];
     const char *names[KINDS_MAX + 1] = {NULL};
     write_help(help);

@@ -34,12 +34,6 @@ bool train_read(const TrainRequest *request, void *options, Error *error) {
     return true;
 }
 
-void train_set(TrainRequest *request, const char *option, const char *value) {
-    const int i = find_option(request->kind, option);
-    assert(i >= 0);
-    request->values[i] = value;
-}
-
 void train_describe(const TrainRequest *request, char *command, size_t size) {
     snprintf(command, size, "twinbox train");
     if (request->kind != train_kinds[0]) text_add(command, size, " --kind %s", request->kind->name);
@@ -277,30 +271,6 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
     return true;
 }
 
-/* Trains, with the scene of a kind that learns from one; a kind that keeps its state on disk has the name of it, and
-   the command that continues. */
-static bool train(TrainRequest *request, Error *error) {
-    const TrainKind *kind = request->kind;
-    char state[4096], command[TRAIN_COMMAND_SIZE];
-    if (kind->result != NULL) {
-        if (path_is_standard(request->output))
-            return error_input(error, "-o", "%s keeps its state beside the %s; give the %s a name", kind->name,
-                               kind->result, kind->result);
-        if (!file_path(state, sizeof state, error, "%s.part", request->output)) return false;
-        train_describe(request, command, kind->command_size);
-        request->state = state;
-        request->command = command;
-    }
-    Scene *scene = kind->reads_scene ? scene_read(request->input, error) : NULL;
-    request->scene = scene;
-    const bool ok =
-        (!kind->reads_scene || (scene != NULL && scene_check_strike(scene, error))) && kind->train(request, error);
-    scene_destroy(scene);
-    request->scene = NULL;
-    request->state = request->command = NULL;
-    return ok;
-}
-
 bool command_train(int argc, char **argv, Error *error) {
     Options options = {.kind = train_kinds[0]->name};
     HelpTexts texts = {.usage = ""};
@@ -309,8 +279,8 @@ bool command_train(int argc, char **argv, Error *error) {
         .options = options.rows,
         .input = {.value = texts.usage, .needed = "a dataset (or scene) is needed", OPTION_PATH(Options, input)},
         .inputs = {0, 1, "file"},
-        .help = "Train the network of a method. Ctrl-C and SIGTERM stop it: pair-net keeps its best network so far, "
-                "scene-net its latest, and the others a state, from which the same command continues.\v"
+        .help = "Train the network of a method. Ctrl-C and SIGTERM stop it, and keep what it has learned so far: of "
+                "pair-net the best network, of the others the latest.\v"
                 "Example: twinbox dataset single --bomb-x=-4:4:1 -o pairs.npz\n"
                 "         twinbox train pairs.npz -o net.npz --layers 10-10-2 --iterations 100\n"
                 "         twinbox train --kind scene-net stack -o scene-net.npz"};
@@ -321,5 +291,10 @@ bool command_train(int argc, char **argv, Error *error) {
     char command[TRAIN_COMMAND_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);
-    return train(&request, error);
+    Scene *scene = request.kind->reads_scene ? scene_read(request.input, error) : NULL;
+    request.scene = scene;
+    const bool ok = (!request.kind->reads_scene || (scene != NULL && scene_check_strike(scene, error))) &&
+                    request.kind->train(&request, error);
+    scene_destroy(scene);
+    return ok;
 }

@@ -93,7 +93,6 @@ typedef struct TrainRequest {
     const char *input, *output;
     const char *values[OPTIONS_MAX]; /* texts of the kind's options; NULL: neither given nor a standard; "": a flag */
     const struct Scene *scene;       /* of kinds that read one */
-    const char *state, *command;     /* of kinds with a state: its file, and the command, cut to what they keep of it */
 } TrainRequest;
 
 typedef struct TrainKind {
@@ -101,9 +100,7 @@ typedef struct TrainKind {
     const char *file_kind;              /* of the file that is written (npz_check_kind) */
     const Option *options;              /* in the order of a command; those not given have the value `standard` */
     bool (*train)(const TrainRequest *request, Error *error);
-    bool reads_scene;    /* input is a scene, which the request then has */
-    const char *result;  /* what the state on disk is kept beside, "network"; NULL: the kind keeps none */
-    size_t command_size; /* of the command in its state and result */
+    bool reads_scene; /* input is a scene, which the request then has */
 } TrainKind;
 
 #define TRAIN_KIND_DECLARED(name) extern const TrainKind train_##name;
@@ -115,9 +112,6 @@ extern const TrainKind *const train_kinds[];
 
 /* Reads the values into the Options of the kind. */
 bool train_read(const TrainRequest *request, void *options, Error *error);
-
-/* Sets the text of an option; NULL: as if it were not given. */
-void train_set(TrainRequest *request, const char *option, const char *value);
 
 /* Of a text for train_describe(). */
 enum { TRAIN_COMMAND_SIZE = 2048 };

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kinds of twinbox train that learn from launches of scenes: sain, hybrid, gns, subspace and scene-net. */
 #include "base/base.h"
-#include "base/file.h"
 #include "cli/installed.h"
 #include "cli/interrupt.h"
 #include "cli/larger_commands.h"
@@ -21,9 +20,12 @@
 #include "runs/launch_check.h"
 #include "scenes/scenes.h"
 
+#include <math.h>
 #include <string.h>
 
-enum { LIST_SIZE = 4096, STEPS_SAVED = 100 };
+enum { LIST_SIZE = 4096 };
+
+static const char *stopped_early(void) { return interrupt_requested() ? "stopped early; " : ""; }
 
 /* Reads the scene of the command line, if there is one, and those of a list, each with an impact; *count grows with
    them, also in a failure. */
@@ -71,12 +73,8 @@ static void sain_print_score(void *context, const SainScore *score) {
 
 static bool sain_run(const TrainRequest *request, Error *error) {
     Scene *scenes[SAIN_SCENES_MAX] = {NULL};
-    SainOptions given = {.training = {.scenes = scenes,
-                                      .batch = SAIN_PARTS * BLOCK_ROWS,
-                                      .saved = STEPS_SAVED,
-                                      .command = request->command,
-                                      .state_path = request->state,
-                                      .on_score = sain_print_score}};
+    SainOptions given = {
+        .training = {.scenes = scenes, .batch = SAIN_PARTS * BLOCK_ROWS, .on_score = sain_print_score}};
     SainTraining *training = &given.training;
     SainNetworks networks = {0};
     bool ok = train_read(request, &given, error) &&
@@ -86,12 +84,12 @@ static bool sain_run(const TrainRequest *request, Error *error) {
                "engine    round  problems  unconverged   bodies     loss      sain   engine  constant\n");
         ok = sain_training_run(training, &networks, progress_bar_begin("training"), error);
         progress_bar_end();
-        snprintf(networks.command, sizeof networks.command, "%s", request->command);
-        ok = ok && sain_networks_write(&networks, request->output, error) && file_remove(request->state, error);
+        train_describe(request, networks.command, sizeof networks.command);
+        ok = ok && sain_networks_write(&networks, request->output, error);
     }
     if (ok)
-        printf("%d networks of %d weights -> %s\n", (int)SAIN_FORMS, sain_weight_count(&networks.forms[0]),
-               request->output);
+        printf("%s%d networks of %d weights -> %s\n", stopped_early(), (int)SAIN_FORMS,
+               sain_weight_count(&networks.forms[0]), request->output);
     sain_networks_destroy(&networks);
     for (int i = 0; i < SAIN_SCENES_MAX; i++) scene_destroy(scenes[i]);
     return ok;
@@ -101,13 +99,10 @@ const TrainKind train_sain = {
     .name = "sain",
     .input = "SCENE",
     .summary = "the networks of sain, on launches of one or more scenes: with the engine, without it, and "
-               "with its output shuffled. Prints held-out errors after each round. An interrupted "
-               "training is resumed by the same command; its state is in NET.npz.part",
+               "with its output shuffled. Prints held-out errors after each round",
     .file_kind = "sain",
     .options = sain_options,
-    .train = sain_run,
-    .result = "network",
-    .command_size = SAIN_COMMAND_SIZE};
+    .train = sain_run};
 
 enum { MEBIBYTE = 1 << 20, REPORTS = 20 };
 
@@ -160,11 +155,8 @@ static void add_launch(void *context, const HybridLaunch *launch) {
 
 static bool hybrid_run(const TrainRequest *request, Error *error) {
     Report report = {0};
-    HybridOptions given = {.training = {.components = HYBRID_STANDARD_COMPONENTS,
-                                        .on_launch = add_launch,
-                                        .context = &report,
-                                        .command = request->command,
-                                        .state_path = request->state}};
+    HybridOptions given = {
+        .training = {.components = HYBRID_STANDARD_COMPONENTS, .on_launch = add_launch, .context = &report}};
     HybridTraining *training = &given.training;
     if (!train_read(request, &given, error)) return false;
     training->limit = (size_t)(given.limit * MEBIBYTE);
@@ -172,12 +164,11 @@ static bool hybrid_run(const TrainRequest *request, Error *error) {
     printf("launches   asked  answered   grown   added  entries       MiB  error of answers, m/s\n");
     HybridMemory *memory = hybrid_training_run(request->scene, training, progress_bar_begin("learning"), error);
     progress_bar_end();
-    bool ok = memory != NULL && hybrid_memory_write(memory, request->output, error);
-    if (ok && memory->launches == training->launches) ok = file_remove(request->state, error);
+    if (memory != NULL) train_describe(request, memory->command, sizeof memory->command);
+    const bool ok = memory != NULL && hybrid_memory_write(memory, request->output, error);
     if (ok)
-        printf("%s%d entries of %d sets of contacts, from %d launch%s -> %s\n",
-               interrupt_requested() ? "stopped early; " : "", memory->entry_count, memory->set_count, memory->launches,
-               plural_es(memory->launches), request->output);
+        printf("%s%d entries of %d sets of contacts, from %d launch%s -> %s\n", stopped_early(), memory->entry_count,
+               memory->set_count, memory->launches, plural_es(memory->launches), request->output);
     hybrid_memory_destroy(memory);
     return ok;
 }
@@ -186,14 +177,11 @@ const TrainKind train_hybrid = {
     .name = "hybrid",
     .input = "SCENE",
     .summary = "the memory of hybrid for a scene, launch after launch. Prints how many steps with an "
-               "impact it answered, and what it learned from the others. An interrupted training is "
-               "resumed by the same command; its state is in NET.npz.part",
+               "impact it answered, and what it learned from the others",
     .file_kind = "hybrid",
     .options = hybrid_options,
     .train = hybrid_run,
-    .reads_scene = true,
-    .result = "memory",
-    .command_size = HYBRID_TEXT_SIZE};
+    .reads_scene = true};
 
 typedef struct GnsOptions {
     GnsTraining training;
@@ -231,9 +219,7 @@ static void gns_print_score(void *context, const GnsScore *score) {
 
 static bool gns_run(const TrainRequest *request, Error *error) {
     Scene *scenes[GNS_MAX_SCENES] = {NULL};
-    GnsOptions given = {
-        .training = {
-            .scenes = scenes, .command = request->command, .state_path = request->state, .on_score = gns_print_score}};
+    GnsOptions given = {.training = {.scenes = scenes, .on_score = gns_print_score}};
     GnsTraining *training = &given.training;
     GnsNet net;
     if (!train_read(request, &given, error)) return false;
@@ -246,24 +232,22 @@ static bool gns_run(const TrainRequest *request, Error *error) {
     printf("mean squared error of accelerations, in units of their deviation\n  steps       loss   held out\n");
     bool ok = gns_training_run(training, &net, progress_bar_begin("training"), error);
     progress_bar_end();
-    snprintf(net.command, sizeof net.command, "%s", request->command);
-    ok = ok && gns_net_write(&net, request->output, error) && file_remove(request->state, error);
-    if (ok) printf("%d parameters -> %s\n", net.layout.parameters, request->output);
+    train_describe(request, net.command, sizeof net.command);
+    ok = ok && gns_net_write(&net, request->output, error);
+    if (ok) printf("%s%d parameters -> %s\n", stopped_early(), net.layout.parameters, request->output);
     gns_net_free(&net);
     return ok;
 }
 
-const TrainKind train_gns = {
-    .name = "gns",
-    .summary = "the graph network of gns, on steps of recorded launches. Prints its error during the "
-               "training. An interrupted training is resumed by the same command; its state is in NET.npz.part",
-    .file_kind = "gns",
-    .options = gns_options,
-    .train = gns_run,
-    .result = "network",
-    .command_size = GNS_COMMAND_SIZE};
+const TrainKind train_gns = {.name = "gns",
+                             .summary =
+                                 "the graph network of gns, on steps of recorded launches. Prints its error during the "
+                                 "training",
+                             .file_kind = "gns",
+                             .options = gns_options,
+                             .train = gns_run};
 
-enum { EPOCH_BATCHES = 20 }; /* a second or so: what an interruption may lose */
+enum { EPOCH_BATCHES = 20 };
 
 static const Option subspace_options[] = {
     {"--launches", 0, "N", "Launches to learn from", OPTION_INT(SubspaceTraining, launches, 1, LAUNCHES_MAX),
@@ -284,10 +268,7 @@ static void subspace_print_score(void *context, const SubspaceScore *score, doub
 }
 
 static bool subspace_run(const TrainRequest *request, Error *error) {
-    SubspaceTraining training = {.batches = EPOCH_BATCHES,
-                                 .command = request->command,
-                                 .state_path = request->state,
-                                 .on_score = subspace_print_score};
+    SubspaceTraining training = {.batches = EPOCH_BATCHES, .on_score = subspace_print_score};
     if (!train_read(request, &training, error)) return false;
     if (training.hidden % ROW_LANES != 0)
         return error_input(error, "--width", "must be a multiple of %d (got %d)", ROW_LANES, training.hidden);
@@ -296,9 +277,9 @@ static bool subspace_run(const TrainRequest *request, Error *error) {
            "components      loss  floor          linear term    with network\n");
     SubspaceNet *net = subspace_train(request->scene, &training, progress_bar_begin("training"), error);
     progress_bar_end();
-    const bool ok =
-        net != NULL && subspace_net_write(net, request->output, error) && file_remove(request->state, error);
-    if (ok) printf("%d bodies -> %s\n", net->shape.bodies, request->output);
+    if (net != NULL) train_describe(request, net->command, sizeof net->command);
+    const bool ok = net != NULL && subspace_net_write(net, request->output, error);
+    if (ok) printf("%s%d bodies -> %s\n", stopped_early(), net->shape.bodies, request->output);
     subspace_net_destroy(net);
     return ok;
 }
@@ -307,43 +288,29 @@ const TrainKind train_subspace = {.name = "subspace",
                                   .input = "SCENE",
                                   .summary =
                                       "the networks of subspace for a scene, with 8, 32 and 128 principal components. "
-                                      "Prints held-out errors of each. An interrupted training is resumed by the same "
-                                      "command; its state is in NET.npz.part",
+                                      "Prints held-out errors of each",
                                   .file_kind = SUBSPACE_KIND,
                                   .options = subspace_options,
                                   .train = subspace_run,
-                                  .reads_scene = true,
-                                  .result = "network",
-                                  .command_size = SUBSPACE_TEXT_SIZE};
-
-typedef struct SceneNetOptions {
-    SceneTraining training;
-    SceneNetVerdict verdict;
-    bool smallest;
-    double within; /* m/s; negative: not given */
-} SceneNetOptions;
+                                  .reads_scene = true};
 
 static OptionRead read_momentum;
 
 static const Option scene_net_options[] = {
     {"--launches", 0, "N", "Launches of each round; half of them rotated and spinning",
-     OPTION_INT(SceneNetOptions, training.launches, 10, 100000), .standard = "3000"},
+     OPTION_INT(SceneTraining, launches, 10, 100000), .standard = "3000"},
     {"--rounds", 0, "N", "Rounds; the first runs the launches without the network, the others with it",
-     OPTION_INT(SceneNetOptions, training.rounds, 1, 100), .standard = "3"},
+     OPTION_INT(SceneTraining, rounds, 1, 100), .standard = "3"},
     {"--iterations", 0, "N", "Epochs of the first round; the others have half as many",
-     OPTION_INT(SceneNetOptions, training.epochs, 1, 100000), .standard = "40"},
+     OPTION_INT(SceneTraining, epochs, 1, 100000), .standard = "40"},
     {"--width", 0, "N", "Width of both hidden layers, a multiple of 16",
-     OPTION_INT(SceneNetOptions, training.widths.hidden, ROW_LANES, SCENE_NET_WIDTH_MAX), .standard = "64"},
-    {"--sweeps", 0, "K", "Sweeps that follow the network",
-     OPTION_INT(SceneNetOptions, training.sweeps, 1, SCENE_NET_SWEEPS_MAX), .standard = "14"},
+     OPTION_INT(SceneTraining, widths.hidden, ROW_LANES, SCENE_NET_WIDTH_MAX), .standard = "64"},
+    {"--sweeps", 0, "K", "Sweeps that follow the network", OPTION_INT(SceneTraining, sweeps, 1, SCENE_NET_SWEEPS_MAX),
+     .standard = "14"},
     {"--momentum", 0, "on|off", "Whether the sweeps after the network have learned momentum factors",
-     OPTION_READ(read_momentum, SceneNetOptions, training.momentum), .standard = "on"},
-    {"--seed", 0, "N", "Seed of the initial weights and of the launches", OPTION_SEED(SceneNetOptions, training.seed),
+     OPTION_READ(read_momentum, SceneTraining, momentum), .standard = "on"},
+    {"--seed", 0, "N", "Seed of the initial weights and of the launches", OPTION_SEED(SceneTraining, seed),
      .standard = "1"},
-    {"--smallest", 0, NULL, "Train the smallest width whose held-out error is at most that of --within",
-     OPTION_FLAG(SceneNetOptions, smallest)},
-    {"--within", 0, "E", "Held-out error to reach, m/s; only with --smallest",
-     OPTION_DOUBLE(SceneNetOptions, within, 0, 1000)},
     {0}};
 
 static bool read_momentum(const Option *option, const char *text, void *value, Error *error) {
@@ -360,85 +327,25 @@ static void scene_net_print_score(void *context, const SceneNetScore *score) {
     fflush(stdout);
 }
 
-/* The stored command trains the width that was found. */
-static bool scene_net_store(SceneNet *network, const TrainRequest *request, int width, Error *error) {
-    TrainRequest found = *request;
-    char text[16];
-    snprintf(text, sizeof text, "%d", width);
-    train_set(&found, "--width", text);
-    train_set(&found, "--smallest", NULL);
-    train_set(&found, "--within", NULL);
-    train_describe(&found, network->command, sizeof network->command);
-    if (!scene_net_write(network, request->output, error)) return false;
-    printf("%s%d slots, %zu parameters -> %s\n", interrupt_requested() ? "stopped early; " : "", network->slot_count,
-           network->parameter_count, request->output);
-    return true;
-}
-
-static const char *than(double error, double rival) {
-    return error < rival ? "better than" : error > rival ? "worse than" : "as good as";
-}
-
-/* Of the last round; absent without held-out impacts. */
-static void print_verdict(const SceneNetVerdict *verdict) {
-    if (verdict->samples == 0) {
-        printf("verdict: none, as no held-out launch has an impact\n");
-        return;
-    }
-    printf("held out: the network and its sweeps %.4f m/s in %.3g us; momentum in that time, %d sweeps, %.4f; with 20 "
-           "sweeps %.4f\n",
-           verdict->network, verdict->microseconds, verdict->sweeps, verdict->at_equal_time, verdict->at_20);
-    printf("verdict: %s momentum at equal time; %s momentum with 20 sweeps\n",
-           than(verdict->network, verdict->at_equal_time), than(verdict->network, verdict->at_20));
-}
-
-static SceneNet *scene_net_train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
-    *score = (SceneNetScore){0};
-    training->context = score;
-    printf("%d wide; mean velocity error, m/s\nround  samples     train  held out  momentum 20\n",
-           training->widths.hidden);
-    SceneNet *network = scene_training_run(scene, training, progress_bar_begin("training"), error);
-    progress_bar_end();
-    if (network != NULL) printf("impacts left out, as the reference does not converge: %d\n", score->unconverged);
-    return network;
-}
-
-/* Tries one width after the other. NULL without an error: the sweeps alone are good enough. */
-static SceneNet *train_smallest(const Scene *scene, SceneTraining *training, double within, Error *error) {
-    static const int widths[] = {16, 32, 48, 64, 96, 128, 192, 256};
-    SceneNetScore score = {0};
-    for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
-        training->widths.hidden = widths[i];
-        SceneNet *network = scene_net_train(scene, training, &score, error);
-        if (network == NULL) return NULL;
-        const bool none = score.momentum <= within;
-        if (none) printf("no network is needed: momentum with 20 sweeps is within %g m/s\n", within);
-        if (!none && (score.held_out <= within || interrupt_requested())) return network;
-        scene_net_destroy(network);
-        if (none) return NULL;
-    }
-    error_input(error, "--within", "no network up to 256 wide comes within %g m/s; the last has %.4f", within,
-                score.held_out);
-    return NULL;
-}
-
 static bool scene_net_run(const TrainRequest *request, Error *error) {
-    SceneNetOptions given = {
-        .training = {.widths = {.state = 16, .present = 32, .warm = 16}, .on_score = scene_net_print_score},
-        .within = -1};
-    SceneTraining *training = &given.training;
-    SceneNetScore score;
-    if (!train_read(request, &given, error)) return false;
-    training->verdict = &given.verdict;
-    const int width = training->widths.hidden;
+    SceneNetScore score = {0};
+    SceneTraining training = {
+        .widths = {.state = 16, .present = 32, .warm = 16}, .on_score = scene_net_print_score, .context = &score};
+    if (!train_read(request, &training, error)) return false;
+    const int width = training.widths.hidden;
     if (width % ROW_LANES != 0) return error_input(error, "--width", "%d is not a multiple of %d", width, ROW_LANES);
-    if (given.smallest != (given.within >= 0))
-        return error_input(error, "--smallest", "goes with --within E, and that with it");
-    SceneNet *network = given.smallest ? train_smallest(request->scene, training, given.within, error)
-                                       : scene_net_train(request->scene, training, &score, error);
-    if (network == NULL) return error->kind == ERROR_NONE;
-    const bool ok = scene_net_store(network, request, training->widths.hidden, error);
-    if (ok) print_verdict(&given.verdict);
+    printf("mean velocity error, m/s\nround  samples     train  held out  momentum 20\n");
+    SceneNet *network = scene_training_run(request->scene, &training, progress_bar_begin("training"), error);
+    progress_bar_end();
+    if (network != NULL) train_describe(request, network->command, sizeof network->command);
+    const bool ok = network != NULL && scene_net_write(network, request->output, error);
+    if (ok) {
+        printf("impacts left out, as the reference does not converge: %d\n%s%d slots, %zu parameters -> %s\n",
+               score.unconverged, stopped_early(), network->slot_count, network->parameter_count, request->output);
+        printf("verdict: %s\n", isnan(score.held_out)             ? "none, as no held-out launch has an impact"
+                                : score.held_out < score.momentum ? "better than momentum with 20 sweeps"
+                                                                  : "no better than momentum with 20 sweeps");
+    }
     scene_net_destroy(network);
     return ok;
 }

@@ -22,12 +22,6 @@ enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60, FIGURE_BODI
 #define FIGURE_POINTS_MIN 5.0
 #define FIGURE_POINTS_MAX 14.0
 
-/* What was drawn, for the caption. */
-typedef struct FigureFacts {
-    int frame_count, frames[FIGURE_MOMENTS_MAX]; /* shown */
-    int shifted;                                 /* divergence: the number of bodies shifted for the band; 0: no band */
-} FigureFacts;
-
 /* What to draw. Zero it, then fill it in; all pointers belong to the caller. */
 typedef struct FigureSpec {
     double width, points, dpi; /* mm; font size; resolution of pictures */
@@ -47,7 +41,6 @@ typedef struct FigureSpec {
     int body_count;                   /* 0: the kind chooses */
     int bodies[FIGURE_BODIES_MAX];    /* strip: those that must be in view */
     LookLabels labels;                /* strip: in boxes that are large enough */
-    FigureFacts *facts;               /* filled in by drawing; NULL: not wanted */
     const Progress *progress;         /* of simulations run for the figure, or NULL */
 } FigureSpec;
 
@@ -60,8 +53,6 @@ typedef struct FigureKind {
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */
     bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);
-    /* Writes sentences for LaTeX (figures/figures_internal.h) from the facts of a figure that was drawn. */
-    void (*caption)(FILE *out, const FigureSpec *spec);
 } FigureKind;
 
 /* All kinds; ends with NULL. */
@@ -69,10 +60,6 @@ const FigureKind *const *figure_kinds(void);
 
 /* Draws a kind with the title of its files: "strip of stack: engine, momentum:k=20". As FigureKind.draw. */
 bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error);
-
-/* Writes \caption{...} for LaTeX to a file: what the figure shows, of which scene, by which methods, at which times,
-   and the version. spec->facts are those of the figure, which was drawn. */
-bool figure_write_caption(const FigureKind *kind, const FigureSpec *spec, const char *path, Error *error);
 
 /* NULL with error set, which lists the kinds, if there is no such kind. */
 const FigureKind *figure_kind(const char *name, Error *error);

@@ -335,19 +335,6 @@ static bool annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error)
     return done;
 }
 
-static void annotated_caption(FILE *out, const FigureSpec *spec) {
-    fputs("Contacts of the ", out);
-    caption_scene(out, spec);
-    caption_times(out, spec);
-    fputs(": contact points, normals and impulses of the next step. ", out);
-    fputs(spec->run_count > 1 ? "From left to right: " : "Method: ", out);
-    caption_runs(out, spec, 0);
-    fputs(".", out);
-    for (int i = 0, said = 0; i < spec->run_count && !said; i++)
-        if (spec->runs[i]->no_impulses)
-            said = fputs(" Found again: contacts between the poses, of unknown impulses.", out) >= 0;
-}
-
 const FigureKind figure_annotated = {
     .name = "annotated",
     .summary = "one moment with contacts, normals and impulses",
@@ -358,5 +345,4 @@ const FigureKind figure_annotated = {
     .takes_view = true,
     .needs_contacts = true,
     .draw = annotated_draw,
-    .caption = annotated_caption,
 };

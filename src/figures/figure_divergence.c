@@ -211,29 +211,10 @@ static bool divergence_draw(Sketch *sketch, const FigureSpec *spec, Error *error
         done =
             error_input(error, spec->paths[1], "never diverges from %s: there is no distance to draw", spec->paths[0]);
     done = done && draw_plot(&d, sketch, range, error);
-    if (spec->facts != NULL) spec->facts->shifted = d.shifted;
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) free(d.distance[i]);
     free(d.low);
     free(d.high);
     return done;
-}
-
-static void divergence_caption(FILE *out, const FigureSpec *spec) {
-    const Trajectory *first = spec->runs[0];
-    fputs("Runs of the ", out);
-    caption_scene(out, spec);
-    fputs(" by ", out);
-    caption_runs(out, spec, 1);
-    fputs(": largest distance of a body from its position in the run by ", out);
-    caption_run(out, spec, first);
-    fputs(", over time.", out);
-    if (spec->facts->shifted > 0)
-        fprintf(out,
-                " The band shows further runs by the first method, each with one of %d bodies shifted by 1~$\\mu$m.",
-                spec->facts->shifted);
-    if (trajectory_impact(first) >= 0)
-        fprintf(out, " The dashed vertical line marks the impact of the bomb at %.2f~s.",
-                trajectory_impact(first) * (double)first->dt);
 }
 
 const FigureKind figure_divergence = {
@@ -244,5 +225,4 @@ const FigureKind figure_divergence = {
     .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,
     .draw = divergence_draw,
-    .caption = divergence_caption,
 };

@@ -171,15 +171,6 @@ static bool strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
-static void strobe_caption(FILE *out, const FigureSpec *spec) {
-    fputs("One run of the ", out);
-    caption_scene(out, spec);
-    caption_times(out, spec);
-    fputs(" in one picture; earlier moments are paler. Method: ", out);
-    caption_run(out, spec, spec->runs[0]);
-    fputs(".", out);
-}
-
 const FigureKind figure_strobe = {
     .name = "strobe",
     .summary = "many moments of a run in one picture, fading",
@@ -190,7 +181,6 @@ const FigureKind figure_strobe = {
     .takes_view = true,
     .takes_moments = true,
     .draw = strobe_draw,
-    .caption = strobe_caption,
 };
 
 /* Moments of runs: a row per run, a column per moment, all with one camera. */
@@ -409,15 +399,6 @@ static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     return done;
 }
 
-static void strip_caption(FILE *out, const FigureSpec *spec) {
-    fputs("The ", out);
-    caption_scene(out, spec);
-    caption_times(out, spec);
-    fputs(spec->run_count > 1 ? ", a column each. Rows from top to bottom: " : ", by ", out);
-    caption_runs(out, spec, 0);
-    fputs(".", out);
-}
-
 const FigureKind figure_strip = {
     .name = "strip",
     .summary = "moments of runs: a row per run, a column per moment",
@@ -431,5 +412,4 @@ const FigureKind figure_strip = {
     .takes_bodies = true,
     .takes_labels = true,
     .draw = strip_draw,
-    .caption = strip_caption,
 };

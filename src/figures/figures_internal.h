@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the kinds of figures share: moments of runs, frames rendered into cells, texts, captions.
+/* What the kinds of figures share: moments of runs, frames rendered into cells, texts.
 
      WorldWindow window = run_window(spec, frames, count);
      run_cells_begin(&cells, &window, width, height, spec->dpi, error);
@@ -111,18 +111,3 @@ void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text
 /* The scale of cells as the next item, a bar of a round length of at most a quarter of a cell; without a sketch, it
    only takes its place. */
 void run_cells_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
-
-/* The caption of a figure for LaTeX: \caption{...} with scene, methods, times and version. */
-
-/* What kinds write in their captions. A run's method, what that is, and the sweeps that the scene sets:
-   "\texttt{engine} (sequential impulses, \texttt{k=10})", behind the run's caption if it has one. */
-void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run);
-
-/* All runs of the spec from `first` on. */
-void caption_runs(FILE *out, const FigureSpec *spec, int first);
-
-/* "scene \texttt{stack}" */
-void caption_scene(FILE *out, const FigureSpec *spec);
-
-/* " at 0.5, 0.6 and 0.8~s"; many moments by their number, the first and the last. */
-void caption_times(FILE *out, const FigureSpec *spec);

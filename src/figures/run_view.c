@@ -46,10 +46,6 @@ bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int
         if (!check_time(spec, time, after, error)) return false;
         frames[i] = (int)lrint(time / dt);
     }
-    if (spec->facts != NULL) {
-        spec->facts->frame_count = *count;
-        memcpy(spec->facts->frames, frames, (size_t)*count * sizeof *frames);
-    }
     return true;
 }
 

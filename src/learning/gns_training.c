@@ -17,7 +17,7 @@
 #include <string.h>
 
 enum {
-    EPOCH = 250,           /* gradient steps between two states on disk */
+    EPOCH = 250,           /* gradient steps between two reports */
     SCALE_EXAMPLES = 2000, /* that set the units */
     HELD_OUT_BATCHES = 64,
     SCORES = 10
@@ -52,7 +52,9 @@ typedef struct Trainer {
     double *losses;    /* [batch] */
     float *transposed; /* [parameters] */
     float *gradients;  /* [batch, parameters] */
-    Fit fit;
+    Adam adam;
+    ProgressStage stage;
+    Progress progress; /* of the stage */
 } Trainer;
 
 /* The loss of the example in the worker, whose pass has run: the mean over particles that count of the squared error,
@@ -149,28 +151,15 @@ static bool find_scales(const GnsExamples *examples, float radius, GnsScales *sc
 }
 
 static void use_weights(Trainer *trainer) {
-    const Adam *adam = &trainer->fit.adam;
+    const Adam *adam = &trainer->adam;
     for (int64_t i = 0; i < adam->count; i++) trainer->net->parameters[i] = (float)adam->weights[i];
 }
 
-static bool take_step(void *context, Adam *adam, double *loss, Error *error) {
-    Trainer *trainer = context;
+/* After each tenth of the steps; loss: the sum over the last `steps`. */
+static bool score_some(Trainer *trainer, double loss, int steps, Error *error) {
     const GnsTraining *training = trainer->training;
-    double batch_loss = 0;
-    if (!run_batch(trainer, &trainer->examples, (uint64_t)adam->steps, true, &batch_loss, error)) return false;
-    *loss += batch_loss;
-    slopes_limit(trainer->slopes, adam->count, slope_max);
-    adam_step(adam, trainer->slopes, training->rate * (double)(training->steps - adam->steps) / training->steps);
-    use_weights(trainer);
-    return true;
-}
-
-/* After each tenth of the steps. */
-static bool score_some(void *context, double loss, int64_t steps, Error *error) {
-    Trainer *trainer = context;
-    const GnsTraining *training = trainer->training;
-    const int64_t now = trainer->fit.adam.steps, all = training->steps;
-    GnsScore score = {.steps = (int)now, .loss = loss / (double)steps};
+    const int64_t now = trainer->adam.steps, all = training->steps;
+    GnsScore score = {.steps = (int)now, .loss = loss / steps};
     if (training->on_score == NULL || now * SCORES / all == (now - steps) * SCORES / all) return true;
     for (int i = 0; i < HELD_OUT_BATCHES; i++) {
         double held_out = 0;
@@ -178,6 +167,25 @@ static bool score_some(void *context, double loss, int64_t steps, Error *error) 
         score.held_out += held_out / HELD_OUT_BATCHES;
     }
     training->on_score(training->context, &score);
+    return true;
+}
+
+/* The rate falls to 0 in equal steps. */
+static bool take_steps(Trainer *trainer, Error *error) {
+    Adam *adam = &trainer->adam;
+    const int all = trainer->training->steps;
+    for (int done = 0; done < all && progress_report(&trainer->progress, done, all);) {
+        const int begun = done, end = all - done < EPOCH ? all : done + EPOCH;
+        double sum = 0, loss = 0;
+        for (; done < end; done++) {
+            if (!run_batch(trainer, &trainer->examples, (uint64_t)done, true, &loss, error)) return false;
+            sum += loss;
+            slopes_limit(trainer->slopes, adam->count, slope_max);
+            adam_step(adam, trainer->slopes, trainer->training->rate * (double)(all - done) / all);
+            use_weights(trainer);
+        }
+        if (!score_some(trainer, sum, end - begun, error)) return false;
+    }
     return true;
 }
 
@@ -198,14 +206,11 @@ static bool make_net(Trainer *trainer, Error *error) {
     return true;
 }
 
-static bool begin_fit(Trainer *trainer, Error *error) {
+static bool draw_weights(Trainer *trainer, Error *error) {
     const GnsLayout *layout = &trainer->net->layout;
     uint64_t random = trainer->training->seed;
-    double *weights;
-    bool found;
-    if (!fit_begin(&trainer->fit, layout->parameters, &found, error)) return false;
-    if (found) return true;
-    weights = trainer->fit.adam.weights;
+    if (!adam_create(&trainer->adam, layout->parameters, error)) return false;
+    double *weights = trainer->adam.weights;
     first_weights(weights, &layout->nodes, &random);
     first_weights(weights, &layout->edges, &random);
     for (int m = 0; m < layout->rounds; m++) {
@@ -213,7 +218,7 @@ static bool begin_fit(Trainer *trainer, Error *error) {
         first_weights(weights, &layout->node_rounds[m], &random);
     }
     first_weights(weights, &layout->decoder, &random);
-    return fit_write(&trainer->fit, error);
+    return true;
 }
 
 static bool make_space(Trainer *trainer, Error *error) {
@@ -232,25 +237,24 @@ static bool make_space(Trainer *trainer, Error *error) {
 /* *taken: how many scenes the examples have. */
 static bool run(Trainer *trainer, int *taken, Error *error) {
     const GnsTraining *training = trainer->training;
-    const FitSteps steps = {training->steps, EPOCH, take_step, score_some, trainer};
     Method method;
-    double loss;
     trainer->examples.noise = training->noise;
     trainer->examples.seed = training->seed << 32;
-    if (!make_net(trainer, error) || !begin_fit(trainer, error) || !method_parse(&method, teacher, error)) return false;
+    if (!make_net(trainer, error) || !draw_weights(trainer, error) || !method_parse(&method, teacher, error))
+        return false;
     while (*taken < training->scene_count) {
         Scene *scene = training->scenes[(*taken)++];
-        progress_next_stage(&trainer->fit.share, record_share / training->scene_count);
-        if (!gns_examples_add(&trainer->examples, scene, &method, training->launches, &trainer->fit.progress, error))
+        progress_next_stage(&trainer->stage, record_share / training->scene_count);
+        if (!gns_examples_add(&trainer->examples, scene, &method, training->launches, &trainer->progress, error))
             return false;
     }
     trainer->held_out = trainer->examples;
     trainer->held_out.seed = ~trainer->examples.seed;
-    progress_next_stage(&trainer->fit.share, 1 - record_share);
+    progress_next_stage(&trainer->stage, 1 - record_share);
     if (!find_scales(&trainer->examples, training->radius, &trainer->net->scales, error) || !make_space(trainer, error))
         return false;
     use_weights(trainer);
-    return fit_run(&trainer->fit, 0, trainer->fit.adam.count, &steps, &loss, error);
+    return take_steps(trainer, error);
 }
 
 bool gns_training_run(const GnsTraining *training, GnsNet *net, const Progress *progress, Error *error) {
@@ -261,7 +265,8 @@ bool gns_training_run(const GnsTraining *training, GnsNet *net, const Progress *
     if (ok) {
         trainer->training = training;
         trainer->net = net;
-        fit_init(&trainer->fit, training->command, training->state_path, progress);
+        trainer->stage = (ProgressStage){.whole = progress};
+        trainer->progress = (Progress){progress_stage, &trainer->stage};
         ok = run(trainer, &taken, error);
         gns_examples_free(&trainer->examples);
         for (int i = 0; trainer->workers != NULL && i < trainer->threads; i++) {
@@ -272,7 +277,7 @@ bool gns_training_run(const GnsTraining *training, GnsNet *net, const Progress *
         }
         free(trainer->workers);
         free(trainer->slopes);
-        fit_free(&trainer->fit);
+        adam_free(&trainer->adam);
         free(trainer);
     }
     for (; taken < training->scene_count; taken++) scene_destroy(training->scenes[taken]);

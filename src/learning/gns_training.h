@@ -28,14 +28,11 @@ typedef struct GnsTraining {
     uint64_t seed;
     Scene *const *scenes; /* [scene_count] the examples take them */
     int scene_count;
-    const char *command;    /* names the training: only the same command resumes it */
-    const char *state_path; /* where the state is stored, and read from if it exists. The caller removes it once it has
-                               stored the network */
     void (*on_score)(void *context, const GnsScore *score); /* after each tenth of the steps; may be NULL */
     void *context;
 } GnsTraining;
 
-/* Makes the net, which the caller frees. False with error set if the state cannot be written or read, memory is short
-   or a run fails. ERROR_INTERRUPTED if progress requests a stop: the state stays. The same bits for any number of
-   threads, and however often it was interrupted. */
+/* Makes the net, which the caller frees. False with error set if memory is short or a run fails. If progress requests a
+   stop, the net is that of the steps so far; ERROR_INTERRUPTED while launches are recorded. The same bits for any number
+   of threads. */
 bool gns_training_run(const GnsTraining *training, GnsNet *net, const Progress *progress, Error *error);

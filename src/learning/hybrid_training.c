@@ -9,7 +9,6 @@
 #include "learning/hybrid_training.h"
 
 #include "base/base.h"
-#include "base/file.h"
 #include "base/machine.h"
 #include "base/random.h"
 #include "engine/engine.h"
@@ -27,7 +26,6 @@
 #include <string.h>
 
 enum {
-    STORE_EVERY = 50,  /* launches */
     KEY_LAUNCHES = 40, /* the first, whose keys find the directions */
     CHECK_EVERY = 10
 };
@@ -271,7 +269,6 @@ static bool fit_keys(Trainer *trainer, Error *error) {
     memory->gate = hybrid_gate;
     memory->tolerance = training->tolerance;
     snprintf(memory->scene, sizeof memory->scene, "%s", trainer->scene->name);
-    snprintf(memory->command, sizeof memory->command, "%s", training->command);
     const size_t width = (size_t)memory->numbers, count = (size_t)trainer->asked_count;
     float *others = malloc(count * width * sizeof *others);
     double *mean = malloc((2 + width) * width * sizeof *mean), *values = mean + width, *vectors = values + width;
@@ -377,22 +374,6 @@ static bool do_launch(Trainer *trainer, int i, Error *error) {
     return true;
 }
 
-/* The memory of a state of the same command, or nothing. */
-static bool resume(Trainer *trainer, Error *error) {
-    const HybridTraining *training = trainer->training;
-    bool there;
-    if (training->state_path == NULL) return true;
-    if (!file_find(training->state_path, &there, error)) return false;
-    if (!there) return true;
-    HybridMemory *memory = hybrid_memory_read(training->state_path, error);
-    if (memory == NULL) return false;
-    if (strcmp(memory->command, training->command) == 0 && memory->launches <= training->launches)
-        trainer->memory = memory;
-    else
-        hybrid_memory_destroy(memory);
-    return true;
-}
-
 static bool check_launches(const Trainer *trainer, Error *error) {
     const int count = trainer->training->launches;
     Launch *launches = malloc((size_t)count * sizeof *launches);
@@ -404,21 +385,13 @@ static bool check_launches(const Trainer *trainer, Error *error) {
 }
 
 static bool train(Trainer *trainer, const Progress *progress, Error *error) {
-    const HybridTraining *training = trainer->training;
-    const int launches = training->launches;
-    if (!check_launches(trainer, error) || !resume(trainer, error) ||
-        !hybrid_make(&trainer->interior, NULL, NULL, error))
-        return false;
+    const int launches = trainer->training->launches;
+    if (!check_launches(trainer, error) || !hybrid_make(&trainer->interior, NULL, NULL, error)) return false;
     trainer->past = launches_past(trainer->scene, &trainer->interior, error);
     if (trainer->past == NULL) return false;
-    for (int i = trainer->memory != NULL ? trainer->memory->launches : 0; i < launches; i++) {
+    for (int i = 0; i < launches; i++) {
         if (!do_launch(trainer, i, error)) return false;
-        const bool goes_on = progress_report(progress, i + 1, launches);
-        const HybridMemory *memory = trainer->memory;
-        if ((!goes_on || (i + 1) % STORE_EVERY == 0) && training->state_path != NULL && memory != NULL &&
-            memory->entry_count > 0 && !hybrid_memory_write(memory, training->state_path, error))
-            return false;
-        if (!goes_on) break;
+        if (!progress_report(progress, i + 1, launches)) break;
     }
     return trainer->memory != NULL || error_interrupted(error, "hybrid", "stopped before anything was learned");
 }

@@ -34,15 +34,12 @@ typedef struct HybridTraining {
     float tolerance; /* m/s */
     size_t limit;    /* bytes */
     uint64_t seed;
-    const char *command;    /* stored */
-    const char *state_path; /* of an interrupted training; NULL: none is kept */
     /* Called after each launch; may be NULL. */
     void (*on_launch)(void *context, const HybridLaunch *launch);
     void *context;
 } HybridTraining;
 
-/* NULL with error set: a scene without a bomb, launches that touch nothing, memory. If progress stops it, the state is
-   stored and the memory so far returned; ERROR_INTERRUPTED if it has none yet. The same bits for any number of
-   threads. */
+/* NULL with error set: a scene without a bomb, launches that touch nothing, memory. If progress stops it, the memory
+   so far is returned; ERROR_INTERRUPTED if it has none yet. The same bits for any number of threads. */
 HybridMemory *hybrid_training_run(const Scene *scene, const HybridTraining *training, const Progress *progress,
                                   Error *error);

@@ -20,7 +20,7 @@ static bool adam_minimize(Trainer *trainer, double *parameters, Error *error) {
     const size_t count = (size_t)trainer->parameters;
     double *block = calloc(3 * count, sizeof *block), *gradient = block;
     if (block == NULL) return error_memory(error, "training");
-    Adam adam = adam_over(parameters, block + count, block + 2 * count, trainer->parameters, 0, ADAM_SQUARE_DECAY);
+    Adam adam = adam_over(parameters, block + count, block + 2 * count, trainer->parameters);
     bool ok = true;
     while (ok && !trainer->finished) {
         const double loss = loss_gradient(trainer->loss, trainer->train, trainer->laws, parameters, gradient);

@@ -118,26 +118,21 @@ bool sain_samples_add(SainSamples *samples, const RecordedSteps *steps, bool imp
     return ok;
 }
 
-/* The weights of the state: of each form, those in training, then those that drove each round but the first. */
-enum { SETS = 1 + SAIN_ROUNDS_MAX };
+enum { REPORT_EVERY = 100 }; /* steps */
 
 typedef struct Trainer {
     const SainTraining *training;
     SainNetworks *networks;
-    int weights;                   /* of a form */
-    Fit fit;                       /* stage: form * rounds + round */
+    Adam adam;                     /* of the form in training */
     RecordedSteps first, held_out; /* of the first round */
     SainSamples samples, held_out_samples;
     SainFit batches;
+    ProgressStage stage;
+    Progress progress; /* of the stage */
 } Trainer;
 
-static double *weights_of(const Trainer *trainer, int form, int set) {
-    return trainer->fit.adam.weights + (form * SETS + set) * trainer->weights;
-}
-
-/* Adds the samples of a round. Ranges and normalisation follow from the samples; the weights of the network that runs
-   the launches of a later round are in the state. */
-static bool record_round(Trainer *trainer, int form, int round, Error *error) {
+/* Adds the samples of a round; ranges, and in the first round the normalisation, follow from the samples. */
+static bool record_round(Trainer *trainer, SainForm form, int round, Error *error) {
     const SainTraining *training = trainer->training;
     SainNetwork *network = &trainer->networks->forms[form];
     RecordedSteps steps = {0};
@@ -145,16 +140,14 @@ static bool record_round(Trainer *trainer, int form, int round, Error *error) {
     if (round == 0) {
         sain_samples_free(&trainer->samples);
         sain_samples_free(&trainer->held_out_samples);
-        trainer->samples.form = trainer->held_out_samples.form = (SainForm)form;
+        trainer->samples.form = trainer->held_out_samples.form = form;
         ok = sain_samples_add(&trainer->held_out_samples, &trainer->held_out, true, error) &&
              sain_samples_add(&trainer->samples, &trainer->first, false, error);
         if (ok) sain_normalise(network, &trainer->samples);
     } else {
-        sain_set_weights(network, weights_of(trainer, form, round));
         const SainLaunches launches = {
-            training->scenes, training->scene_count, training->launches, training->rounds, round, false,
-            network,          (SainForm)form};
-        ok = sain_launches_record(&launches, &steps, &trainer->fit.progress, error) &&
+            training->scenes, training->scene_count, training->launches, training->rounds, round, false, network, form};
+        ok = sain_launches_record(&launches, &steps, &trainer->progress, error) &&
              sain_samples_add(&trainer->samples, &steps, false, error);
     }
     recorded_steps_free(&steps);
@@ -162,67 +155,47 @@ static bool record_round(Trainer *trainer, int form, int round, Error *error) {
     return ok;
 }
 
-/* The rate falls from the first to 0 in equal steps; each round begins with half that of the round before. */
-static bool take_step(void *context, Adam *adam, double *loss, Error *error) {
-    Trainer *trainer = context;
-    const SainTraining *training = trainer->training;
-    const uint64_t seed = training->seed + (uint64_t)(trainer->fit.stage + 1) * 1000003;
-    const double rate =
-        first_rate / (1 << trainer->fit.stage % training->rounds) * (1 - (double)adam->steps / training->steps);
-    double batch_loss;
-    if (!sain_fit_step(&trainer->batches, adam, seed, adam->steps, rate, &batch_loss, error)) return false;
-    *loss += batch_loss;
-    return true;
-}
-
-/* Fits the samples so far, and scores the result. */
-static bool fit_stage_of(Trainer *trainer, int form, int round, Error *error) {
+/* Fits the samples so far, and scores the result. The rate falls from the first to 0 in equal steps; each round begins
+   with half that of the round before, and without moments, as its loss is another. */
+static bool fit_round(Trainer *trainer, SainForm form, int round, Error *error) {
     const SainTraining *training = trainer->training;
     SainNetwork *network = &trainer->networks->forms[form];
-    const FitSteps steps = {training->steps, training->saved, take_step, NULL, trainer};
-    double loss, *weights = weights_of(trainer, form, 0);
+    Adam *adam = &trainer->adam;
+    const uint64_t seed = training->seed + (uint64_t)((int)form * training->rounds + round + 1) * 1000003;
+    double loss, sum = 0;
+    int in_sum = 0;
     if (trainer->samples.count == 0) return error_input(error, "sain", "no box is touched: more launches needed");
-    SainScore score = {.form = (SainForm)form,
+    SainScore score = {.form = form,
                        .round = round,
                        .problems = trainer->samples.problems,
                        .bodies = trainer->samples.count,
                        .unconverged = trainer->samples.unconverged + trainer->held_out_samples.unconverged};
-    bool ok = sain_fit_begin(&trainer->batches, network, &trainer->samples, training->batch, error) &&
-              fit_run(&trainer->fit, weights - trainer->fit.adam.weights, trainer->weights, &steps, &loss, error);
-    if (ok && training->on_score != NULL) {
-        ok = sain_fit_errors(&trainer->batches, weights, &trainer->held_out_samples, &score.held_out, error);
-        score.loss = loss / training->saved;
+    bool ok = sain_fit_begin(&trainer->batches, network, &trainer->samples, training->batch, error);
+    adam_restart(adam);
+    for (int done = 0, all = training->steps; ok && done < all; done++) {
+        if (done % REPORT_EVERY == 0) {
+            if (!progress_report(&trainer->progress, done, all)) break;
+            sum = in_sum = 0;
+        }
+        const double rate = first_rate / (1 << round) * (1 - (double)done / all);
+        ok = sain_fit_step(&trainer->batches, adam, seed, done, rate, &loss, error);
+        sum += loss;
+        in_sum++;
+    }
+    if (ok && !trainer->stage.stopped && training->on_score != NULL) {
+        ok = sain_fit_errors(&trainer->batches, adam->weights, &trainer->held_out_samples, &score.held_out, error);
+        score.loss = sum / in_sum;
         if (ok) training->on_score(training->context, &score);
     }
     sain_fit_free(&trainer->batches);
-    sain_set_weights(network, weights);
+    sain_set_weights(network, adam->weights);
     return ok;
-}
-
-/* What runs the launches of a later round is what was trained before it. */
-static bool begin_stage(Trainer *trainer, int stage, Error *error) {
-    const int form = stage / trainer->training->rounds, round = stage % trainer->training->rounds;
-    double *weights = weights_of(trainer, form, 0);
-    fit_stage(&trainer->fit, stage);
-    if (round > 0)
-        memcpy(weights_of(trainer, form, round), weights, (size_t)trainer->weights * sizeof *weights);
-    else
-        sain_first_weights(&trainer->networks->forms[form], trainer->training->seed, weights);
-    return fit_write(&trainer->fit, error);
 }
 
 static bool begin(Trainer *trainer, Error *error) {
     const SainTraining *training = trainer->training;
-    Fit *fit = &trainer->fit;
-    bool found;
     for (int f = 0; f < SAIN_FORMS; f++)
         if (!sain_network_create(&trainer->networks->forms[f], error)) return false;
-    trainer->weights = sain_weight_count(&trainer->networks->forms[0]);
-    if (!fit_begin(fit, (int64_t)SAIN_FORMS * SETS * trainer->weights, &found, error)) return false;
-    if (fit->stage >= SAIN_FORMS * training->rounds || fit->adam.steps > training->steps)
-        return error_input(error, fit->path, "stage %d, step %lld is not one of this training", (int)fit->stage,
-                           (long long)fit->adam.steps);
-    progress_next_stage(&fit->share, 0.05);
     const SainLaunches first = {.scenes = training->scenes,
                                 .scene_count = training->scene_count,
                                 .launches = training->launches,
@@ -232,35 +205,39 @@ static bool begin(Trainer *trainer, Error *error) {
                                  .launches = training->launches / 4 + 1,
                                  .rounds = 1,
                                  .held_out = true};
-    return sain_launches_record(&first, &trainer->first, &fit->progress, error) &&
-           sain_launches_record(&others, &trainer->held_out, &fit->progress, error) &&
-           (found || begin_stage(trainer, 0, error)); /* a refused launch leaves no state */
+    progress_next_stage(&trainer->stage, 0.05);
+    return adam_create(&trainer->adam, sain_weight_count(&trainer->networks->forms[0]), error) &&
+           sain_launches_record(&first, &trainer->first, &trainer->progress, error) &&
+           sain_launches_record(&others, &trainer->held_out, &trainer->progress, error);
 }
 
 static bool run(Trainer *trainer, Error *error) {
     if (!begin(trainer, error)) return false;
-    const int rounds = trainer->training->rounds, stages = SAIN_FORMS * rounds, begun = trainer->fit.stage;
-    const double share = 0.95 / (stages - begun);
-    for (int stage = 0; stage < stages; stage++) {
-        const int form = stage / rounds, round = stage % rounds;
-        /* What was trained before this run follows from samples and weights. */
-        if (stage >= begun) progress_next_stage(&trainer->fit.share, 0.2 * share);
-        if (stage > begun && !begin_stage(trainer, stage, error)) return false;
-        if (!record_round(trainer, form, round, error)) return false;
-        sain_set_weights(&trainer->networks->forms[form], weights_of(trainer, form, 0));
-        if (stage < begun) continue;
-        progress_next_stage(&trainer->fit.share, 0.8 * share);
-        if (!fit_stage_of(trainer, form, round, error)) return false;
+    const int rounds = trainer->training->rounds;
+    const double share = 0.95 / (SAIN_FORMS * rounds);
+    for (int form = 0; form < SAIN_FORMS; form++) {
+        sain_first_weights(&trainer->networks->forms[form], trainer->training->seed, trainer->adam.weights);
+        for (int round = 0; round < rounds; round++) {
+            progress_next_stage(&trainer->stage, 0.2 * share);
+            bool ok = record_round(trainer, (SainForm)form, round, error);
+            progress_next_stage(&trainer->stage, 0.8 * share);
+            ok = ok && fit_round(trainer, (SainForm)form, round, error);
+            if (!ok && error->kind != ERROR_INTERRUPTED) return false;
+            if (!trainer->stage.stopped) continue;
+            *error = (Error){0};
+            return (form == SAIN_FORMS - 1 && (ok || round > 0)) ||
+                   error_interrupted(error, "sain", "stopped before each of its %d forms had a network", SAIN_FORMS);
+        }
     }
     return true;
 }
 
 bool sain_training_run(const SainTraining *training, SainNetworks *networks, const Progress *progress, Error *error) {
-    Trainer trainer = {.training = training, .networks = networks};
-    fit_init(&trainer.fit, training->command, training->state_path, progress);
+    Trainer trainer = {.training = training, .networks = networks, .stage = {.whole = progress}};
+    trainer.progress = (Progress){progress_stage, &trainer.stage};
     *networks = (SainNetworks){0};
     const bool ok = run(&trainer, error);
-    fit_free(&trainer.fit);
+    adam_free(&trainer.adam);
     sain_samples_free(&trainer.samples);
     sain_samples_free(&trainer.held_out_samples);
     recorded_steps_free(&trainer.first);

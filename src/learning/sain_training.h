@@ -35,19 +35,15 @@ typedef struct SainTraining {
     int rounds;   /* at most SAIN_ROUNDS_MAX */
     int steps;    /* of Adam, in each round */
     int batch;    /* samples of a step, at most SAIN_PARTS * BLOCK_ROWS */
-    int saved;    /* the state is stored after every so many steps, and after each round */
     uint64_t seed;
-    const char *command;    /* names the training: only the same command resumes it */
-    const char *state_path; /* where the state is stored, and read from if it exists. The caller removes it once it has
-                               stored the networks */
     /* Called after each round; may be NULL. */
     void (*on_score)(void *context, const SainScore *score);
     void *context;
 } SainTraining;
 
-/* Fills networks, which are destroyed by the caller in any case. False with error set if a scene has no family, the
-   state cannot be written or read, memory is short, or nothing was recorded. ERROR_INTERRUPTED if progress requests a
-   stop: the state stays. Same bits for any number of threads, and however often it was interrupted. */
+/* Fills networks, which are destroyed by the caller in any case. False with error set if a scene has no family, memory
+   is short, or nothing was recorded. If progress requests a stop, the networks are those so far; ERROR_INTERRUPTED if
+   one of the forms has none. Same bits for any number of threads. */
 bool sain_training_run(const SainTraining *training, SainNetworks *networks, const Progress *progress, Error *error);
 
 /* The launches that a round records, of several scenes: all impact frames, and some of those after and of those at

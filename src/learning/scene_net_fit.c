@@ -283,8 +283,7 @@ bool scene_net_fit(SceneNet *network, const SceneNetSamples *samples, const Scen
         fitter->mean = fitter->gradients + PARTS * parameters;
         fitter->square = fitter->mean + parameters;
         for (int s = 0; s < network->sweeps; s++) fitter->factors[s] = (double)network->factors[s];
-        fitter->adam = adam_over(fitter->factors, fitter->factor_mean, fitter->factor_square, network->sweeps, 0,
-                                 ADAM_SQUARE_DECAY);
+        fitter->adam = adam_over(fitter->factors, fitter->factor_mean, fitter->factor_square, network->sweeps);
         for (int i = 0; i < samples->count; i++) fitter->order[i] = i;
     }
     if (!ok) error_memory(error, "scene-net");

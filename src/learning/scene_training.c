@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of scene-net: rounds of recording and fitting, scores, and the verdict against momentum at equal time. */
+/* Training of scene-net: rounds of recording and fitting, and scores. */
 #include "learning/scene_training.h"
 
 #include "base/base.h"
@@ -21,11 +21,6 @@
 #include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Of the verdict: sweeps of the timed rivals, between which time is linear; most sweeps; turns of all rivals. */
-enum { FEW_SWEEPS = 10, MANY_SWEEPS = 60, MOST_SWEEPS = 200, PASSES = 7, RIVALS = 3 };
-
-static const float never = 1e9f; /* m/s: no sweeps follow by the stopping rule */
 
 /* STEPS_AFTER: steps after the scene's impact frames that are samples too. */
 enum { STEPS_AFTER = 2, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
@@ -51,61 +46,22 @@ typedef struct Trainer {
     Progress progress; /* of the stage */
 } Trainer;
 
-/* Solves all samples. s: the time of the solver alone, if shorter than before. m/s: the mean error. */
-static bool solve_all(ContactSolver *solver, const SceneNetSamples *samples, PairMoment *space, double *seconds,
-                      double *mean, Error *error) {
-    double sum = 0, passed = 0;
-    for (int i = 0; i < samples->count; i++) {
-        const RecordedStep *step = &samples->items[i].step;
-        if (!pair_moment_reserve(space, &step->problem)) return error_memory(error, "scene-net");
-        ContactSolution solution = pair_moment_solution(space);
-        const double begin = clock_seconds();
-        if (!solver->kind->solve(solver->state, &step->problem, &solution, error)) return false;
-        passed += clock_seconds() - begin;
-        sum += solution_error(&step->problem, solution.velocities, step->velocities).rms;
-    }
-    if (passed < *seconds) *seconds = passed;
-    *mean = sum / samples->count;
-    return true;
-}
-
-static bool make_momentum(ContactSolver *solver, int sweeps, Error *error) {
-    char text[16];
-    snprintf(text, sizeof text, "k=%d", sweeps);
-    return solver_with(solver, &solver_momentum, text, error);
-}
-
-static bool momentum_error(const SceneNetSamples *samples, int sweeps, PairMoment *space, double *mean, Error *error) {
+/* m/s: the mean error of momentum with 20 sweeps. */
+static bool momentum_error(const SceneNetSamples *samples, double *mean, Error *error) {
     ContactSolver solver = {0};
-    double unused = INFINITY;
-    const bool ok = make_momentum(&solver, sweeps, error) && solve_all(&solver, samples, space, &unused, mean, error);
-    solver_destroy(&solver);
-    return ok;
-}
-
-/* Solves the held-out samples by the method scene-net and by momentum, in turns, and keeps the shortest time of each.
-   The errors are the same on every machine; `sweeps` depends on it. */
-static bool find_verdict(const Trainer *trainer, SceneNetVerdict *verdict, Error *error) {
-    const SceneNetSamples *samples = &trainer->held_out;
-    ContactSolver rivals[RIVALS] = {{0}};
     PairMoment space = {0};
-    double seconds[RIVALS] = {INFINITY, INFINITY, INFINITY}, mean[RIVALS];
-    *verdict = (SceneNetVerdict){.samples = samples->count};
-    if (samples->count == 0) return true;
-    bool ok = scene_net_make(&rivals[0], trainer->network, never, error) &&
-              make_momentum(&rivals[1], FEW_SWEEPS, error) && make_momentum(&rivals[2], MANY_SWEEPS, error);
-    for (int i = 0; ok && i < PASSES * RIVALS; i++)
-        ok = solve_all(&rivals[i % RIVALS], samples, &space, &seconds[i % RIVALS], &mean[i % RIVALS], error);
-    if (ok) {
-        const double sweep = (seconds[2] - seconds[1]) / (MANY_SWEEPS - FEW_SWEEPS);
-        const double sweeps = sweep > 0 ? round(FEW_SWEEPS + (seconds[0] - seconds[1]) / sweep) : MOST_SWEEPS;
-        verdict->network = mean[0];
-        verdict->microseconds = 1e6 * seconds[0] / samples->count;
-        verdict->sweeps = (int)fmin(fmax(sweeps, 1), MOST_SWEEPS);
-        ok = momentum_error(samples, verdict->sweeps, &space, &verdict->at_equal_time, error) &&
-             momentum_error(samples, 20, &space, &verdict->at_20, error);
+    double sum = 0;
+    bool ok = solver_with(&solver, &solver_momentum, "k=20", error);
+    for (int i = 0; ok && i < samples->count; i++) {
+        const RecordedStep *step = &samples->items[i].step;
+        ok = pair_moment_reserve(&space, &step->problem) || error_memory(error, "scene-net");
+        if (!ok) break;
+        ContactSolution solution = pair_moment_solution(&space);
+        ok = solver.kind->solve(solver.state, &step->problem, &solution, error);
+        sum += ok ? solution_error(&step->problem, solution.velocities, step->velocities).rms : 0;
     }
-    for (int i = 0; i < RIVALS; i++) solver_destroy(&rivals[i]);
+    *mean = sum / samples->count;
+    solver_destroy(&solver);
     pair_moment_free(&space);
     return ok;
 }
@@ -190,14 +146,12 @@ static bool fit_round(Trainer *trainer, double share, Error *error) {
         network->high[k] = high + margin * (high - low) + 1e-6f;
     }
 
-    PairMoment space = {0};
     SceneNetScore score = {.round = round,
                            .samples = samples->count,
                            .unconverged = (int)(samples->unconverged + trainer->held_out.unconverged)};
     const bool ok = scene_net_error(network, samples, &score.train, error) &&
                     scene_net_error(network, &trainer->held_out, &score.held_out, error) &&
-                    momentum_error(&trainer->held_out, 20, &space, &score.momentum, error);
-    pair_moment_free(&space);
+                    momentum_error(&trainer->held_out, &score.momentum, error);
     if (ok && training->on_score != NULL) training->on_score(training->context, &score);
     return ok;
 }
@@ -263,8 +217,7 @@ SceneNet *scene_training_run(const Scene *scene, const SceneTraining *training, 
                              Error *error) {
     Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
     trainer.progress = (Progress){progress_stage, &trainer.stage};
-    bool ok = train(&trainer, error);
-    if (ok && training->verdict != NULL) ok = find_verdict(&trainer, training->verdict, error);
+    const bool ok = train(&trainer, error);
     if (trainer.generator != NULL) gsl_rng_free(trainer.generator);
     free(trainer.launches);
     scene_net_samples_free(&trainer.samples);

@@ -16,20 +16,11 @@
 /* Errors of the network and of its untrained baseline after a round. */
 typedef struct SceneNetScore {
     int round, samples;
-    int unconverged;        /* impacts left out so far, as the reference did not converge */
-    double train, held_out; /* m/s: mean error of network + sweeps on training and on held-out launches */
-    double momentum;        /* m/s: mean error of momentum with 20 sweeps and warm start, held-out launches */
+    int unconverged; /* impacts left out so far, as the reference did not converge */
+    double train,
+        held_out;    /* m/s: mean error of network + sweeps on training and on held-out launches; NAN: no impact */
+    double momentum; /* m/s: mean error of momentum with 20 sweeps and warm start, held-out launches */
 } SceneNetScore;
-
-/* A trained scene network beside momentum in the same time, on held-out launches. */
-typedef struct SceneNetVerdict {
-    int samples;
-    double network;       /* m/s: mean error of the network and its sweeps, without sweeps by the stopping rule */
-    double at_equal_time; /* m/s: of momentum with `sweeps` */
-    double at_20;         /* m/s: of momentum with 20 sweeps */
-    int sweeps;           /* of momentum, that take as long as the network and its sweeps: 1 .. 200 */
-    double microseconds;  /* of a step by the network and its sweeps */
-} SceneNetVerdict;
 
 typedef struct SceneTraining {
     int launches;  /* per round, drawn from the scene's family; half of them with a random rotation and spin */
@@ -42,7 +33,6 @@ typedef struct SceneTraining {
     /* Called after each round; may be NULL. */
     void (*on_score)(void *context, const SceneNetScore *score);
     void *context;
-    SceneNetVerdict *verdict; /* on the network that is returned; or NULL */
 } SceneTraining;
 
 /* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN

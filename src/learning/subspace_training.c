@@ -162,19 +162,15 @@ typedef struct Trainer {
     SubspaceNet *net;
     PoseRows rows, held_out;
     float *components; /* [launches, states, components] */
-    double linear[SUBSPACE_PREDICTORS_MAX][2 * SUBSPACE_COMPONENTS_MAX];
-    WindowData data[SUBSPACE_PREDICTORS_MAX];
-    WindowFit *fits[SUBSPACE_PREDICTORS_MAX];
-    int64_t first[SUBSPACE_PREDICTORS_MAX + 1]; /* of the predictors' weights */
-    Fit fit;                                    /* stage: predictor; its Adam has the weights of all */
-    double *slopes;
+    ProgressStage stage;
+    Progress progress; /* of the stage */
 } Trainer;
 
 static bool record(Trainer *trainer, PoseRows *rows, bool scoring, int count, Error *error) {
     Launch *launches = malloc((size_t)count * sizeof *launches);
     bool ok = launches != NULL || error_memory(error, "subspace");
     ok = ok && (scoring ? launches_for_scoring : launches_for_training)(trainer->scene, count, launches, error) &&
-         subspace_record(rows, trainer->scene, launches, count, &trainer->fit.progress, error);
+         subspace_record(rows, trainer->scene, launches, count, &trainer->progress, error);
     free(launches);
     return ok;
 }
@@ -193,7 +189,6 @@ static bool make_net(Trainer *trainer, Error *error) {
     if (net == NULL) return false;
     net->physics = subspace_physics(scene);
     snprintf(net->scene, sizeof net->scene, "%s", scene->name);
-    snprintf(net->command, sizeof net->command, "%s", trainer->training->command);
     return true;
 }
 
@@ -272,99 +267,84 @@ static bool fit_components(Trainer *trainer, Error *error) {
     return ok && find_components(trainer, error);
 }
 
-static bool make_fits(Trainer *trainer, Error *error) {
+/* Fits a predictor; its rate falls to 0 by the square of what is left. */
+static bool fit_predictor(Trainer *trainer, int i, Error *error) {
     const SubspaceTraining *training = trainer->training;
     SubspaceNet *net = trainer->net;
-    const int count = net->shape.predictor_count;
-    for (int i = 0; i < count; i++) {
-        WindowData *data = &trainer->data[i];
-        *data = (WindowData){.rows = &trainer->rows,
+    SubspacePredictor *predictor = &net->predictors[i];
+    double linear[2 * SUBSPACE_COMPONENTS_MAX], loss = 0, *slopes = NULL;
+    const WindowData data = {.rows = &trainer->rows,
                              .components = trainer->components,
                              .stride = net->shape.components,
                              .count = net->shape.predictors[i],
-                             .linear = trainer->linear[i],
+                             .linear = linear,
                              .low = net->low,
                              .high = net->high};
-        window_linear(data, trainer->linear[i]);
-        trainer->fits[i] = window_fit_create(data, net->shape.hidden, error);
-        if (trainer->fits[i] == NULL) return false;
-        trainer->first[i + 1] = trainer->first[i] + network_parameter_count(trainer->fits[i]->shape);
+    Adam adam = {0};
+    window_linear(&data, linear);
+    WindowFit *fit = window_fit_create(&data, net->shape.hidden, error);
+    bool ok = fit != NULL && adam_create(&adam, network_parameter_count(fit->shape), error);
+    if (ok) {
+        slopes = malloc((size_t)adam.count * sizeof *slopes);
+        ok = slopes != NULL || error_memory(error, "subspace");
+        window_fit_begin(fit, training->seed + (uint64_t)i, adam.weights);
     }
-    Fit *fit = &trainer->fit;
-    bool found;
-    trainer->slopes = malloc((size_t)trainer->first[count] * sizeof *trainer->slopes);
-    if (trainer->slopes == NULL) return error_memory(error, "subspace");
-    if (!fit_begin(fit, trainer->first[count], &found, error)) return false;
-    fit->adam.steps = (int64_t)fit->epoch * training->batches;
-    if (found) return true;
-    for (int i = 0; i < count; i++)
-        window_fit_begin(trainer->fits[i], training->seed + (uint64_t)i, fit->adam.weights + trainer->first[i]);
-    return fit_write(fit, error);
-}
-
-/* The rate falls to 0 by the square of what is left. */
-static bool take_step(void *context, Adam *adam, double *loss, Error *error) {
-    Trainer *trainer = context;
-    const SubspaceTraining *training = trainer->training;
-    const int i = trainer->fit.stage;
-    const uint64_t seed = (training->seed << 32) + ((uint64_t)i << 24) + (uint64_t)adam->steps;
-    const double left = 1 - (double)adam->steps / ((double)training->epochs * training->batches);
-    *loss += window_fit_slopes(trainer->fits[i], adam->weights, seed, trainer->slopes) / training->batches;
-    if (!slopes_limit(trainer->slopes, adam->count, longest_slopes) || !isfinite(*loss))
-        return error_input(error, "subspace", "training diverged in epoch %d", trainer->fit.epoch + 1);
-    adam_step(adam, trainer->slopes, first_rate * left * left);
-    return true;
-}
-
-/* The time of an epoch grows with the weights. */
-static bool fit_networks(Trainer *trainer, Error *error) {
-    const SubspaceTraining *training = trainer->training;
-    const FitSteps steps = {(int64_t)training->epochs * training->batches, training->batches, take_step, NULL, trainer};
-    const int begun = trainer->fit.stage, count = trainer->net->shape.predictor_count;
-    const double all = 1 - trainer->fit.share.begin - trainer->fit.share.share;
-    for (int i = 0; i < count; i++) {
-        const int64_t first = trainer->first[i], weights = trainer->first[i + 1] - first;
-        SubspacePredictor *predictor = &trainer->net->predictors[i];
+    for (int epoch = 0; ok && epoch < training->epochs; epoch++) {
+        if (!progress_report(&trainer->progress, epoch, training->epochs)) break;
+        loss = 0;
+        for (int batch = 0; ok && batch < training->batches; batch++) {
+            const uint64_t seed = (training->seed << 32) + ((uint64_t)i << 24) + (uint64_t)adam.steps;
+            const double left = 1 - (double)adam.steps / ((double)training->epochs * training->batches);
+            loss += window_fit_slopes(fit, adam.weights, seed, slopes) / training->batches;
+            ok = (slopes_limit(slopes, adam.count, longest_slopes) && isfinite(loss)) ||
+                 error_input(error, "subspace", "training diverged in epoch %d", epoch + 1);
+            adam_step(&adam, slopes, first_rate * left * left);
+        }
+    }
+    if (ok) window_fit_store(fit, adam.weights, predictor);
+    if (ok && !trainer->stage.stopped && training->on_score != NULL) {
         SubspaceScore score;
-        double loss = 0;
-        progress_next_stage(&trainer->fit.share, all * (double)weights / (double)trainer->first[count]);
-        if (i > begun) fit_stage(&trainer->fit, i);
-        if (i >= begun && !fit_run(&trainer->fit, first, weights, &steps, &loss, error)) return false;
-        window_fit_store(trainer->fits[i], trainer->fit.adam.weights + first, predictor);
-        if (training->on_score == NULL) continue;
-        if (!subspace_score(trainer->net, predictor, &trainer->held_out, &score, error)) return false;
-        training->on_score(training->context, &score, loss);
+        ok = subspace_score(net, predictor, &trainer->held_out, &score, error);
+        if (ok) training->on_score(training->context, &score, loss);
+    }
+    free(slopes);
+    adam_free(&adam);
+    window_fit_destroy(fit);
+    return ok;
+}
+
+/* Shares of the progress are by components, with which the time grows. */
+static bool fit_predictors(Trainer *trainer, Error *error) {
+    const SubspaceShape *shape = &trainer->net->shape;
+    const double all = 1 - trainer->stage.begin - trainer->stage.share;
+    int components = 0;
+    for (int i = 0; i < shape->predictor_count; i++) components += shape->predictors[i];
+    for (int i = 0; i < shape->predictor_count; i++) {
+        progress_next_stage(&trainer->stage, all * shape->predictors[i] / components);
+        if (!fit_predictor(trainer, i, error)) return false;
     }
     return true;
 }
 
 static bool run(Trainer *trainer, Error *error) {
-    progress_next_stage(&trainer->fit.share, recording_share);
+    progress_next_stage(&trainer->stage, recording_share);
     if (!record(trainer, &trainer->rows, false, trainer->training->launches, error)) return false;
     if (trainer->rows.states < WINDOW_FRAMES + 3)
         return error_input(error, trainer->scene->name, "%d frames with the bomb; training needs %d",
                            trainer->rows.states - 1, WINDOW_FRAMES + 2);
-    progress_next_stage(&trainer->fit.share, recording_share / 10);
+    progress_next_stage(&trainer->stage, recording_share / 10);
     return record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error) && fit_components(trainer, error) &&
-           make_fits(trainer, error) && fit_networks(trainer, error);
+           fit_predictors(trainer, error);
 }
 
 SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training, const Progress *progress,
                             Error *error) {
-    Trainer *trainer = calloc(1, sizeof *trainer);
-    if (trainer == NULL) return error_memory(error, "subspace"), NULL;
-    trainer->scene = scene;
-    trainer->training = training;
-    fit_init(&trainer->fit, training->command, training->state_path, progress);
-    const bool ok = run(trainer, error);
-    SubspaceNet *net = ok ? trainer->net : NULL;
-    if (!ok) subspace_net_destroy(trainer->net);
-    pose_rows_free(&trainer->rows);
-    pose_rows_free(&trainer->held_out);
-    free(trainer->components);
-    free(trainer->slopes);
-    fit_free(&trainer->fit);
-    for (int i = 0; i < SUBSPACE_PREDICTORS_MAX; i++) window_fit_destroy(trainer->fits[i]);
-    free(trainer);
-    return net;
+    Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
+    trainer.progress = (Progress){progress_stage, &trainer.stage};
+    const bool ok = run(&trainer, error);
+    if (!ok) subspace_net_destroy(trainer.net);
+    pose_rows_free(&trainer.rows);
+    pose_rows_free(&trainer.held_out);
+    free(trainer.components);
+    return ok ? trainer.net : NULL;
 }

@@ -30,9 +30,6 @@ typedef struct SubspaceTraining {
     int batches;  /* of an epoch, WINDOW_BATCH windows each */
     int hidden;   /* width of the hidden layers, a multiple of ROW_LANES */
     uint64_t seed;
-    const char *command;    /* names the training: only the same command resumes it */
-    const char *state_path; /* where the state is stored, and read from if it exists; the caller removes it once it has
-                               stored the networks */
     /* Called after each network with its errors on held-out launches; may be NULL. */
     void (*on_score)(void *context, const SubspaceScore *score, double loss);
     void *context;
@@ -40,9 +37,9 @@ typedef struct SubspaceTraining {
 
 enum { SUBSPACE_HELD_OUT = 20 }; /* launches */
 
-/* NULL with error set if the scene has no family of launches or too many bodies, a run fails, the state cannot be
-   written or read, or memory is short; ERROR_INTERRUPTED if progress requests a stop: the state stays. Same bits for
-   any number of threads, and however often it was interrupted. */
+/* NULL with error set if the scene has no family of launches or too many bodies, a run fails, or memory is short. If
+   progress requests a stop, networks are those so far, which at first add almost nothing to the linear terms;
+   ERROR_INTERRUPTED while launches are recorded. Same bits for any number of threads. */
 SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training, const Progress *progress,
                             Error *error);
 

@@ -61,9 +61,7 @@ run = json.load(open("mine.json"))
 assert run["program"] == "sweeps 1"
 assert sum(contact["impulse"][0] for contact in run["frames"][60]["contacts"]) > 0
 PYTHON
-# Figures and pages say what kind of method it is, and what the program calls itself.
-run 0 figure strip engine.npz mine.npz --at 0.5 -o mine.pdf --caption-text mine.tex
-grep -q "Mine} (external solver: sweeps 1)" mine.tex || fail "caption: $(cat mine.tex)"
+# Pages say what kind of method it is, and what the program calls itself.
 run 0 page mine.npz -o mine.html
 grep -q '"note": "external solver: sweeps 1"' mine.html || fail "the page has no 'external solver: sweeps 1'"
 sed 's/0.5\]/100]/' rest.yaml >fall.yaml

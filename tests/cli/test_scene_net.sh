@@ -47,9 +47,6 @@ done
 cmp -s again.hash near_0.02.hash || fail "0.02 m/s is not what stands for nothing said"
 cmp -s again.hash near_1000.hash && fail "near=1000 changes nothing"
 
-run 0 train --kind scene-net stack.yaml -o x.npz $small --smallest --within 100
-says "no network is needed: momentum with 20 sweeps is within 100 m/s"
-
 # Ctrl-C keeps the network of the rounds so far. (Started from a script, it would ignore the signal but for the trap.)
 (trap - INT; exec "$twinbox" train --kind scene-net stack.yaml -o cut.npz $small --rounds 100 >cut.out 2>cut.err) &
 training=$!

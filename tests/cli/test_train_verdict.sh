@@ -27,19 +27,8 @@ run 0 train pairs.npz --from net.npz -o net.npz --iterations 0
 run 0 train pairs.npz -o net.npz --iterations 0
 cmp -s net.npz kept.npz && fail "training without --from did not replace the file"
 
-# Sixteen launches and few epochs are not enough: the network is worse than sweeps, and the figures say the same.
+# Sixteen launches and few epochs are not enough: the network is worse than sweeps, and the table says the same.
 run 0 train --kind scene-net stack.yaml -o scene.npz --launches 16 --rounds 2 --iterations 6 --width 16 --seed 3
-says "verdict: "
-/usr/bin/python3 - <<'PYTHON' || fail "the verdict on the scene network: $(tail -n 2 out)"
-import re
-lines = open("out").read().splitlines()
-table = [line.split() for line in lines if re.match(r" +[0-9]+ ", line)][-1]
-found = re.match(r"held out: the network and its sweeps ([0-9.]+) m/s in ([0-9.e+]+) us; momentum in that time, "
-                 r"([0-9]+) sweeps, ([0-9.]+); with 20 sweeps ([0-9.]+)$", lines[-2])
-network, at_equal_time, at_20 = (float(found[i]) for i in (1, 4, 5))
-assert at_20 == float(table[4]) and 1 <= int(found[3]) <= 200 and float(found[2]) > 0
-words = re.match(r"verdict: (better|worse) than momentum at equal time; (better|worse) than momentum with 20 sweeps$", lines[-1])
-assert words[1] == ("better" if network < at_equal_time else "worse")
-assert words[2] == ("better" if network < at_20 else "worse") and words[2] == "worse"
-PYTHON
+says "verdict: no better than momentum with 20 sweeps"
+awk '$1 == 1 && NF == 5 { last = $4 > $5 } END { exit !last }' out || fail "the verdict is not that of the table: $(cat out)"
 finish

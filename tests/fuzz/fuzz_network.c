@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Readers of trained networks, and of the states of trainings. */
+/* Readers of trained networks. */
 #include "fuzz.h"
 
 #include "fuzz_archive.h"
-#include "learning/learning.h"
 #include "methods/hybrid_memory.h"
 #include "methods/sain.h"
 #include "nets/kinds.h"
@@ -51,11 +50,6 @@ static void read_slot_network(const char *path) {
     scene_net_destroy(network);
 }
 
-static void check_weights(const double *weights, int count) {
-    for (int i = 0; i < count; i++)
-        if (!isfinite(weights[i])) fuzz_fail("weight %d is NaN or infinite", i);
-}
-
 static void read_gns_net(const char *path) {
     GnsNet net;
     Error error = {0};
@@ -63,16 +57,6 @@ static void read_gns_net(const char *path) {
     for (int i = 0; ok && i < net.layout.parameters; i++)
         if (!isfinite(net.parameters[i])) fuzz_fail("parameter %d is NaN or infinite", i);
     gns_net_free(&net);
-}
-
-static void read_fit(const char *path) {
-    Fit fit;
-    Error error = {0};
-    bool found;
-    fit_init(&fit, "train", path, NULL);
-    const bool ok = FUZZ_READ(fit_begin(&fit, 3, &found, &error), path);
-    if (ok && found) check_weights(fit.adam.weights, 3 * 3);
-    fit_free(&fit);
 }
 
 /* Each entry answers its own key with finite impulses. */
@@ -136,8 +120,8 @@ static void read_subspace(const char *path) {
 
 /* The first byte chooses the kind of network. */
 void fuzz_network(const uint8_t *data, size_t size) {
-    static void (*const readers[])(const char *path) = {read_network, read_slot_network, read_fit,    read_memory,
-                                                        read_sain,    read_subspace,     read_gns_net};
+    static void (*const readers[])(const char *path) = {read_network, read_slot_network, read_gns_net,
+                                                        read_memory,  read_sain,         read_subspace};
     enum { READERS = sizeof readers / sizeof *readers };
     if (size == 0 || data[0] < 'a' || data[0] >= 'a' + READERS) return;
     readers[data[0] - 'a'](fuzz_archive(data + 1, size - 1));

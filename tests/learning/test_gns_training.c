@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small complete trainings of gns: the same bits for any number of threads and however often they are interrupted. */
+/* Small complete trainings of gns, and their examples. */
 #include "trainings.h"
 #include "owned.h"
 
@@ -20,62 +20,80 @@ static Scene *small_scene(void) {
     return scene_from(path);
 }
 
-/* Trains on the small scene; the caller frees the net. */
-static bool train(void *context, const char *path, const Progress *progress, Error *error) {
-    GnsNet *net = context;
-    Scene *scenes[] = {small_scene()};
-    GnsTraining training = {.width = 16,
-                            .rounds = 2,
-                            .steps = 300,
-                            .batch = 2,
-                            .launches = 2,
-                            .radius = 0.6f,
-                            .noise = 0.05f,
-                            .rate = 0.002,
-                            .seed = 3,
-                            .scenes = scenes,
-                            .scene_count = 1,
-                            .command = "small",
-                            .state_path = path};
-    const bool ok = gns_training_run(&training, net, progress, error);
-    if (!ok) gns_net_free(net);
-    return ok;
+static GnsScore scored;
+
+static void keep_score(void *context, const GnsScore *score) {
+    (void)context;
+    scored = *score;
 }
 
-TEST(same_bits_for_any_threads_and_interruptions) {
-    OWN(GnsNet) whole, parts;
+static GnsTraining small(void) {
+    return (GnsTraining){.width = 16,
+                         .rounds = 2,
+                         .steps = 300,
+                         .batch = 2,
+                         .launches = 2,
+                         .radius = 0.6f,
+                         .noise = 0.05f,
+                         .rate = 0.002,
+                         .seed = 3,
+                         .on_score = keep_score};
+}
+
+/* Trains on the small scene; the caller frees the net. */
+static bool train(GnsTraining training, GnsNet *net, const Progress *progress, Error *error) {
+    Scene *scenes[] = {small_scene()};
+    training.scenes = scenes;
+    training.scene_count = 1;
+    return gns_training_run(&training, net, progress, error);
+}
+
+TEST(same_bits_for_any_threads) {
+    OWN(GnsNet) one, three;
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);
-    assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);
+    assert_ok(train(small(), &one, NULL, &error), error);
     omp_set_num_threads(3);
-    assert_in_range(train_in_parts(train, &parts, temporary_path("parts.part"), 3, 1), 1, 3);
+    assert_ok(train(small(), &three, NULL, &error), error);
     omp_set_num_threads(threads);
-    assert_memory_equal(&whole.scales, &parts.scales, sizeof whole.scales);
-    assert_memory_equal(whole.parameters, parts.parameters, (size_t)whole.layout.parameters * sizeof(float));
+    assert_memory_equal(&one.scales, &three.scales, sizeof one.scales);
+    assert_memory_equal(one.parameters, three.parameters, (size_t)one.layout.parameters * sizeof(float));
 }
 
 /* Boxes that are moved by noise are other examples: other weights. */
 TEST(noise_is_trained_on) {
     OWN(GnsNet) some, none;
-    float noise = 0.05f;
-    for (int i = 0; i < 2; i++, noise = 0) {
-        Scene *scenes[] = {small_scene()};
-        const GnsTraining training = {.width = 16,
-                                      .rounds = 1,
-                                      .steps = 3,
-                                      .batch = 1,
-                                      .launches = 1,
-                                      .radius = 0.6f,
-                                      .noise = noise,
-                                      .rate = 0.002,
-                                      .seed = 3,
-                                      .scenes = scenes,
-                                      .scene_count = 1,
-                                      .command = "noise",
-                                      .state_path = temporary_path(i == 0 ? "some.part" : "none.part")};
-        assert_ok(gns_training_run(&training, i == 0 ? &some : &none, NULL, &error), error);
-    }
+    GnsTraining training = small();
+    training.steps = 3;
+    assert_ok(train(training, &some, NULL, &error), error);
+    training.noise = 0;
+    assert_ok(train(training, &none, NULL, &error), error);
     assert_memory_not_equal(some.parameters, none.parameters, (size_t)some.layout.parameters * sizeof(float));
+}
+
+/* As many batches are scored as are trained on here, by weights that do not move: of the same examples both errors would
+   be one. */
+TEST(held_out_examples_are_others) {
+    OWN(GnsNet) net;
+    GnsTraining training = small();
+    training.steps = 64;
+    training.rate = 1e-12;
+    assert_ok(train(training, &net, NULL, &error), error);
+    assert_int_equal(scored.steps, 64);
+    assert_true(fabs(scored.held_out / scored.loss - 1) > 1e-3);
+}
+
+/* After its two launches and an epoch. */
+TEST(a_stopped_training_keeps_its_net) {
+    OWN(GnsNet) whole, part;
+    int left = 4;
+    assert_ok(train(small(), &whole, NULL, &error), error);
+    assert_ok(train(small(), &part, &(Progress){stop_at, &left}, &error), error);
+    assert_memory_not_equal(whole.parameters, part.parameters, (size_t)part.layout.parameters * sizeof(float));
+    left = 1;
+    gns_net_free(&part);
+    assert_false(train(small(), &part, &(Progress){stop_at, &left}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "launches: error: stopped after");
 }
 
 typedef struct Recorded {

@@ -36,7 +36,6 @@ static HybridTraining training_of(Counts *counts) {
                             .tolerance = 0.1f,
                             .limit = 1 << 20,
                             .seed = 1,
-                            .command = "train",
                             .on_launch = count,
                             .context = counts};
 }
@@ -46,16 +45,6 @@ static HybridMemory *learn(const Scene *scene, const HybridTraining *training, c
     HybridMemory *memory = hybrid_training_run(scene, training, progress, &error);
     assert_ok(memory != NULL, error);
     return memory;
-}
-
-static void assert_same_memory(const HybridMemory *a, const HybridMemory *b) {
-    assert_int_equal(a->entry_count, b->entry_count);
-    assert_int_equal(a->impulse_count, b->impulse_count);
-    const size_t entries = (size_t)a->entry_count, key = (size_t)a->key_size;
-    assert_memory_equal(a->keys, b->keys, entries * key * sizeof(float));
-    assert_memory_equal(a->metrics, b->metrics, entries * (size_t)a->metric_size * sizeof(float));
-    assert_memory_equal(a->weights, b->weights, entries * HYBRID_NEAR * key * sizeof(float));
-    assert_memory_equal(a->impulses, b->impulses, a->impulse_count * sizeof *a->impulses);
 }
 
 TEST(familiar_impacts_are_answered_within_the_tolerance) {
@@ -84,27 +73,18 @@ TEST(the_limit_holds_and_is_reported) {
     assert_true(hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, 4) + 4096 > training.limit);
 }
 
-TEST(an_interrupted_learning_is_continued_with_the_same_bits) {
+TEST(a_stopped_learning_keeps_its_memory) {
     OWN(Scene) *scene = scene_named("single");
     Counts counts;
-    HybridTraining training = training_of(&counts);
-    OWN(HybridMemory) *whole = learn(scene, &training, NULL);
-    training.state_path = temporary_path("state.npz");
-    counts.launches = 0;
+    const HybridTraining training = training_of(&counts);
     int left = 77;
-    const Progress progress = {stop_at, &left};
-    HybridMemory *part = learn(scene, &training, &progress);
+    OWN(HybridMemory) *part = learn(scene, &training, &(Progress){stop_at, &left});
     assert_int_equal(part->launches, 77);
-    counts.launches = 77;
-    OWN(HybridMemory) *rest = learn(scene, &training, NULL);
-    assert_same_memory(whole, rest);
-    counts.launches = 0; /* another command begins again */
-    training.command = "other";
-    training.launches = 10;
-    hybrid_memory_destroy(part);
-    part = learn(scene, &training, NULL);
-    assert_int_equal(counts.launches, 10);
-    hybrid_memory_destroy(part);
+    assert_int_equal(counts.added, part->entry_count);
+    left = 1;
+    counts.launches = 0;
+    assert_null(hybrid_training_run(scene, &training, &(Progress){stop_at, &left}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "stopped before anything was learned");
 }
 
 static Trajectory *run(const Scene *scene, const char *name, const char *path) {
