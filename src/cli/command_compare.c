@@ -72,10 +72,10 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "EXPECTED ACTUAL",
+    .input = {.value = "EXPECTED ACTUAL...",
               .needed = "two inputs are needed; --help lists the options",
               OPTION_PATHS(CompareOptions, paths, count)},
-    .inputs = {2, 2, "input"},
+    .inputs = {2, sizeof((CompareOptions *)NULL)->paths / sizeof(char *), "input"},
     .help =
         "Compare two runs (.npz, or .csv of any program) or two PNG sequences (folders with their subfolders, or "
         "single files). Exit status 0: "
@@ -84,6 +84,7 @@ static const CommandSpec spec = {
         "the "
         "first frame, body and contact that differ are found, the kind of difference, whether the solver or an earlier "
         "step is the cause, and how fast the distance grows from there.\n"
+        "Of three inputs or more, runs or folders of runs, each is compared with the first.\n"
         "Pictures are equal if every decoded pixel is. Frames are matched by name, or by the stem and the number of "
         "their names. Runs that are in both folders, and the states named in twinbox's own pictures, tell whether the "
         "physics or the renderer changed.\v"
@@ -154,7 +155,8 @@ static bool read_options(CompareOptions *options, int argc, char **argv, Error *
     const char *const *paths = options->paths;
     if (!options_parse(&spec, argc, argv, options, error)) return false;
     if (options->report != NULL && !output_check_folder_name(options->report, error)) return false;
-    const bool first = is_trajectory(paths[0]), second = is_trajectory(paths[1]);
+    const bool many = options->count > 2, first = many || is_trajectory(paths[0]),
+               second = many || is_trajectory(paths[1]);
     if (first != second)
         return error_input(error, paths[first ? 1 : 0], "is not a run (.npz or .csv), but %s is", paths[first ? 0 : 1]);
     if (first && (options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0))
@@ -210,8 +212,9 @@ bool command_compare(int argc, char **argv, Error *error) {
     CompareOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
     bool same =
         read_options(&options, argc, argv, error) && (options.report == NULL || report_begin(options.report, error));
-    same =
-        same && (is_trajectory(options.paths[0]) ? compare_runs(&options, error) : compare_pictures(&options, error));
+    same = same && (options.count > 2                 ? compare_many(&options, error)
+                    : is_trajectory(options.paths[0]) ? compare_runs(&options, error)
+                                                      : compare_pictures(&options, error));
     mask_free(&options.mask);
     return same;
 }

@@ -255,9 +255,11 @@ static void print_all(FILE *out, const RunComparison *c) {
 }
 
 /* A trace from standard input is compared with one from a file. */
-static Trajectory *read_run(const char *const paths[2], int i, Error *error) {
+static bool read_run(void *context, int i, Error *error) {
+    RunComparison *c = context;
+    const char *const *paths = c->options->paths;
     const bool trace = is_trace(paths[i]) || (path_is_standard(paths[i]) && is_trace(paths[1 - i]));
-    return trace ? csv_trace_read(paths[i], error) : trajectory_read(paths[i], error);
+    return (c->runs[i] = trace ? csv_trace_read(paths[i], error) : trajectory_read(paths[i], error)) != NULL;
 }
 
 /* A trace need not state sizes that the other run has. */
@@ -268,7 +270,8 @@ static void share_sizes(Trajectory *to, const Trajectory *from) {
 
 static bool all_boxes(const Trajectory *run) {
     for (int body = 0; body < run->bodies; body++)
-        if (!(run->size[body].x > 0)) return false;
+        for (int frame = 0; !(run->size[body].x > 0) && frame < run->frames; frame++)
+            if (trajectory_there(run, frame, body)) return false;
     return !run->no_poses;
 }
 
@@ -276,8 +279,7 @@ static bool all_boxes(const Trajectory *run) {
 static bool measure(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
     Trajectory *const *runs = c->runs;
-    for (int i = 0; i < 2; i++)
-        if ((c->runs[i] = read_run(options->paths, i, error)) == NULL) return false;
+    if (!parallel_for(&(ParallelWork){read_run, c}, 2, "compare", NULL, error)) return false;
     share_sizes(runs[0], runs[1]);
     share_sizes(runs[1], runs[0]);
     c->found_contacts = (runs[0]->no_contacts || runs[1]->no_contacts) && all_boxes(runs[0]) && all_boxes(runs[1]);
@@ -298,7 +300,7 @@ static bool measure(RunComparison *c, Error *error) {
     c->distance = malloc((size_t)frames * sizeof *c->distance);
     if (c->distance == NULL) return error_memory(error, "compare");
     for (int frame = 0; frame < frames; frame++) c->distance[frame] = trajectory_distance(runs[0], runs[1], frame);
-    /* compare_runs() frees c->distance. NOLINTBEGIN(clang-analyzer-unix.Malloc) */
+    /* compare_runs_free() frees c->distance. NOLINTBEGIN(clang-analyzer-unix.Malloc) */
     if (!growth_measure(c->distance, 0, frames, dt, &c->growth, error)) return false;
     if (options->scene != NULL) { /* chaos, over the same frames as the growth of the two runs */
         const int body = chaos_body(runs[0], c->parting.first.body, c->parting.first.frame);
@@ -314,16 +316,29 @@ static bool measure(RunComparison *c, Error *error) {
     /* NOLINTEND(clang-analyzer-unix.Malloc) */
 }
 
+bool compare_runs_make(RunComparison *c, Error *error) {
+    const double begun = clock_seconds();
+    size_t size;
+    if (!measure(c, error)) return false;
+    c->seconds = clock_seconds() - begun;
+    c->passed = c->same_world && c->parting.beyond.frame < 0 && same_length(c) &&
+                !trajectory_different_steps(c->runs[0], c->runs[1]);
+    FILE *out = open_memstream(&c->text, &size);
+    if (out == NULL) return error_memory(error, "compare");
+    print_all(out, c);
+    return fclose(out) == 0 || error_memory(error, "compare");
+}
+
+void compare_runs_free(RunComparison *c) {
+    chaos_free(&c->chaos);
+    free(c->distance);
+    free(c->text);
+    for (int i = 0; i < 2; i++) trajectory_destroy(c->runs[i]);
+}
+
 /* The text is printed, and is in the report. */
 static bool show(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
-    size_t size;
-    FILE *out = open_memstream(&c->text, &size);
-    if (out == NULL) return error_memory(error, "compare");
-    c->passed = c->same_world && c->parting.beyond.frame < 0 && same_length(c) &&
-                !trajectory_different_steps(c->runs[0], c->runs[1]);
-    print_all(out, c);
-    if (fclose(out) != 0) return error_memory(error, "compare");
     if (options->report != NULL && !compare_runs_report(c, options->report, error)) return false;
     if (options->json) return json_output("twinbox compare runs 1", compare_runs_write_json, c, error);
     fputs(c->text, stdout);
@@ -335,13 +350,7 @@ static bool show(RunComparison *c, Error *error) {
 
 bool compare_runs(const CompareOptions *options, Error *error) {
     RunComparison comparison = {.options = options};
-    const double begun = clock_seconds();
-    bool ok = measure(&comparison, error);
-    comparison.seconds = clock_seconds() - begun;
-    ok = ok && show(&comparison, error) && comparison.passed;
-    chaos_free(&comparison.chaos);
-    free(comparison.distance);
-    free(comparison.text);
-    for (int i = 0; i < 2; i++) trajectory_destroy(comparison.runs[i]);
+    const bool ok = compare_runs_make(&comparison, error) && show(&comparison, error) && comparison.passed;
+    compare_runs_free(&comparison);
     return ok;
 }

@@ -32,6 +32,8 @@ bool compare_runs(const CompareOptions *options, Error *error) {
 
 Trajectory *csv_trace_read(const char *path, Error *error) { return error_input(error, path, "%s", only), NULL; }
 
+bool compare_many(const CompareOptions *options, Error *error) { return compare_runs(options, error); }
+
 /* So that a folder's .npz files are counted as not compared (regression/comparison_words.c). */
 Trajectory *trajectory_read(const char *path, Error *error) { return error_input(error, path, "%s", only), NULL; }
 

@@ -193,8 +193,18 @@ static void write_page(FILE *out, const void *context) {
     house_page_end(out);
 }
 
+const char *compare_runs_cause(const RunComparison *c, char *kind, size_t size) {
+    static const char *const known[] = {[PART_HIDDEN] = ", first in the warm start",
+                                        [PART_CONTACTS] = ", first in collision detection",
+                                        [PART_SOLVER] = ", first in the solver",
+                                        [PART_UNKNOWN] = NULL};
+    const char *cause = known[c->parting.cause];
+    snprintf(kind, size, "%s", trajectory_part_kind(c->runs[0], c->runs[1], &c->parting).text);
+    return cause != NULL ? cause : "";
+}
+
 /* The one case: its file is that of the second run. */
-static ReportCase case_of(const void *context, int i) {
+ReportCase compare_runs_case(const void *context, int i) {
     const RunComparison *c = context;
     const PartedBody *parted = &c->parting.beyond;
     const char *const *paths = c->options->paths;
@@ -222,22 +232,23 @@ static void write_results(FILE *out, const void *context) {
     json_end(&json);
 }
 
-bool compare_runs_report(RunComparison *c, const char *folder, Error *error) {
+bool compare_runs_page(RunComparison *c, const char *folder, Error *error) {
     const PartedBody *shown = is_beyond(c) ? &c->parting.beyond : &c->parting.first;
+    size_t bytes;
+    /* None of equal runs. Contacts that were found again have no impulses to show. */
+    for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;
+    return shown->frame < 0 ||
+           report_write_run(c->runs, shown->frame, shown->body, folder, "run.html", &c->link, &bytes, error);
+}
+
+bool compare_runs_report(RunComparison *c, const char *folder, Error *error) {
     const ReportResults results = {.comparison = c,
                                    .count = 1,
                                    .failed = !c->passed,
                                    .notes = c->text,
                                    .seconds = c->seconds,
-                                   .at = case_of,
+                                   .at = compare_runs_case,
                                    .write_page = write_page,
                                    .write_json = write_results};
-    size_t bytes;
-    /* A page that plays both: none of equal runs, and of those without a common moment. Contacts that were found again
-       have no impulses to show. */
-    for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;
-    if (shown->frame >= 0 && !report_write_run((const Trajectory *const *)c->runs, shown->frame, shown->body, folder,
-                                               "run.html", &c->link, &bytes, error))
-        return false;
-    return report_write(&results, folder, error);
+    return compare_runs_page(c, folder, error) && report_write(&results, folder, error);
 }

@@ -21,7 +21,7 @@
 /* twinbox compare: its options and results. */
 
 typedef struct CompareOptions {
-    const char *paths[2], *report;
+    const char *paths[65], *report; /* two, or one and those that are compared with it */
     int count, megabytes;
     int max_pixels;
     const char *limit; /* --tolerance, as given: of pictures in `tolerance`, of runs in `poses` */
@@ -59,6 +59,20 @@ typedef struct RunOther {
 int compare_runs_others(const RunComparison *comparison, RunOther others[RUN_OTHERS_MAX]);
 
 JsonOutputWrite compare_runs_write_json; /* of a RunComparison */
+
+/* Compares the two runs of the options, once; to be freed, also on failure. */
+bool compare_runs_make(RunComparison *comparison, Error *error);
+void compare_runs_free(RunComparison *comparison);
+
+/* The one case of a report; the kind of the first difference, and ", first in the solver" or "". */
+ReportCase compare_runs_case(const void *comparison, int i);
+const char *compare_runs_cause(const RunComparison *comparison, char *kind, size_t size);
+
+/* Writes run.html into the folder, which plays both runs if they differ, and sets `link`. */
+bool compare_runs_page(RunComparison *comparison, const char *folder, Error *error);
+
+/* Compares the first input with all others, runs or folders of them, and prints the result. */
+bool compare_many(const CompareOptions *options, Error *error);
 
 /* Writes report.html, junit.xml, results.json and, if the runs differ, run.html, which plays both. */
 bool compare_runs_report(RunComparison *comparison, const char *folder, Error *error);

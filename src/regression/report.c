@@ -15,6 +15,7 @@
 #include "runs/trajectory.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -129,9 +130,37 @@ static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, 
         }
 }
 
-bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
+/* What traces do not state, but a picture needs: a step, and sizes. Bodies become squares, as many of which would fill a
+   quarter of a square as wide as what they span in both runs. */
+static void show_traces(Trajectory *const runs[SIDES]) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int i = 0; i < SIDES * runs[0]->bodies; i++) {
+        const Trajectory *run = runs[i % SIDES];
+        const int frames = runs[0]->frames < runs[1]->frames ? runs[0]->frames : runs[1]->frames, body = i / SIDES;
+        for (int frame = 0; frame < frames; frame++)
+            for (int column = 0; trajectory_has(run, frame, body) && column < 2; column++) {
+                const double number = trajectory_number(run, trajectory_at(run, frame, body), column);
+                low[column] = fmin(low[column], number), high[column] = fmax(high[column], number);
+            }
+    }
+    const double span = fmax(high[0] - low[0], high[1] - low[1]), side = span / (2 * sqrt(runs[0]->bodies));
+    for (RegressionSide side_of = EXPECTED; side_of < SIDES; side_of++) {
+        Trajectory *run = runs[side_of];
+        if (!(run->dt > 0)) run->dt = runs[1 - side_of]->dt > 0 ? runs[1 - side_of]->dt : 1.0F / 60;
+        for (int body = 0; body < run->bodies; body++)
+            if (!(run->size[body].x > 0))
+                run->size[body] = side > 0 && isfinite(side) ? vec2((float)side, (float)side) : vec2(1, 1);
+    }
+}
+
+bool report_write_run(Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
                       ReportLink *link, size_t *bytes, Error *error) {
     const Trajectory *a = runs[EXPECTED], *b = runs[ACTUAL];
+    *bytes = 0;
+    if (trajectory_different_steps(a, b) || a->no_poses || b->no_poses ||
+        ((a->there != NULL || b->there != NULL) && a->bodies != b->bodies))
+        return true;
+    if (a->there != NULL || b->there != NULL) show_traces(runs);
     const int frames = a->frames > b->frames ? a->frames : b->frames, bodies = a->bodies + b->bodies;
     const int room = STATE_BYTES / (int)(6 * sizeof(float)) / (bodies > 0 ? bodies : 1);
     char path[PATH_MAX], moment[PLAYER_LINK_SIZE];
@@ -143,7 +172,7 @@ bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, 
         if (options.last >= frames) options.last = frames - 1;
     }
     if (!file_path(path, sizeof path, error, "%s/%s", folder, name) ||
-        !player_write(runs, SIDES, &options, path, &result, error))
+        !player_write((const Trajectory *const *)runs, SIDES, &options, path, &result, error))
         return false;
     player_link(moment, frame > 0 ? frame * (double)a->dt : 0, body);
     snprintf(link->text, sizeof link->text, "%s%s", name, moment);
@@ -152,7 +181,7 @@ bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, 
 }
 
 /* Writes a page of both runs, opened at the first difference beyond the tolerance, or at the first one, if there are
-   bytes left for it. Runs of different time steps have no common moment: no page. */
+   bytes left for it. */
 static bool write_run(Report *report, int index, size_t *left, Error *error) {
     const RegressionRun *run = &report->regression->runs[index];
     const bool beyond = run->beyond.frame >= 0; /* what fails, where a tolerance lets smaller differences pass */
@@ -166,13 +195,13 @@ static bool write_run(Report *report, int index, size_t *left, Error *error) {
         ok = (!now.equal && now.frame == run->difference.frame && now.body == run->difference.body) ||
              error_input(error, run->paths[ACTUAL], "has changed since the comparison");
     }
-    if (ok && memcmp(&runs[EXPECTED]->dt, &runs[ACTUAL]->dt, sizeof(float)) == 0) {
+    if (ok) {
         char name[REPORT_RUN_SIZE];
         size_t bytes = 0;
         report->runs_left_out += *left == 0;
         if (*left > 0) {
             name_page(name, report->regression, report->links, index);
-            ok = report_write_run((const Trajectory *const *)runs, beyond ? run->beyond.frame : run->difference.frame,
+            ok = report_write_run(runs, beyond ? run->beyond.frame : run->difference.frame,
                                   beyond ? run->beyond.body : run->difference.body, report->folder, name,
                                   &report->links[index], &bytes, error);
         }

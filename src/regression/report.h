@@ -62,8 +62,9 @@ typedef struct ReportLink {
 } ReportLink;
 
 /* Writes the page `name` into the folder: all frames of both runs, or of long ones those around `frame`. The link leads
-   to that frame and body. *bytes: of the page. */
-bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
+   to that frame and body. *bytes: of the page. There is no page of runs without a common moment, as their steps differ,
+   nor of hashes or of traces of other numbers of bodies. What a trace does not state is drawn as 1/60 s and as squares. */
+bool report_write_run(Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
                       ReportLink *link, size_t *bytes, Error *error);
 
 /* What results.json has behind its format, into an object that has begun. */

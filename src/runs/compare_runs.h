@@ -139,7 +139,7 @@ bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseToleran
                      TrajectoryParting *parting, Error *error);
 
 /* What kind of difference it is, in words that begin with one of: "frames" (an offset), "a body", "a hash", "not finite",
-   "x", "y", "angle" (mirrored, or in other units), "a mass", "whole turns", "what poses do not show", "an order", "roundings",
+   "x", "y", "angle" (mirrored, or in other units), "a mass", "whole turns", "what numbers do not show", "an order", "roundings",
    "a step", "motion". Empty if no state differs. */
 typedef struct PartingKind {
     char text[160];

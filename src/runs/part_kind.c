@@ -35,7 +35,7 @@ static double factor_of(const Trajectory *a, const Trajectory *b, int frames, in
     static const double alike = 1e-6; /* relative: units are constants of some digits */
     double largest = 0, factor = 1;
     const int bodies = a->bodies < b->bodies ? a->bodies : b->bodies;
-    for (int frame = 0; frame < frames; frame++)
+    for (int frame = 0; frame<frames; frame += frames> 1 ? frames - 1 : 1) /* the first and the last */
         for (int body = 0; body < bodies; body++) {
             if (!both_there(a, b, frame, body) || !(fabs(number(a, frame, body, column)) > largest)) continue;
             largest = fabs(number(a, frame, body, column));
@@ -88,7 +88,7 @@ static double stretched(const Trajectory *a, const Trajectory *b, int frame, int
 }
 
 PartingKind trajectory_part_kind(const Trajectory *a, const Trajectory *b, const TrajectoryParting *parting) {
-    enum { ROUNDINGS = 8 }; /* of one step */
+    enum { ROUNDINGS = 8 }; /* units in the last place: a step takes fewer roundings of a coordinate */
     PartingKind kind = {""};
     const PartedBody *first = &parting->first;
     const int bodies = a->bodies > b->bodies ? a->bodies : b->bodies, frame = first->frame, body = first->body;
@@ -110,28 +110,30 @@ PartingKind trajectory_part_kind(const Trajectory *a, const Trajectory *b, const
     for (int i = 0; i < bodies && trajectory_has_masses(a) && trajectory_has_masses(b); i++)
         if (a->mass[i] != b->mass[i] && !a->fixed[i])
             SAY("a mass: body %d has %.9g and %.9g kg", i, (double)a->mass[i], (double)b->mass[i]);
-    /* In units of the last place of the largest coordinate, and of an angle of 1 rad. */
+    /* In units of the last place of the largest coordinate of a body, and at least of 1 m, rad, m/s or rad/s. */
     const double epsilon = trajectory_both_exact(a, b) ? DBL_EPSILON : (double)FLT_EPSILON, turn = 2 * acos(-1);
-    double most = 0, places = 0, largest = 1, turned = 0;
-    bool moved = false;
+    const int columns = trajectory_both_move(a, b) ? STATE_COLUMNS : 3;
+    double most = 0, places = 0, turned = 0;
+    bool turns = true; /* only angles differ */
     for (int i = 0; i < bodies; i++)
-        for (int column = 0; both_there(a, b, frame, i) && column < 3; column++) {
+        for (int column = 0; both_there(a, b, frame, i) && column < columns; column++) {
+            const int other = column % 3 < 2 ? column - column % 3 + 1 - column % 3 : column; /* y of x */
             const double p = number(a, frame, i, column), q = number(b, frame, i, column);
-            if (isfinite(p)) largest = fmax(largest, fabs(p));
-            if (trajectory_same_states(a, frame, b, frame, i)) continue;
             if (p == q) continue;
-            most = fmax(most, fabs(p - q)); /* of what differs */
-            places = fmax(places, fabs(p - q) / (epsilon * exp2(floor(log2(fmax(fabs(p), fabs(q)))))));
-            moved = moved || column < 2;
-            if (column == 2) turned = fmax(turned, fabs(remainder(p - q, turn)));
+            const double scale = fmax(1, fmax(fabs(p), fabs(number(a, frame, i, other))));
+            most = fmax(most, fabs(p - q));
+            places = fmax(places, fabs(p - q) / (epsilon * exp2(floor(log2(scale)))));
+            turns = turns && column == 2;
+            turned = fmax(turned, fabs(remainder(p - q, turn)) / (epsilon * scale));
         }
-    if (!moved && most > 1 && turned <= 4 * epsilon * largest)
-        SAY("whole turns: angles by %.3g turns, the poses are the same", most / turn);
+    if (turns && most > 1 && turned <= ROUNDINGS)
+        SAY("whole turns: angles by %.3g turn%s, the poses are the same", most / turn,
+            plural(most > turn * 1.5 ? 2 : 1));
     if (most == 0)
-        SAY("what poses do not show: %s", trajectory_both_hashed(a, b) ? "hashes" : "velocities, or a sign of 0");
+        SAY("what numbers do not show: %s", trajectory_both_hashed(a, b) ? "hashes, or a sign of 0" : "a sign of 0");
     if (parting->contacts.reordered) SAY("an order: the contacts of step %d come in another one", parting->step);
-    if (most <= ROUNDINGS * epsilon * largest)
-        SAY("roundings: at most %.3g unit%s in the last place", places, plural(places > 1 ? 2 : 1));
+    if (places <= ROUNDINGS)
+        SAY("roundings: at most %g unit%s in the last place", ceil(places), plural((int)ceil(places)));
     const double factor = stretched(a, b, frame, bodies);
     if (fabs(factor - 1) > 1e-3)
         SAY("a step: every body moves %.4g times as far, as by another length or gravity", factor);

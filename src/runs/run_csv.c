@@ -10,6 +10,7 @@
 
 #include <ctype.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -243,7 +244,8 @@ static bool split(CsvRows *rows, Fields *fields, Error *error) {
     if (end - begin >= CSV_ROWS_LINE_SIZE)
         return csv_fail(rows->path, rows->line, 0, error, "longer than %d bytes", CSV_ROWS_LINE_SIZE - 1);
     rows->at = line_end + (*line_end == '\n');
-    for (const char *next = begin; next != NULL;) {
+    /* In the first pass no field behind the numbers of frame and body is looked at. */
+    for (const char *next = begin; next != NULL && fields->count < rows->needed;) {
         if (fields->count == FIELDS_MAX)
             return csv_fail(rows->path, rows->line, 0, error, "more than %d fields", FIELDS_MAX);
         Field *field = &fields->list[fields->count++];
@@ -313,7 +315,7 @@ static bool find_columns(CsvRows *rows, const Fields *fields, Error *error) {
 
 bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, bool as_trace, Error *error) {
     Fields fields;
-    *rows = (CsvRows){.path = path, .at = text, .line = line, .as_trace = as_trace};
+    *rows = (CsvRows){.path = path, .at = text, .line = line, .as_trace = as_trace, .needed = INT_MAX};
     if (*text == '\0') return csv_fail(rows->path, line, 0, error, "there is no header 'frame,body,x,y,angle'");
     if (!split(rows, &fields, error)) return false;
     const FieldText first = field_text(&fields.list[0]);
@@ -339,7 +341,11 @@ bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line,
     return true;
 }
 
-void csv_rows_rewind(CsvRows *rows) {
+void csv_rows_rewind(CsvRows *rows, bool indices_only) {
+    const int *field = rows->field;
+    rows->indices_only = indices_only && field[COL_TIME] < 0;
+    rows->needed =
+        !rows->indices_only ? INT_MAX : 1 + (field[COL_FRAME] > field[COL_BODY] ? field[COL_FRAME] : field[COL_BODY]);
     rows->at = rows->first;
     rows->line = rows->first_line;
 }
@@ -359,12 +365,32 @@ static bool take_index(const CsvRows *rows, const Fields *fields, int column, in
            fail_field(rows, fields, column, error, "is not a whole number from 0 to 2147483646");
 }
 
+enum { DIGITS = 19 }; /* that a uint64_t holds */
 __extension__ typedef unsigned __int128 Wide;
 
 /* The float64 nearest to digits / 10^places, ties to even; digits > 0. */
 static double nearest_double(uint64_t digits, int places) {
-    uint64_t power = 1;
-    for (int i = 0; i < places; i++) power *= 10;
+    static const uint64_t powers[DIGITS + 1] = {1,
+                                                UINT64_C(10),
+                                                UINT64_C(100),
+                                                UINT64_C(1000),
+                                                UINT64_C(10000),
+                                                UINT64_C(100000),
+                                                UINT64_C(1000000),
+                                                UINT64_C(10000000),
+                                                UINT64_C(100000000),
+                                                UINT64_C(1000000000),
+                                                UINT64_C(10000000000),
+                                                UINT64_C(100000000000),
+                                                UINT64_C(1000000000000),
+                                                UINT64_C(10000000000000),
+                                                UINT64_C(100000000000000),
+                                                UINT64_C(1000000000000000),
+                                                UINT64_C(10000000000000000),
+                                                UINT64_C(100000000000000000),
+                                                UINT64_C(1000000000000000000),
+                                                UINT64_C(10000000000000000000)};
+    const uint64_t power = powers[places];
     const int shift = __builtin_clzll(digits) + 64;
     const Wide dividend = (Wide)digits << shift, quotient = dividend / power; /* at least 64 bits */
     const uint64_t high = (uint64_t)(quotient >> 64);
@@ -378,7 +404,6 @@ static double nearest_double(uint64_t digits, int places) {
    locale. Up to 19 digits without an exponent, as most numbers are, are read without strtod(), which takes five times
    as long. */
 static bool take_number(const Field *field, double *value) {
-    enum { DIGITS = 19 }; /* that a uint64_t holds */
     const char *first = field->begin + (*field->begin == '-' || *field->begin == '+'), *c = first;
     uint64_t digits = 0;
     int places = -1;
@@ -417,7 +442,7 @@ bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
     *row = (CsvRow){.line = rows->line};
     if (*rows->at == '\0' || rows->at[strspn(rows->at, " \t\r\n")] == '\0' || !split(rows, &fields, error))
         return false;
-    if (fields.count != rows->width)
+    if (rows->indices_only ? fields.count < rows->needed : fields.count != rows->width)
         return csv_fail(rows->path, rows->line, 0, error, "%d fields, but the header has %d", fields.count,
                         rows->width);
     if (!take_index(rows, &fields, COL_FRAME, &row->frame, error) ||
@@ -446,7 +471,7 @@ bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
 int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body) {
     CsvRow row;
     Error ignored = {0};
-    csv_rows_rewind(rows);
+    csv_rows_rewind(rows, false);
     while (csv_rows_next(rows, &row, &ignored))
         if (row.frame == frame && row.body == body) return row.line;
     return 0;

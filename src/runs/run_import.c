@@ -129,8 +129,7 @@ static bool count_rows(CsvImport *import, Error *error) {
     import->last = -1;
     import->count = 0;
     if (head->count > 0) memset(import->row_counts, 0, head->count * sizeof *import->row_counts);
-    csv_rows_rewind(&import->rows);
-    import->rows.indices_only = as_trace;
+    csv_rows_rewind(&import->rows, as_trace);
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = body_index(import, row.body);
         if (body < 0) return csv_fail(import->path, row.line, 0, error, "body %" PRId64 " has no size", row.body);
@@ -149,7 +148,6 @@ static bool count_rows(CsvImport *import, Error *error) {
         if (row.frame < import->first) import->first = row.frame, import->first_time = row.time;
         if (row.frame > import->last) import->last = row.frame, import->last_time = row.time;
     }
-    import->rows.indices_only = false;
     return error->kind == ERROR_NONE;
 }
 
@@ -174,7 +172,7 @@ static bool check_frames_and_size(CsvImport *import, Error *error) {
     CsvRow row;
     if (!import->options->as_trace &&
         import->last - import->first >= import->count) { /* a frame number far away: a huge run of few rows */
-        csv_rows_rewind(&import->rows);
+        csv_rows_rewind(&import->rows, false);
         while (csv_rows_next(&import->rows, &row, error) && row.frame != import->last) continue;
         return csv_fail(import->path, row.line, 0, error,
                         "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
@@ -243,7 +241,7 @@ static bool fill(CsvImport *import, Error *error) {
     /* Steps are float32, and times have some digits. */
     static const double FLOAT_TOLERANCE = 1e-7;
     const double dt = import->step;
-    csv_rows_rewind(&import->rows);
+    csv_rows_rewind(&import->rows, false);
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = body_index(import, row.body);
         if (row.frame >= import->end) continue;
@@ -277,7 +275,7 @@ static bool check_frames(CsvImport *import, Error *error) {
         int next = frame;
         if (has_rows(run, frame)) continue;
         while (!has_rows(run, next)) next++;
-        csv_rows_rewind(&import->rows);
+        csv_rows_rewind(&import->rows, false);
         while (csv_rows_next(&import->rows, &row, error) && row.frame != import->first + next) continue;
         return csv_fail(import->path, row.line, 0, error,
                         "frame %" PRId64 " comes here, but frame %" PRId64 " has no rows", row.frame,

@@ -157,7 +157,8 @@ typedef struct CsvRows {
     int first_line;       /* and its number */
     char ignored[128];    /* columns that mean nothing, separated by ", " */
     bool as_trace;
-    bool indices_only; /* numbers and hashes are not read */
+    bool indices_only; /* numbers and hashes are not read; */
+    int needed;        /* as many fields are */
 } CsvRows;
 
 typedef struct CsvRow {
@@ -174,7 +175,7 @@ bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line,
 
 /* False at the end, and with error set. */
 bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error);
-void csv_rows_rewind(CsvRows *rows);
+void csv_rows_rewind(CsvRows *rows, bool indices_only);
 
 /* Line of the row of a body in a frame; 0: none. */
 int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body);
