@@ -33,16 +33,20 @@ static const CommandSpec spec = {
         "the report was written, or if expected files have no actual one and neither --partial nor --remove tells "
         "what becomes of them. Of several accepted pictures, that in the report is replaced. Run it in the folder in "
         "which compare ran; a folder outside of it changes only with --expected. Exit status 1: failures that the "
-        "report does not show remain.\v"
+        "report does not show remain. Of a run whose verdict changed, both verdicts are printed; the report plays both "
+        "runs.\v"
         "Example: twinbox render stack --method engine -o expected --frames 30:40\n"
         "         twinbox render stack --method momentum -o actual --frames 30:40\n"
         "         twinbox compare expected actual --report out/report\n"
         "         twinbox approve out/report --only 'frame_*'"};
 
-static void print_change(const char *what, const char *path) {
+static void print_change(const char *what, const char *path, const char *verdicts) {
     char shown[PATH_MAX];
     visible_text(shown, sizeof shown, path, VISIBLE_ONE_LINE);
     printf("%s %s\n", what, shown);
+    if (verdicts == NULL) return;
+    visible_text(shown, sizeof shown, verdicts, VISIBLE_ONE_LINE);
+    printf("  %s\n", shown);
 }
 
 bool command_approve(int argc, char **argv, Error *error) {

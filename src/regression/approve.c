@@ -137,7 +137,8 @@ static bool is_name_below(const char *name) {
     char before = '/';
     for (const char *c = name; *c != '\0'; before = *c++)
         if (before == '/' && (*c == '/' || *c == '.')) return false;
-    return ending != NULL && (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
+    return ending != NULL &&
+           (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0 || strcmp(ending, ".csv") == 0);
 }
 
 /* A string of 1 to `max` bytes, valid as long as the value; otherwise NULL with error set. */
@@ -166,7 +167,7 @@ static bool read_file(const JsonReader *json, const json_t *item, const char *ke
     const char *name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
     if (name == NULL) return false;
     if (!name_is_text(name) || (shown && !is_name_below(name))) /* what is not shown is not approved, whatever it is */
-        return json_read_error(json, error, "a name must end with .png or .npz and lie below the folder");
+        return json_read_error(json, error, "a name must end with .png, .npz or .csv and lie below the folder");
     const char *digits = json_string_value(json_object_get(value, "xxh3"));
     if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
         return json_read_error(json, error, "a hash must have 16 digits from 0 to f");
@@ -178,6 +179,7 @@ static bool read_file(const JsonReader *json, const json_t *item, const char *ke
 static void free_names(const ApprovalItem *item) {
     free(item->expected.name);
     free(item->actual.name);
+    free(item->verdicts);
 }
 
 void approval_free(ApprovalList *list) {
@@ -196,6 +198,8 @@ static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Er
                   read_flag(json, value, "shown", &item.shown, error) &&
                   read_file(json, value, "expected", item.shown, &item.expected, error) &&
                   read_file(json, value, "actual", item.shown, &item.actual, error);
+        const char *verdicts = json_string_value(json_object_get(value, "verdicts"));
+        if (ok && verdicts != NULL) ok = (item.verdicts = strdup(verdicts)) != NULL || error_memory(error, json->path);
         ok = ok && (item.expected.name != NULL || item.actual.name != NULL ||
                     json_read_error(json, error, "an expected or an actual file is required"));
         if (ok && item.failed && array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) {
@@ -356,7 +360,7 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
         free(data);
     }
     place_close(&source);
-    if (ok) request->on_change(words[action], target.path);
+    if (ok) request->on_change(words[action], target.path, item->verdicts);
     place_close(&target);
     return ok;
 }

@@ -26,14 +26,15 @@ typedef struct ApprovalRequest {
     const char *expected; /* the folder to change; NULL: the one that results.json names, below the current directory */
     const char *only;     /* a glob (fnmatch) of file names; NULL: all */
     ApprovalMissing missing;
-    void (*on_change)(const char *what, const char *path); /* after each file: "replaced", "added" or "removed" */
+    /* After each file: "replaced", "added" or "removed"; of runs whose verdicts changed, these in words, else NULL. */
+    void (*on_change)(const char *what, const char *path, const char *verdicts);
 } ApprovalRequest;
 
 /* Replaces the expected files of failures by the actual ones, in the folder that results.json names, and removes
    expected files whose actual file is missing, if the request says so: ERROR_INPUT, and nothing is changed, if it says
    nothing.
 
-   Everything is checked before anything is written: names must be plain names of .png and .npz files, and both files
+   Everything is checked before anything is written: names must be plain names of .png, .npz and .csv files, and both files
    must be regular files with the hashes in the report; otherwise ERROR_INPUT. Files are written atomically, in folders
    that stay open; no link below the expected folder is followed. */
 bool approve(const ApprovalRequest *request, Approval *approval, Error *error);
@@ -52,6 +53,7 @@ typedef struct ApprovalFile {
 typedef struct ApprovalItem {
     bool failed, shown;
     ApprovalFile expected, actual;
+    char *verdicts; /* of a run, before and after, in words; NULL: none, or no other */
 } ApprovalItem;
 
 typedef struct ApprovalList {
@@ -61,7 +63,7 @@ typedef struct ApprovalList {
 } ApprovalList;
 
 /* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
-   hidden names, names that do not end with .png or .npz, and, with the path alone, a file that is named twice. On
+   hidden names, names that do not end with .png, .npz or .csv, and, with the path alone, a file that is named twice. On
    failure nothing needs to be freed. Memory: at most four times the size of the file and 2 MiB. */
 bool approval_read(ApprovalList *list, const char *path, Error *error);
 void approval_free(ApprovalList *list);

@@ -237,6 +237,15 @@ RegressionText run_words(const RegressionRun *run) {
     return words;
 }
 
+RegressionText run_verdicts(const RegressionRun *run) {
+    RegressionText words = {""};
+    const char *before = run->verdicts[EXPECTED], *now = run->verdicts[ACTUAL];
+    if (strcmp(before, now) != 0)
+        JOIN(&words, "", "verdict before: %s; now: %s", before[0] != '\0' ? before : "none",
+             now[0] != '\0' ? now : "none");
+    return words;
+}
+
 static void add_count(RegressionText *text, int count, const char *one, const char *more, const char *what) {
     if (count > 0) JOIN(text, ", ", "%d %s %s", count, count == 1 ? one : more, what);
 }

@@ -108,6 +108,7 @@ typedef struct RegressionRun {
     bool within;       /* the poses are within the tolerance in all frames, of which both runs have equally many */
     PartedBody beyond; /* where they first are not; frame -1: nowhere, or there is no tolerance */
     char scene[TRAJECTORY_NAME_SIZE];
+    char verdicts[SIDES][TRAJECTORY_VERDICT_SIZE]; /* that the files state; empty: none */
     char *read_error; /* why it cannot be compared, or NULL; then no member but the names and files says anything */
     int frames;       /* of the longer one; 0 if equal */
     bool *differs;    /* [frames] */
@@ -182,6 +183,7 @@ typedef struct RegressionText {
 RegressionText frame_words(const RegressionFrame *frame);
 RegressionText case_words(const RegressionFrame *frame); /* the same, and where most of it is */
 RegressionText run_words(const RegressionRun *run);
+RegressionText run_verdicts(const RegressionRun *run);    /* "verdict before: ...; now: ..."; empty: no other */
 RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
 
 /* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, as far as no cause

@@ -147,8 +147,9 @@ static void write_runs(FILE *file, const Report *report) {
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
         const char *look = run_failed(run) ? "bad" : run->within ? "odd" : "good";
-        html_print(file, "<tr><td>%s</td><td class=\"%s\">%s</td><td>%s</td><td>", run->name, look, run_verdict(run),
-                   run_words(run).text);
+        const RegressionText verdicts = run_verdicts(run);
+        html_print(file, "<tr><td>%s</td><td class=\"%s\">%s</td><td>%s%s%s</td><td>", run->name, look,
+                   run_verdict(run), run_words(run).text, verdicts.text[0] != '\0' ? "; " : "", verdicts.text);
         write_run_link(file, report, i);
         fputs("</td></tr>\n", file);
     }

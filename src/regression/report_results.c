@@ -174,6 +174,8 @@ void regression_write_json(JsonWriter *json, const Regression *regression) {
         json_put_bool(json, "failed", run_failed(run));
         json_put_bool(json, "shown", run->read_error == NULL);
         json_put_text(json, "words", run_words(run).text);
+        const RegressionText verdicts = run_verdicts(run);
+        json_put_text(json, "verdicts", verdicts.text[0] != '\0' ? verdicts.text : NULL);
         write_file(json, "expected", run->alone[ACTUAL] ? NULL : run->name, &run->files[EXPECTED]);
         write_file(json, "actual", run->alone[EXPECTED] ? NULL : run->name, &run->files[ACTUAL]);
         json_end(json);

@@ -80,6 +80,8 @@ static bool measure(RegressionRun *run, const Trajectory *a, const Trajectory *b
     const bool other_worlds = trajectory_different_worlds(a, b, what, sizeof what);
     trajectory_compare(a, b, &run->difference);
     memcpy(run->scene, a->scene, sizeof run->scene);
+    memcpy(run->verdicts[EXPECTED], a->verdict, sizeof a->verdict);
+    memcpy(run->verdicts[ACTUAL], b->verdict, sizeof b->verdict);
     if (run->difference.equal) return true;
     run->frames = a->frames > b->frames ? a->frames : b->frames;
     run->differs = malloc((size_t)run->frames * sizeof *run->differs);

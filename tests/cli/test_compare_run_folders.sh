@@ -126,4 +126,18 @@ cp -r expected actual
 sleep 0.1
 compare 0 --report unread
 [ -e released ] || fail "a folder that is reserved was written into"
+# A run whose verdict changed: what it was and what it is now, in the report and when it is approved. Traces are approved, too.
+mkdir before after
+run 0 simulate "$scenes/stack.yaml" --frames 60 -o before/stack.npz
+run 0 simulate "$scenes/stack.yaml" --frames 60 --no-bomb -o after/stack.npz
+printf 'frame,body,x,y,angle\n0,0,0,0,0\n' >before/trace.csv
+printf 'frame,body,x,y,angle\n0,0,0,1,0\n' >after/trace.csv
+run 1 compare before after --report verdicts
+grep -q '; verdict before: .* fell' verdicts/report.html || fail "no verdicts on the page"
+run 0 approve verdicts
+says "replaced before/stack.npz
+  verdict before: "
+says "replaced before/trace.csv"
+run 0 compare before after
+says "equal: 0 frames, 2 trajectories"
 finish
