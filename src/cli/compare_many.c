@@ -67,6 +67,12 @@ static bool list_has(const FolderList *list, const char *name) {
 static bool list_rows(Many *many, int input, Error *error) {
     const char *expected = many->options->paths[0], *actual = many->options->paths[input];
     char paths[SIDES][PATH_MAX];
+    for (int i = 0; i <= input; i += input)
+        if (!is_folder(many->options->paths[i]) && !is_run_file(many->options->paths[i]))
+            return error_input(
+                error, many->options->paths[i],
+                "of three inputs or more, each is a run (.npz or .csv) or a folder of runs; only 2 can be "
+                "pictures");
     if (!is_folder(expected) && !is_folder(actual)) return add_row(many, input, expected, actual, error);
     FolderList lists[SIDES] = {{0}};
     bool ok = folder_list(&lists[EXPECTED], expected, is_run_file, true, error) &&

@@ -153,13 +153,17 @@ static void show_traces(Trajectory *const runs[SIDES]) {
     }
 }
 
+/* Runs of different steps have no common moment, and hashes no pose. */
+static bool can_play(const Trajectory *a, const Trajectory *b) {
+    const bool traces = a->there != NULL || b->there != NULL;
+    return !trajectory_different_steps(a, b) && !a->no_poses && !b->no_poses && !(traces && a->bodies != b->bodies);
+}
+
 bool report_write_run(Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
                       ReportLink *link, size_t *bytes, Error *error) {
     const Trajectory *a = runs[EXPECTED], *b = runs[ACTUAL];
     *bytes = 0;
-    if (trajectory_different_steps(a, b) || a->no_poses || b->no_poses ||
-        ((a->there != NULL || b->there != NULL) && a->bodies != b->bodies))
-        return true;
+    if (!can_play(a, b)) return true;
     if (a->there != NULL || b->there != NULL) show_traces(runs);
     const int frames = a->frames > b->frames ? a->frames : b->frames, bodies = a->bodies + b->bodies;
     const int room = STATE_BYTES / (int)(6 * sizeof(float)) / (bodies > 0 ? bodies : 1);
@@ -195,7 +199,7 @@ static bool write_run(Report *report, int index, size_t *left, Error *error) {
         ok = (!now.equal && now.frame == run->difference.frame && now.body == run->difference.body) ||
              error_input(error, run->paths[ACTUAL], "has changed since the comparison");
     }
-    if (ok) {
+    if (ok && can_play(runs[EXPECTED], runs[ACTUAL])) {
         char name[REPORT_RUN_SIZE];
         size_t bytes = 0;
         report->runs_left_out += *left == 0;
