@@ -367,13 +367,17 @@ typedef struct ConvergedRuns {
     ConvergedRun **runs; /* [count] */
 } ConvergedRuns;
 
-/* The run of the scene at the value by the method "reference", and its truth. NULL with error set if it fails. */
-const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, bool struck, Error *error);
-
-/* The same, if it was computed before; else NULL. */
-const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value);
 void converged_runs_free(ConvergedRuns *runs);
 
-/* The converged run of a scene, not cached. */
-bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error);
-Convergence convergence_of(const EnergyLog *log);
+/* A run of a study: value: of the scanned parameter, to know the converged run by; seed: as of stability_shift(). */
+typedef struct JudgedRun {
+    const Method *method;
+    int seed;
+    double value;
+    bool struck; /* as of stability_is_struck() */
+} JudgedRun;
+
+/* The verdict of a study on a run of the scene, which is the same afterwards. *beside: the converged run that decides;
+   NULL: none, as the scene is not struck, and the run alone does not explode: beside another it may gain more. */
+bool stability_judge(Scene *scene, const JudgedRun *run, ConvergedRuns *runs, VerdictReading *reading,
+                     const ConvergedRun **beside, Error *error);

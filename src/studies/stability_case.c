@@ -79,17 +79,6 @@ bool run_counter_add(RunCounter *counter, const char *what, Error *error) {
     return !stopped || error_interrupted(error, what, "stopped; finished parts are kept");
 }
 
-bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error) {
-    Method reference;
-    Scene warm = *scene;
-    warm.warm_starting = true;
-    return method_parse(&reference, "reference", error) && energy_log_run(log, &warm, &reference, error);
-}
-
-Convergence convergence_of(const EnergyLog *log) {
-    return (Convergence){.steps = log->frames, .first = log->unconverged, .fallbacks = log->fallbacks};
-}
-
 /* The scene is the same afterwards. */
 bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *convergence, Error *error) {
     Method reference;
@@ -127,22 +116,21 @@ Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Me
     return reading->verdict < truth ? VERDICT_TOO_FEW : VERDICT_TOO_MANY;
 }
 
-const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value) {
-    const ConvergedRun *run = NULL;
+/* The run of the scene at the value by the method "reference", and its truth. NULL with error set if it fails. */
+static const ConvergedRun *converged_run(ConvergedRuns *runs, Scene *scene, double value, bool struck, Error *error) {
+    const ConvergedRun *known = NULL;
 #pragma omp critical(converged_runs)
     for (int i = 0; i < runs->count; i++)
-        if (runs->runs[i]->value == value) run = runs->runs[i];
-    return run;
-}
-
-const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, bool struck, Error *error) {
-    const ConvergedRun *known = converged_runs_find(runs, value);
+        if (runs->runs[i]->value == value) known = runs->runs[i];
     if (known != NULL) return known;
+    Method reference;
+    Scene warm = *scene;
+    warm.warm_starting = true;
     ConvergedRun *run = calloc(1, sizeof *run);
     if (run == NULL) return error_memory(error, "converged run"), NULL;
     run->value = value;
-    bool ok = converged_run_once(&run->log, scene, error);
-    if (ok) run->convergence = convergence_of(&run->log);
+    bool ok = method_parse(&reference, "reference", error) && energy_log_run(&run->log, &warm, &reference, error);
+    run->convergence = (Convergence){run->log.frames, run->log.unconverged, run->log.fallbacks};
     ok = ok && stability_truth(scene, struck, &run->truth, &run->convergence, error);
     bool room = true;
 #pragma omp critical(converged_runs)
@@ -156,6 +144,31 @@ const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double
     return NULL;
 }
 
+static bool run_beside(Scene *scene, const JudgedRun *run, const ConvergedRun *beside, VerdictReading *reading,
+                       Error *error) {
+    float *x = first_x(scene);
+    const float place = x != NULL ? *x : 0;
+    const bool warm = scene->warm_starting;
+    VerdictRun judged = verdict_run_of(scene, run->method);
+    if (beside != NULL) judged.converged = &beside->log;
+    stability_shift(scene, run->seed);
+    if (run->method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
+    const bool ok = verdict_run(reading, scene, run->method, &judged, error);
+    if (x != NULL) *x = place;
+    scene->warm_starting = warm;
+    if (ok && beside != NULL) reading->verdict = stability_compare(reading, beside->truth, run->method);
+    return ok;
+}
+
+bool stability_judge(Scene *scene, const JudgedRun *run, ConvergedRuns *runs, VerdictReading *reading,
+                     const ConvergedRun **beside, Error *error) {
+    *beside = NULL;
+    if (!run->struck && !run_beside(scene, run, NULL, reading, error)) return false;
+    if (!run->struck && reading->verdict != VERDICT_EXPLODES) return true;
+    *beside = converged_run(runs, scene, run->value, run->struck, error);
+    return *beside != NULL && run_beside(scene, run, *beside, reading, error);
+}
+
 void converged_runs_free(ConvergedRuns *runs) {
     for (int i = 0; i < runs->count; i++) {
         energy_log_free(&runs->runs[i]->log);
@@ -165,9 +178,10 @@ void converged_runs_free(ConvergedRuns *runs) {
     *runs = (ConvergedRuns){0};
 }
 
-bool unconverged_print(FILE *results, int section, MapCell *row, const Convergence *convergence, Error *error) {
+bool unconverged_print(FILE *results, int section, MapCell *row, const ConvergedRun *beside, Error *error) {
+    if (beside == NULL || beside->convergence.fallbacks.not_converged == 0) return true;
+    const Convergence *convergence = &beside->convergence;
     const Fallbacks *fallbacks = &convergence->fallbacks;
-    if (fallbacks->not_converged == 0) return true;
     row->steps = convergence->steps;
     row->not_converged = fallbacks->not_converged;
     row->residual = isfinite(fallbacks->residual) ? fallbacks->residual : NAN;
@@ -179,9 +193,10 @@ bool unconverged_print(FILE *results, int section, MapCell *row, const Convergen
 
 typedef struct Run {
     const GridContext *context;
-    int first, cells;         /* of the piece */
-    VerdictReading *readings; /* [cells, methods] */
-    Convergence *converged;   /* [cells] */
+    int first, cells;            /* of the piece */
+    VerdictReading *readings;    /* [cells, methods] */
+    ConvergedRuns *converged;    /* [cells] of one value */
+    const ConvergedRun **beside; /* [cells, methods] */
     RunCounter counter;
 } Run;
 
@@ -207,25 +222,15 @@ static bool judge_cell(void *piece, int i, Error *error) {
     const StabilityMap *map = context->grid->map;
     const StabilityPlace place = place_of(context->grid);
     const int cell = run->first + i;
-    EnergyLog converged = {0};
-    Verdict truth;
     Scene *scene =
         scene_at(context->grid, context->x[cell % context->x_count], context->y[cell / context->x_count], error);
-    bool ok = scene != NULL && converged_run_once(&converged, scene, error);
-    if (ok) {
-        run->converged[i] = convergence_of(&converged);
-        ok = stability_truth(scene, stability_is_struck(&place, scene, map->stands), &truth, &run->converged[i], error);
-        for (int m = 0; ok && m < context->method_count; m++) {
-            const Method *method = &context->methods[m]->method;
-            VerdictReading *reading = &run->readings[i * context->method_count + m];
-            VerdictRun judged = verdict_run_of(scene, method);
-            judged.converged = &converged;
-            ok =
-                verdict_run(reading, scene, method, &judged, error) && run_counter_add(&run->counter, map->name, error);
-            if (ok) reading->verdict = stability_compare(reading, truth, method);
-        }
+    bool ok = scene != NULL;
+    for (int m = 0; ok && m < context->method_count; m++) {
+        const int at = i * context->method_count + m;
+        const JudgedRun judged = {&context->methods[m]->method, 0, 0, stability_is_struck(&place, scene, map->stands)};
+        ok = stability_judge(scene, &judged, &run->converged[i], &run->readings[at], &run->beside[at], error) &&
+             run_counter_add(&run->counter, map->name, error);
     }
-    energy_log_free(&converged);
     scene_destroy(scene);
     return ok;
 }
@@ -252,7 +257,7 @@ static bool write_cell(const Run *run, int i, int m, FILE *results, Error *error
                    .unit = reading->unit};
     const int section = (int)(method - context->grid->methods->items);
     return piece_tables_print(results, &map_layout, section, &row, error) &&
-           unconverged_print(results, section, &row, &run->converged[i], error);
+           unconverged_print(results, section, &row, run->beside[i * context->method_count + m], error);
 }
 
 static int axis_values(const StabilityAxis *axis, bool quick, double values[BORDER_POINTS_MAX]) {
@@ -310,14 +315,17 @@ bool stability_grid_write(const GridContext *context, int first, int end, FILE *
                .first = first,
                .cells = cells,
                .readings = malloc((size_t)methods * (size_t)cells * sizeof *run.readings),
-               .converged = malloc((size_t)cells * sizeof *run.converged),
+               .converged = calloc((size_t)cells, sizeof *run.converged),
+               .beside = malloc((size_t)methods * (size_t)cells * sizeof *run.beside),
                .counter = {.progress = progress, .expected = (double)cells * methods}};
     const ParallelWork work = {judge_cell, &run};
-    bool ok = ((run.readings != NULL && run.converged != NULL) || error_memory(error, name)) &&
+    bool ok = ((run.readings != NULL && run.converged != NULL && run.beside != NULL) || error_memory(error, name)) &&
               parallel_for(&work, cells, name, NULL, error);
     for (int m = 0; ok && m < methods; m++)
         for (int i = 0; ok && i < cells; i++) ok = write_cell(&run, i, m, results, error);
+    for (int i = 0; run.converged != NULL && i < cells; i++) converged_runs_free(&run.converged[i]);
     free(run.readings);
     free(run.converged);
+    free(run.beside);
     return ok;
 }

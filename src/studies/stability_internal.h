@@ -142,8 +142,9 @@ typedef struct StudyPlace {
 /* Writes folder/stability.html of stability.csv and maps.csv there, whose studies and maps are among the places. */
 bool stability_html_write(const char *folder, const StudyPlace *places, Error *error);
 
-/* Writes the run's row of the table "unconverged", if a step of its converged runs did not converge; fills it in. */
-bool unconverged_print(FILE *results, int section, MapCell *row, const Convergence *convergence, Error *error);
+/* Writes the run's row of the table "unconverged", if a step of the converged runs beside it did not converge; fills it
+   in. */
+bool unconverged_print(FILE *results, int section, MapCell *row, const ConvergedRun *beside, Error *error);
 
 /* One stability map: the verdict of every method in every cell of a grid. */
 
@@ -205,6 +206,6 @@ bool stability_scan_write(ScanContext *context, int first, int end, FILE *result
                           Error *error);
 
 /* The verdict on one run of a study; seed: stability_shift(). False with error set if the method does not apply to the
-   scene or memory is short. */
+   scene or memory is short. *beside: as of stability_judge(). */
 bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
-                        ConvergedRuns *converged, VerdictReading *reading, Error *error);
+                        ConvergedRuns *converged, VerdictReading *reading, const ConvergedRun **beside, Error *error);

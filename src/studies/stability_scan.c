@@ -24,6 +24,7 @@ typedef enum Part { PART_STUDIED, PART_LEFT_OUT, PART_REFUSED } Part;
 typedef struct ScanRun {
     double value;
     VerdictReading reading;
+    const ConvergedRun *beside; /* as of stability_judge() */
 } ScanRun;
 
 /* The results of a method. */
@@ -50,18 +51,12 @@ static StabilityPlace place_of(const StabilityScan *scan) {
 }
 
 bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
-                        ConvergedRuns *converged, VerdictReading *reading, Error *error) {
+                        ConvergedRuns *converged, VerdictReading *reading, const ConvergedRun **beside, Error *error) {
     const StabilityPlace place = place_of(scan);
     Scene *scene = stability_study_scene(scan->study, scan->scenes, value, error);
     if (scene == NULL) return false;
-    const bool struck = stability_is_struck(&place, scene, scan->study->stands);
-    const ConvergedRun *run = converged_runs_get(converged, scene, value, struck, error);
-    VerdictRun judged = verdict_run_of(scene, method);
-    stability_shift(scene, seed);
-    if (method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
-    if (run != NULL) judged.converged = &run->log;
-    const bool ok = run != NULL && verdict_run(reading, scene, method, &judged, error);
-    if (ok) reading->verdict = stability_compare(reading, run->truth, method);
+    const JudgedRun run = {method, seed, value, stability_is_struck(&place, scene, scan->study->stands)};
+    const bool ok = stability_judge(scene, &run, converged, reading, beside, error);
     scene_destroy(scene);
     return ok;
 }
@@ -76,7 +71,8 @@ static bool probe_value(void *context, double value, int seed, Verdict *verdict,
     const ProbeContext *probed = context;
     Run *run = probed->run;
     VerdictReading reading;
-    if (!stability_scan_run(run->scan, probed->method, value, seed, &run->context->converged, &reading, error))
+    const ConvergedRun *beside;
+    if (!stability_scan_run(run->scan, probed->method, value, seed, &run->context->converged, &reading, &beside, error))
         return false;
     *verdict = reading.verdict;
     Result *result = probed->result;
@@ -84,7 +80,7 @@ static bool probe_value(void *context, double value, int seed, Verdict *verdict,
         if (!array_reserve((void **)&result->runs, &result->run_capacity, (size_t)result->run_count + 1,
                            sizeof *result->runs))
             return error_memory(error, "runs");
-        result->runs[result->run_count++] = (ScanRun){value, reading};
+        result->runs[result->run_count++] = (ScanRun){value, reading, beside};
     }
     return run_counter_add(&run->counter, run->scan->study->name, error);
 }
@@ -97,6 +93,7 @@ static bool repeat_runs(const ProbeContext *probed, Error *error) {
     for (int i = 0; i < result->run_count; i++) {
         const ScanRun *first = &result->runs[i];
         VerdictReading again;
+        const ConvergedRun *beside;
         bool sides = false, is_side = false;
         for (int k = 0; k < result->borders.count; k++) {
             const Border *border = &result->borders.items[k];
@@ -104,7 +101,8 @@ static bool repeat_runs(const ProbeContext *probed, Error *error) {
             is_side |= border->holds_at == first->value || border->fails_at == first->value;
         }
         if (first->reading.verdict == VERDICT_ADAPTER_FAILED || (sides && !is_side)) continue;
-        if (!stability_scan_run(run->scan, probed->method, first->value, 0, &run->context->converged, &again, error) ||
+        if (!stability_scan_run(run->scan, probed->method, first->value, 0, &run->context->converged, &again, &beside,
+                                error) ||
             !run_counter_add(&run->counter, run->scan->study->name, error))
             return false;
         if (again.state != first->reading.state || again.steps != first->reading.steps) result->differs = first->value;
@@ -182,7 +180,6 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
     const bool may_fall_back = method->needs_network || method->falls_back;
     if (may_fall_back && !piece_tables_print(lines, &fallback_layout, -1, &row, error)) return false;
     if (study->rests && !piece_tables_print(lines, &rest_layout, -1, &row, error)) return false;
-    const ConvergedRun *converged = converged_runs_find(&run->context->converged, row.value);
     MapCell cell = {.map = study->name, /* a run as a cell, without what it showed */
                     .method = row.method,
                     .setting = row.setting,
@@ -193,7 +190,7 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
                     .y_unit = "",
                     .y = study->fixed.name[0] != '\0' ? study->fixed.value : NAN,
                     .verdict = row.verdict};
-    return unconverged_print(lines, -1, &cell, &converged->convergence, error);
+    return unconverged_print(lines, -1, &cell, scan_run->beside, error);
 }
 
 /* What a program says that it is, and how often its adapter failed, first at the lowest value. */

@@ -83,9 +83,14 @@ TEST(accurate_methods_find_the_rigid_answers) {
         for (int m = 0; study->rigid != NULL && m < 2; m++) {
             ConvergedRuns converged = {0};
             VerdictReading below, above;
+            const ConvergedRun *beside;
             const Method method = method_named(m > 0 ? "reference" : "interior");
-            assert_ok(stability_scan_run(&scan, &method, study->rigid() - apart, 0, &converged, &below, &error), error);
-            assert_ok(stability_scan_run(&scan, &method, study->rigid() + apart, 0, &converged, &above, &error), error);
+            assert_ok(
+                stability_scan_run(&scan, &method, study->rigid() - apart, 0, &converged, &below, &beside, &error),
+                error);
+            assert_ok(
+                stability_scan_run(&scan, &method, study->rigid() + apart, 0, &converged, &above, &beside, &error),
+                error);
             if (!verdict_holds(below.verdict) || above.verdict != VERDICT_FALLS)
                 fail_msg("%s by %s: %s, then %s", study->name, method.text, verdict_words[below.verdict],
                          verdict_words[above.verdict]);
