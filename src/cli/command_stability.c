@@ -223,7 +223,7 @@ static const CommandSpec spec = {
         "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, "
         "...): every border between holding and failing, and how it fails there. Over two parameters: maps. A run "
         "holds if it settles or moves; where a bomb or a moving body strikes, if as many boxes fall as in the "
-        "converged run: none, fewer than half, or more. Takes up to twenty minutes on two cores. An interrupted run "
+        "converged run: none, fewer than half, or more. Takes some ten minutes on two cores. An interrupted run "
         "continues where it stopped.\n"
         "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "
         "of every method and about ten more for each border, a map 100, each as long as the scene's frames.\n"
