@@ -79,7 +79,6 @@ static const CsvColumn columns[] = {
     FIGURE(us_solver_q1, 0, INFINITY),
     FIGURE(us_solver_q3, 0, INFINITY),
     FIGURE(us_step, 0, INFINITY),
-    FIGURE(instructions, 0, INFINITY),
     FIGURE(error_mean, 0, INFINITY),
     FIGURE(error_median, 0, INFINITY),
     FIGURE(error_p95, 0, INFINITY),

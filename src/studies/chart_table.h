@@ -27,14 +27,13 @@ typedef struct ChartRow {
     int launches;
     double us_solver, us_solver_q1, us_solver_q3; /* time in the solver per step: median, quartiles; microseconds */
     double us_step;                               /* of the whole step, median; microseconds */
-    double instructions;                          /* in the solver per step */
     double error_mean, error_median, error_p95;   /* m/s */
     double error_worst;                           /* mean of the worst launch, m/s */
     double share_right;                           /* of bodies, 0 to 1 */
     double penetration_max, drift;                /* m */
     double energy;                                /* above the converged run's, J */
     double moved;                                 /* boxes that moved more than 0.5 m */
-    const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
+    const char *cpu; /* processor that times were measured on; "": not measured, or not known */
     /* of an external method, which has no other times: what its engine says that a step took; median */
     double us_engine;
     /* 1: us_solver varies more than the times of other rows, also when measured again (StepCost); else 0. NaN:

@@ -228,7 +228,6 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .us_solver_q1 = NAN,
                       .us_solver_q3 = NAN,
                       .us_step = NAN,
-                      .instructions = NAN,
                       .error_worst = NAN,
                       .penetration_max = NAN,
                       .drift = NAN,
@@ -248,7 +247,6 @@ void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
     row->us_solver_q1 = cost->solver_q1;
     row->us_solver_q3 = cost->solver_q3;
     row->us_step = cost->step;
-    row->instructions = cost->instructions;
     row->us_engine = cost->engine;
     row->us_varies = isnan(cost->solver) ? (double)NAN : cost->varies;
     if (!isnan(cost->solver) || !isnan(cost->engine)) row->cpu = cpu;

@@ -266,8 +266,8 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
         for (int p = 0; p < PROTOCOLS; p++)
             for (int phase = 0; phase < PHASES; phase++) {
                 const StepCost *cost = &times.costs[p][i][phase];
-                const double stored[] = {cost->solver,       cost->solver_q1, cost->solver_q3, cost->step,
-                                         cost->instructions, cost->engine,    cost->varies};
+                const double stored[] = {cost->solver, cost->solver_q1, cost->solver_q3,
+                                         cost->step,   cost->engine,    cost->varies};
                 fwrite(stored, sizeof stored, 1, results);
             }
     for (int i = 0; times.lists != NULL && i < times.count; i++) snapshots_free(&times.lists[i]);
@@ -283,11 +283,11 @@ static bool is_time(double value) { return !(value < 0); }
 /* What chart.csv can have. */
 static bool is_cost(const StepCost *cost) {
     return is_time(cost->solver_q1) && !(cost->solver_q1 > cost->solver) && !(cost->solver > cost->solver_q3) &&
-           is_time(cost->step) && is_time(cost->instructions) && is_time(cost->engine);
+           is_time(cost->step) && is_time(cost->engine);
 }
 
 MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error) {
-    double stored[7];
+    double stored[6];
     const size_t count = (size_t)study->contender_count;
     MethodTimes *times = calloc(count + 1, sizeof *times);
     if (times == NULL) return error_memory(error, path), NULL;
@@ -295,14 +295,8 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
     for (size_t i = 0; whole && i < count * PROTOCOLS * PHASES; i++) {
         memcpy(stored, bytes + i * sizeof stored, sizeof stored);
         StepCost *cost = &times[i / (PROTOCOLS * PHASES)].costs[i / PHASES % PROTOCOLS][i % PHASES];
-        *cost = (StepCost){stored[0],
-                           stored[1],
-                           stored[2],
-                           stored[3],
-                           .instructions = stored[4],
-                           .engine = stored[5],
-                           .varies = stored[6] == 1};
-        whole = is_cost(cost) && (stored[6] == 0 || stored[6] == 1);
+        *cost = (StepCost){stored[0], stored[1], stored[2], stored[3], .engine = stored[4], .varies = stored[5] == 1};
+        whole = is_cost(cost) && (stored[5] == 0 || stored[5] == 1);
     }
     if (whole) return times;
     error_input(error, path, "is no result of times; delete it, and run the command again");

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The timing of contenders, in turns: the clock and the counter of instructions of this thread, the steps, their
-   summary. */
+/* The timing of contenders, in turns: the clock, the steps, their summary. */
 #define _GNU_SOURCE
 #include "base/base.h"
 #include "base/machine.h"
@@ -14,35 +13,19 @@
 #include "studies/timing.h"
 
 #include <assert.h>
-#include <linux/perf_event.h>
 #include <math.h>
 #include <omp.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/syscall.h>
 #include <time.h>
-#include <unistd.h>
-
-/* A counter, and what reading it costs, which is subtracted from every measurement. */
-typedef struct Meter {
-    int64_t (*now)(void);
-    int64_t overhead;
-} Meter;
 
 /* Nanoseconds. Tests put a clock that counts in the place of the system's (tests/studies/test_times.c). */
-static int64_t meter_time(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
-}
-
-static int counter = -1;
-
-static int64_t meter_instructions(void) {
-    int64_t count = 0;
-    return read(counter, &count, sizeof count) == (ssize_t)sizeof count ? count : 0;
+static int64_t now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
 }
 
 /* At least 0, as the overhead itself varies by some nanoseconds. */
@@ -61,16 +44,16 @@ typedef struct StepLog {
 } StepLog;
 
 /* Takes a step and adds its times to the log. */
-static bool metered_step(Stepper *stepper, World *world, Step step, const Meter *meter, StepLog *log, Error *error) {
-    StepMeter inner = {.now = meter->now};
+static bool metered_step(Stepper *stepper, World *world, Step step, int64_t overhead, StepLog *log, Error *error) {
+    StepMeter inner = {.now = now};
     if (!array_reserve((void **)&log->items, &log->capacity, (size_t)log->count + 1, sizeof *log->items))
         return error_memory(error, "timing");
     StepTime *cost = &log->items[log->count];
     step.meter = &inner;
-    int64_t begun = meter->now();
+    int64_t begun = now();
     if (!simulate_step(stepper, world, &step, error)) return false;
-    cost->step = meter_without(meter->now() - begun, 3 * meter->overhead); /* with two calls inside the step */
-    cost->solver = meter_without(inner.solving, meter->overhead);
+    cost->step = meter_without(now() - begun, 3 * overhead); /* with two calls inside the step */
+    cost->solver = meter_without(inner.solving, overhead);
     cost->engine = inner.reported;
     log->count++;
     return true;
@@ -78,13 +61,13 @@ static bool metered_step(Stepper *stepper, World *world, Step step, const Meter 
 
 /* From a step on to the last one, or to the end of the phase after the impact; ends early, too, if the state becomes NaN
    or infinite, or a program fails: *ended. */
-static bool run_closed(Stepper *stepper, const Scene *launched, World *world, int first, int last, const Meter *meter,
+static bool run_closed(Stepper *stepper, const Scene *launched, World *world, int first, int last, int64_t overhead,
                        StepLog *log, bool *ended, Error *error) {
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     Error failure = {0};
     for (int frame = first; frame <= last; frame++) {
         if (tracker.touch > 0 && frame >= tracker.touch + tracker.impact_frames + AFTER_FRAMES) break;
-        *ended = !metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, log, &failure);
+        *ended = !metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, overhead, log, &failure);
         if (*ended) break;
         log->items[log->count - 1].phase = phase_next(&tracker, world_problem(world), frame);
     }
@@ -94,13 +77,14 @@ static bool run_closed(Stepper *stepper, const Scene *launched, World *world, in
 }
 
 /* Ends early if a program fails. */
-static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world, const Meter *meter, StepLog *log,
+static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world, int64_t overhead, StepLog *log,
                        Error *error) {
     Error failure = {0};
     for (int i = 0; i < list->count; i++) {
         const Snapshot *snapshot = &list->items[i];
         const Step step = {.scene = snapshot->scene, .frame = snapshot->frame, .engine_step = true};
-        if (!world_copy(world, snapshot->world, &failure) || !metered_step(stepper, world, step, meter, log, &failure))
+        if (!world_copy(world, snapshot->world, &failure) ||
+            !metered_step(stepper, world, step, overhead, log, &failure))
             break;
         log->items[log->count - 1].phase = snapshot->phase;
     }
@@ -118,7 +102,6 @@ typedef struct Timed {
     bool shares, ended; /* there are such steps; one of them failed */
     StepLog *logs;      /* [parts][repetitions] */
     bool *due;          /* [parts] to be measured */
-    double instructions[PROTOCOLS][PHASES];
 } Timed;
 
 typedef struct Timing {
@@ -126,7 +109,7 @@ typedef struct Timing {
     const SnapshotList *snapshots;
     int count, parts; /* parts: launches and two */
     Timed *items;     /* [count] */
-    const Meter *meter;
+    int64_t overhead; /* ns: of reading the clock, which is subtracted from every measurement */
     int repetition;
     cpu_set_t cores;                      /* that the process may use */
     int threads;                          /* that measure at once, each on a core of its own */
@@ -144,12 +127,13 @@ static StepLog *logs_of(const Timing *timing, const Timed *timed, int part) {
     return timed->logs + part * timing->options->repetitions;
 }
 
-static bool run_part(const Timing *timing, Timed *timed, int part, const Meter *meter, StepLog *log, Error *error) {
+static bool run_part(const Timing *timing, Timed *timed, int part, StepLog *log, Error *error) {
     const TimingOptions *options = timing->options;
+    const int64_t overhead = timing->overhead;
     log->count = 0;
     if (protocol_of(timing, part) == PROTOCOL_FROZEN)
         return stepper_describe(timed->stepper)->whole_scenes ||
-               run_frozen(timed->stepper, timing->snapshots, timed->world, meter, log, error);
+               run_frozen(timed->stepper, timing->snapshots, timed->world, overhead, log, error);
     const int shared = timed->shares ? options->shared_steps : 0;
     const Scene *launched = &options->launches[part > 0 ? part - 1 : 0];
     if (part == 0 ? shared == 0 : timed->ended) return true;
@@ -157,11 +141,11 @@ static bool run_part(const Timing *timing, Timed *timed, int part, const Meter *
     if (world == NULL) return false;
     bool ended, ok;
     if (part == 0) {
-        ok = run_closed(timed->stepper, launched, world, 1, shared, meter, log, &timed->ended, error) &&
+        ok = run_closed(timed->stepper, launched, world, 1, shared, overhead, log, &timed->ended, error) &&
              world_copy(timed->start, world, error);
     } else {
         ok = (shared == 0 || world_copy(world, timed->start, error)) &&
-             run_closed(timed->stepper, launched, world, shared + 1, options->last_frame, meter, log, &ended, error);
+             run_closed(timed->stepper, launched, world, shared + 1, options->last_frame, overhead, log, &ended, error);
     }
     world_destroy(world);
     return ok;
@@ -184,7 +168,7 @@ static bool repeat(void *context, int i, Error *error) {
     stay(&timing->cores, omp_get_thread_num());
     for (int part = 0; ok && part < timing->parts; part++)
         if (timed->due[part])
-            ok = run_part(timing, timed, part, timing->meter, &logs_of(timing, timed, part)[timing->repetition], error);
+            ok = run_part(timing, timed, part, &logs_of(timing, timed, part)[timing->repetition], error);
     sched_setaffinity(0, sizeof timing->cores, &timing->cores);
     return ok;
 }
@@ -212,45 +196,10 @@ static bool warm_up(Timing *timing, Error *error) {
     for (int i = 0; ok && i < timing->count; i++) {
         Timed *timed = &timing->items[i];
         StepLog log = {0};
-        ok = (!launches || run_part(timing, timed, 0, timing->meter, &log, error)) &&
-             run_part(timing, timed, launches ? 1 : timing->parts - 1, timing->meter, &log, error);
+        ok = (!launches || run_part(timing, timed, 0, &log, error)) &&
+             run_part(timing, timed, launches ? 1 : timing->parts - 1, &log, error);
         free(log.items);
     }
-    return ok;
-}
-
-/* Means of the solver's instructions in each phase, where the system counts those of this thread. Without repetitions:
-   counts do not vary. */
-static bool count_instructions(Timing *timing, Error *error) {
-    struct perf_event_attr event = {.type = PERF_TYPE_HARDWARE,
-                                    .size = sizeof event,
-                                    .config = PERF_COUNT_HW_INSTRUCTIONS,
-                                    .exclude_kernel = 1,
-                                    .exclude_hv = 1};
-    const Meter meter = {meter_instructions, 0};
-    bool ok = true;
-    if (!timing->options->no_instructions) counter = (int)syscall(SYS_perf_event_open, &event, 0, -1, -1, 0);
-    for (int i = 0; i < timing->count; i++) {
-        Timed *timed = &timing->items[i];
-        const bool counts = counter >= 0 && !is_external(timed); /* those are not the engine's */
-        double sums[PROTOCOLS][PHASES] = {{0}};
-        int steps[PROTOCOLS][PHASES] = {{0}};
-        StepLog log = {0};
-        for (int part = 0; ok && counts && part < timing->parts; part++) {
-            const int protocol = protocol_of(timing, part);
-            ok = run_part(timing, timed, part, &meter, &log, error);
-            for (int k = 0; k < log.count; k++) {
-                sums[protocol][log.items[k].phase] += (double)log.items[k].solver;
-                steps[protocol][log.items[k].phase]++;
-            }
-        }
-        free(log.items);
-        for (int p = 0; p < PROTOCOLS; p++)
-            for (int phase = 0; phase < PHASES; phase++)
-                timed->instructions[p][phase] = steps[p][phase] > 0 ? sums[p][phase] / steps[p][phase] : (double)NAN;
-    }
-    if (counter >= 0) close(counter);
-    counter = -1;
     return ok;
 }
 
@@ -282,8 +231,7 @@ static StepCost summarise(const Timing *timing, const Timed *timed, int protocol
     StepCost sum = {0};
     for (int part = 0; part < timing->parts; part++)
         if (protocol_of(timing, part) == protocol) add_part(timing, timed, part, phase, &sum);
-    StepCost unknown = {
-        .solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .engine = NAN, .instructions = NAN};
+    StepCost unknown = {.solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .engine = NAN};
     if (is_external(timed) && sum.engine > 0) unknown.engine = sum.engine / sum.steps;
     if (sum.steps == 0 || is_external(timed)) return unknown;
     return (StepCost){.solver = sum.solver / sum.steps,
@@ -291,8 +239,7 @@ static StepCost summarise(const Timing *timing, const Timed *timed, int protocol
                       .solver_q3 = sum.solver_q3 / sum.steps,
                       .step = sum.step / sum.steps,
                       .engine = NAN,
-                      .steps = sum.steps,
-                      .instructions = timed->instructions[protocol][phase]};
+                      .steps = sum.steps};
 }
 
 static double distance(const StepCost *cost) { return cost->solver_q3 - cost->solver_q1; }
@@ -340,7 +287,7 @@ static double quickest(const Timing *timing, Timed *timed, Error *error) {
     StepLog logs[TRIES] = {{0}};
     double sum = 0;
     for (int r = 0; r < TRIES; r++)
-        if (!run_part(timing, timed, 1, timing->meter, &logs[r], error)) sum = NAN;
+        if (!run_part(timing, timed, 1, &logs[r], error)) sum = NAN;
     for (int i = 0; i < logs[0].count; i++) {
         int64_t least = logs[0].items[i].solver;
         for (int r = 1; r < TRIES; r++) least = logs[r].items[i].solver < least ? logs[r].items[i].solver : least;
@@ -367,7 +314,7 @@ static void choose_threads(Timing *timing) {
             together = quickest(timing, &timing->items[0], &(Error){0});
             atomic_store(&done, true);
         }
-        while (!atomic_load(&done) && run_part(timing, &timing->items[thread], 1, timing->meter, &log, &(Error){0})) {
+        while (!atomic_load(&done) && run_part(timing, &timing->items[thread], 1, &log, &(Error){0})) {
         }
         free(log.items);
         sched_setaffinity(0, sizeof timing->cores, &timing->cores);
@@ -391,17 +338,16 @@ static bool make_timed(const Timing *timing, const Contender *contender, Timed *
 }
 
 static bool measure(Timing *timing, const Contender *const *contenders, const Progress *progress, Error *error) {
-    Meter clock = {meter_time, INT64_MAX};
-    timing->meter = &clock;
+    timing->overhead = INT64_MAX;
     for (int i = 0; i < 1000; i++) {
-        const int64_t begun = meter_time(), passed = meter_time() - begun;
-        if (passed < clock.overhead) clock.overhead = passed;
+        const int64_t begun = now(), passed = now() - begun;
+        if (passed < timing->overhead) timing->overhead = passed;
     }
     for (int i = 0; i < timing->count; i++)
         if (!make_timed(timing, contenders[i], &timing->items[i], error)) return false;
     if (!warm_up(timing, error)) return false;
     choose_threads(timing);
-    if (!repeat_all(timing, progress, error) || !count_instructions(timing, error)) return false;
+    if (!repeat_all(timing, progress, error)) return false;
     summarise_all(timing);
     if (!repeat_all(timing, NULL, error)) return false;
     summarise_all(timing);
@@ -442,8 +388,7 @@ bool timing_of_launch(const Contender *const *contenders, int count, const Scene
                                    .launch_count = 1,
                                    .repetitions = repetitions,
                                    .last_frame = last_frame,
-                                   .one_core = true,
-                                   .no_instructions = true};
+                                   .one_core = true};
     StepCost frozen[TIMING_OF_LAUNCH][PHASES];
     assert(count <= TIMING_OF_LAUNCH);
     return timing_measure(contenders, count, &options, &(SnapshotList){0}, closed, frozen, NULL, error);

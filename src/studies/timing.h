@@ -26,7 +26,6 @@ typedef struct StepCost {
     double step;                         /* of the whole step: median */
     double engine;                       /* of an external method, instead of all others: median; else NaN */
     int steps;                           /* of the phase, in each repetition */
-    double instructions;                 /* of the solver; NaN if they cannot be counted */
     bool varies;                         /* also when it was measured again */
 } StepCost;
 
@@ -36,7 +35,6 @@ typedef struct TimingOptions {
     int last_frame;                /* of each run, which ends with the phase after the impact */
     int shared_steps;              /* of all launches: measured once (contender_forgets()) */
     bool one_core;                 /* not on several */
-    bool no_instructions;          /* do not count them: that takes a run more */
 } TimingOptions;
 
 /* Fills closed[count][PHASES] (closed loop) and frozen[count][PHASES] (frozen steps). */
@@ -44,7 +42,7 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
                     const SnapshotList *snapshots, StepCost (*closed)[PHASES], StepCost (*frozen)[PHASES],
                     const Progress *progress, Error *error);
 
-/* Fills closed[count][PHASES] of one launch, without instructions. count: at most TIMING_OF_LAUNCH. */
+/* Fills closed[count][PHASES] of one launch. count: at most TIMING_OF_LAUNCH. */
 enum { TIMING_OF_LAUNCH = 2 };
 bool timing_of_launch(const Contender *const *contenders, int count, const Scene *launched, int last_frame,
                       int repetitions, StepCost (*closed)[PHASES], Error *error);

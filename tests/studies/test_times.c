@@ -151,12 +151,8 @@ static void measure(Measured *measured, const char *const *texts, int count, int
     OWN(Scene) *scene = scene_named("single");
     const Contender *contenders[MARKED];
     const SnapshotList none = {0};
-    const TimingOptions options = {.launches = scene,
-                                   .launch_count = 1,
-                                   .repetitions = REPETITIONS,
-                                   .last_frame = last_frame,
-                                   .one_core = true,
-                                   .no_instructions = true};
+    const TimingOptions options = {
+        .launches = scene, .launch_count = 1, .repetitions = REPETITIONS, .last_frame = last_frame, .one_core = true};
     for (int i = 0; i < count; i++) {
         contenders[i] = &measured->contenders[i];
         measured->contenders[i].method = method_named(texts[i]);
