@@ -27,7 +27,8 @@ static OptionRead read_beyond, read_antialias, read_mask;
 static const Option option_table[] = {
     {"--tolerance", 0, "MAX",
      "Pictures: ignore pixels in which no channel differs by more than MAX (0 to 255). Runs, two or those of two "
-     "folders: pass them where the centres of a body are at most MAX metres apart; MAX,RAD also limits its rotation "
+     "folders: pass them where the centres of a body are at most MAX metres apart; MAX,RAD also limits its rotation; "
+     "chaos: as far as roundings grow, which takes --scene "
      "(default: 0, every bit counts). In folders of pictures and runs, a whole number is for the "
      "pictures, any other limit for the runs",
      OPTION_TEXT(CompareOptions, limit)},
@@ -137,9 +138,12 @@ static bool read_distance(CompareOptions *options, Error *error) {
     const char *rest;
     *poses = (PoseTolerance){.angle = INFINITY};
     if (options->limit == NULL) return true;
+    options->chaos = strcmp(options->limit, "chaos") == 0;
+    if (options->chaos)
+        return options->scene != NULL || error_input(error, "--tolerance", "chaos is measured with --scene SCENE");
     if (!parse_leading_double(options->limit, &poses->distance, &rest) || !(poses->distance >= 0) ||
         (*rest != '\0' && (*rest != ',' || !parse_double(rest + 1, &poses->angle) || !(poses->angle >= 0))))
-        return error_input(error, "--tolerance", "'%.64s' is not a distance in metres, or METRES,RADIANS",
+        return error_input(error, "--tolerance", "'%.64s' is not a distance in metres, METRES,RADIANS, or chaos",
                            options->limit);
     poses->given = poses->distance > 0 || *rest == ',';
     return true;

@@ -136,6 +136,22 @@ static void print_beyond(FILE *out, const Trajectory *a, const TrajectoryParting
     print_contact(out, &parting->beyond_contacts, parting->no_impulses);
 }
 
+static void print_beyond_chaos(FILE *out, const RunComparison *c) {
+    const PartedBody *beyond = &c->parting.beyond;
+    int frame = 0;
+    while (frame < c->parting.frames && !(c->chaos.distance[frame] >= GROWTH_SATURATED)) frame++;
+    if (beyond->frame < 0)
+        fprintf(out, "as near as roundings keep the runs: %d frames of %d bodies\n", c->parting.frames,
+                c->runs[0]->bodies);
+    else {
+        fprintf(out, "farther than roundings allow: ");
+        print_body(out, c->runs[0], beyond, true);
+    }
+    if (frame < c->parting.frames)
+        fprintf(out, "from frame %d on, one rounding has grown to %g m: later frames tell nothing\n", frame,
+                GROWTH_SATURATED);
+}
+
 static void print_parting(FILE *out, const RunComparison *c) {
     const Trajectory *a = c->runs[0];
     const TrajectoryParting *parting = &c->parting;
@@ -159,6 +175,7 @@ static void print_parting(FILE *out, const RunComparison *c) {
     fprintf(out, "kind: %s\n", trajectory_part_kind(a, c->runs[1], parting).text);
     print_cause(out, parting);
     if (c->options->poses.given) print_beyond(out, a, parting, &c->options->poses);
+    if (c->options->chaos) print_beyond_chaos(out, c);
     if (c->difference.max_frame >= 0)
         fprintf(out, "largest distance: frame %d, body %d: %.3g m apart\n", c->difference.max_frame,
                 c->difference.max_body, c->difference.max_distance);
@@ -251,7 +268,8 @@ static void print_all(FILE *out, const RunComparison *c) {
     fprintf(out, "not compared: contacts and their impulses of later steps\n");
     fprintf(out, "growth of the largest distance: ");
     print_rate(out, &c->growth, a->dt > 0 ? "s" : "frame", step_of(c));
-    if (c->chaos.distance != NULL) print_chaos(out, &c->chaos, &c->growth, &c->shifted, step_of(c));
+    if (c->chaos.distance != NULL && !c->options->chaos)
+        print_chaos(out, &c->chaos, &c->growth, &c->shifted, step_of(c));
 }
 
 /* A trace from standard input is compared with one from a file. */
@@ -275,6 +293,34 @@ static bool all_boxes(const Trajectory *run) {
     return !run->no_poses;
 }
 
+/* How far a body is from its place in the other run, m: its centre, or by its turn a corner. */
+static double gone(const RunComparison *c, int frame, int body) {
+    const StateDifference by = trajectory_state_difference(c->runs[0], c->runs[1], frame, body);
+    const Vec2 size = c->runs[0]->size[body];
+    return fmax(by.distance, fabs(remainder(by.angle, 2 * acos(-1))) * hypot((double)size.x, (double)size.y) / 2);
+}
+
+/* What exceeds the tolerance is the farthest body of the first frame in which one is farther than roundings allow, if
+   no body is NaN or missing before. */
+static bool judge_chaos(RunComparison *c, Error *error) {
+    const int frames = c->parting.frames;
+    PartedBody *beyond = &c->parting.beyond;
+    double *distance = calloc((size_t)frames, sizeof *distance);
+    if (distance == NULL) return error_memory(error, "compare");
+    for (int frame = 0; frame < frames; frame++)
+        for (int body = 0; body < c->runs[0]->bodies; body++)
+            distance[frame] = fmax(distance[frame], gone(c, frame, body));
+    const int frame = chaos_exceeded(&c->chaos, distance, frames);
+    for (int body = 0; frame >= 0 && (beyond->frame < 0 || frame < beyond->frame) && body < c->runs[0]->bodies; body++)
+        if (gone(c, frame, body) == distance[frame])
+            *beyond = (PartedBody){.frame = frame,
+                                   .body = body,
+                                   .bodies = 1,
+                                   .by = trajectory_state_difference(c->runs[0], c->runs[1], frame, body)};
+    free(distance);
+    return true;
+}
+
 /* Reads and compares both runs, and measures how their distance grows. */
 static bool measure(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
@@ -293,7 +339,9 @@ static bool measure(RunComparison *c, Error *error) {
         return (options->scene == NULL && options->csv == NULL) ||
                error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0],
                            c->difference.what);
-    if (!trajectory_part(runs[0], runs[1], &options->poses, &c->parting, error)) return false;
+    /* With chaos as the tolerance: what is NaN or in one run only. */
+    const PoseTolerance any = {.given = true, .distance = INFINITY, .angle = INFINITY};
+    if (!trajectory_part(runs[0], runs[1], options->chaos ? &any : &options->poses, &c->parting, error)) return false;
 
     const int frames = c->parting.frames;
     const double dt = step_of(c);
@@ -303,13 +351,15 @@ static bool measure(RunComparison *c, Error *error) {
     /* compare_runs_free() frees c->distance. NOLINTBEGIN(clang-analyzer-unix.Malloc) */
     if (!growth_measure(c->distance, 0, frames, dt, &c->growth, error)) return false;
     if (options->scene != NULL) { /* chaos, over the same frames as the growth of the two runs */
-        const int body = chaos_body(runs[0], c->parting.first.body, c->parting.first.frame);
-        if (body < 0) return error_input(error, options->scene, "has no body that can move, so none can be shifted");
+        const int body = options->chaos ? -1 : chaos_body(runs[0], c->parting.first.body, c->parting.first.frame);
+        if (body < 0 && !options->chaos)
+            return error_input(error, options->scene, "has no body that can move, so none can be shifted");
         const bool ok =
             chaos_run(&c->chaos, options->scene, runs[0], body, frames, progress_bar_begin(runs[0]->scene), error);
         progress_bar_end();
         if (!ok || !growth_measure(c->chaos.distance, c->growth.first, c->growth.end, dt, &c->shifted, error))
             return false;
+        if (options->chaos && !judge_chaos(c, error)) return false;
     }
     const DistanceTable table = {frames, dt, c->distance, c->chaos.distance};
     return options->csv == NULL || distance_table_write(&table, options->csv, error);

@@ -12,6 +12,7 @@
 #include "scenes/scenes.h"
 
 #include <gsl/gsl_fit.h>
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -43,11 +44,20 @@ static bool shifted_scene(const Scene *scene, int body, Scene *shifted, Chaos *c
     if (size > 0) memcpy(shifted->bodies, scene->bodies, size);
     shifted->bomb.velocity = scene_bomb_body(scene).velocity;
     shifted->bomb.velocity_from_position = false;
+    chaos->body = body;
+    chaos->shift = 0;
+    for (int i = 0; body < 0 && i <= scene->body_count; i++) { /* the last is the bomb */
+        float *x = i == scene->body_count ? &shifted->bomb.x.value : &shifted->bodies[i].position.x;
+        const float unit = FLT_EPSILON * fmaxf(1, exp2f(floorf(log2f(fabsf(*x))))); /* of the last place, from 1 m on */
+        if (i == scene->body_count ? !scene->bomb.present : scene->bodies[i].fixed) continue;
+        *x += i % 2 == 0 ? unit : -unit;
+        chaos->shift = fmax(chaos->shift, (double)unit);
+    }
+    if (body < 0) return true;
     float *x = body == scene->body_count ? &shifted->bomb.x.value : &shifted->bodies[body].position.x;
     const float before = *x;
     *x = before + CHAOS_SHIFT;
     if (*x == before) *x = nextafterf(before, INFINITY);
-    chaos->body = body;
     chaos->shift = (double)*x - before;
     return true;
 }
@@ -92,7 +102,7 @@ static bool run_both(Chaos *chaos, const Scene *scene, const Trajectory *run, in
     if (ok) {
         Watch watch = {chaos, unshifted, {progress, 0.5, 0.5, false}};
         for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
-        chaos->distance[0] = trajectory_has(unshifted, 0, body) ? chaos->shift : 0;
+        chaos->distance[0] = body < 0 || trajectory_has(unshifted, 0, body) ? chaos->shift : 0;
         /* A run that ends in a NaN or infinite state is a valid result. */
         ok = simulate_observed(&shifted, &method, &(StepObserver){measure, &watch}, &failure) ||
              failure.failure != FAILURE_NONE;
@@ -130,6 +140,15 @@ bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int body, 
     bool ok = scene != NULL && run_scene(chaos, scene, path, run, body, frames, progress, error);
     scene_destroy(scene);
     return ok;
+}
+
+int chaos_exceeded(const Chaos *chaos, const double *distance, int frames) {
+    double sum = 0;
+    for (int frame = 0; frame < frames; frame++) {
+        sum += isnan(chaos->distance[frame]) ? INFINITY : chaos->distance[frame];
+        if (!(distance[frame] <= CHAOS_ROUNDINGS * sum)) return frame;
+    }
+    return -1;
 }
 
 static const double LN_2 = 0.69314718055994530942;

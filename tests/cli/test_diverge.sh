@@ -50,4 +50,29 @@ says "cause: the initial state"
 says "shifted run (body 11 shifted by 9.5e-07 m"
 says "verdict: chaos: grows as fast as a tiny shift"
 
+# Chaos as the tolerance: two roundings of the bomb's place pass although the runs end metres apart, twice the sweeps do not.
+run 0 compare engine.npz moved.npz --tolerance chaos --scene "$stack"
+says "as near as roundings keep the runs: 121 frames of 12 bodies"
+says "later frames tell nothing"
+run 1 compare engine.npz more.npz --tolerance chaos --scene "$stack" --report chaos
+says "farther than roundings allow: frame "
+grep -q 'run.html#t=' chaos/report.html || fail "no page where roundings do not suffice"
+run 0 compare engine.npz engine.npz --tolerance chaos --scene "$stack"
+run 2 compare engine.npz more.npz --tolerance chaos
+complains "--tolerance: error: chaos is measured with --scene SCENE"
+mkdir a b
+run 2 compare a b --tolerance chaos
+/usr/bin/python3 - <<'PYTHON'
+import numpy
+run = dict(numpy.load("moved.npz"))
+for key in "position", "angle", "velocity", "angular_velocity":
+    run[key][100:, 11] = numpy.nan
+for key in list(run):
+    if key.startswith(("contact_", "verdict")):
+        del run[key]
+numpy.savez("lost.npz", **run)
+PYTHON
+run 1 compare engine.npz lost.npz --tolerance chaos --scene "$stack"
+says "farther than roundings allow: frame 100, body 11 (the bomb): only in run 1"
+
 finish
