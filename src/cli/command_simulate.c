@@ -166,7 +166,7 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
     if (options->hashes != NULL) outputs[count++] = (RecorderOutput){options->hashes, TRAJECTORY_HASHES};
     Recorder *recorder = recorder_create_to(scene, method, outputs, count, options->no_contacts, error);
     if (recorder == NULL) return false;
-    const StepObserver observer = simulate_verdict_observer(&result->verdict);
+    const StepObserver observer = {verdict_watch_observe, &result->verdict.watch};
     const RunWatch watch = {.recorder = recorder,
                             .observers = &observer,
                             .observer_count = 1,

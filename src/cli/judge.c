@@ -19,7 +19,7 @@ Trajectory *simulate_judged(const Scene *scene, const Method *method, const Prog
     char words[TRAJECTORY_VERDICT_SIZE];
     Recorder *recorder = recorder_create(scene, method, error);
     if (recorder == NULL) return NULL;
-    const StepObserver observer = simulate_verdict_observer(&verdict);
+    const StepObserver observer = {verdict_watch_observe, &verdict.watch};
     const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1, .progress = progress};
     Trajectory *run = NULL;
     if (simulate_verdict_begin(&verdict, scene, method, error) && simulate_watched(scene, method, &watch, error) &&

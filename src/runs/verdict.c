@@ -33,7 +33,7 @@ bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_MOVES; }
 
 bool verdict_sound(Verdict verdict) { return verdict < VERDICT_HANGS; }
 
-double verdict_size(const Body *body) { return sqrt((double)body->size.x * (double)body->size.y); }
+static double size_of(const Body *body) { return sqrt((double)body->size.x * (double)body->size.y); }
 
 void verdict_watch_free(VerdictWatch *watch) {
     free(watch->bodies);
@@ -72,12 +72,15 @@ double depth_of(const WatchedBody *a, const WatchedBody *b, double within) {
     return overlap_depth(&of_a, &of_b);
 }
 
-bool bodies_touch(const VerdictWatch *watch, const WatchedBody *a, const WatchedBody *b) {
+double way_past(const WatchedBody *a, const WatchedBody *b) {
     const double x = a->last.x - a->before.x - (b->last.x - b->before.x),
                  y = a->last.y - a->before.y - (b->last.y - b->before.y);
-    const double way = sqrt(x * x + y * y) + fabs(turn_between(a->last.angle, a->before.angle)) * a->corner +
-                       fabs(turn_between(b->last.angle, b->before.angle)) * b->corner;
-    const double gap = way + touch_share * fmin(a->side, b->side) + 2 * (double)watch->run.skin;
+    return sqrt(x * x + y * y) + fabs(turn_between(a->last.angle, a->before.angle)) * a->corner +
+           fabs(turn_between(b->last.angle, b->before.angle)) * b->corner;
+}
+
+bool bodies_touch(const VerdictWatch *watch, const WatchedBody *a, const WatchedBody *b) {
+    const double gap = way_past(a, b) + touch_share * fmin(a->side, b->side) + 2 * (double)watch->run.skin;
     return depth_of(a, b, gap) > -gap;
 }
 
@@ -190,7 +193,7 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
         const Pose pose = pose_of(from);
         const double w = from->size.x, h = from->size.y, up = height_of(watch, &pose);
         *body = (WatchedBody){.box = from->size,
-                              .size = verdict_size(from),
+                              .size = size_of(from),
                               .side = fmin(w, h),
                               .corner = sqrt(w * w + h * h) / 2,
                               .last = pose,
@@ -251,7 +254,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
         const Pose pose = pose_of(&bodies[i]);
         watch->lowest = fmin(watch->lowest, height_of(watch, &pose));
         if (i == run->bomb) continue;
-        sizes += verdict_size(&bodies[i]);
+        sizes += size_of(&bodies[i]);
         moving++;
         watch->fastest = larger(watch->fastest, vec2_distance(bodies[i].velocity, vec2(0, 0)));
     }
@@ -316,7 +319,7 @@ static double move_bodies(VerdictWatch *watch, const VerdictStep *step) {
         body->last = pose;
         if (body->held != step->frame) continue;
         const double across = across_of(watch, &pose);
-        watch->held[0] = fmin(watch->held[0], across - body->corner);
+        watch->held[0] = -larger(-watch->held[0], body->corner - across);
         watch->held[1] = larger(watch->held[1], across + body->corner);
     }
     return farthest;

@@ -4,7 +4,7 @@
 
        SimulateVerdict verdict;
        simulate_verdict_begin(&verdict, scene, &method, error);
-       ... StepObserver observer = simulate_verdict_observer(&verdict); simulate_watched(...) ...
+       ... StepObserver observer = {verdict_watch_observe, &verdict.watch}; simulate_watched(...) ...
        simulate_verdict_end(&verdict, error);
        simulate_verdict_words(&verdict, words);    "falls; 4 of 10 fell, first at 1.2 s; at rest since 3.4 s"
 
@@ -79,9 +79,6 @@ bool verdict_holds(Verdict verdict);
 
 /* Nothing hangs, sinks, tunnels or explodes, or is NaN. What falls may be sound. */
 bool verdict_sound(Verdict verdict);
-
-/* The size of a body: a square of this side has its area. m */
-double verdict_size(const Body *body);
 
 typedef struct VerdictCount {
     int bodies, fell, left, moved; /* what left has fallen, too */
@@ -231,9 +228,6 @@ typedef struct SimulateVerdict {
 
 /* The scene and the method outlive the verdict. */
 bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const Method *method, Error *error);
-
-/* To be called after every step; outlived by the verdict. */
-StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
 
 /* After the run; failure: why it failed, if it did. False if there is no verdict: it was not the method that failed. */
 bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);

@@ -82,6 +82,9 @@ static inline bool energy_counts(const VerdictWatch *watch, const WatchedBody *b
 /* m: how deep two bodies are in each other; negative: apart, -INFINITY: by more than `within`, m. */
 double depth_of(const WatchedBody *a, const WatchedBody *b, double within);
 
+/* m: how far the corners of two bodies have moved past each other in the last step, at most. */
+double way_past(const WatchedBody *a, const WatchedBody *b);
+
 /* Whether two bodies touch after the last step. */
 bool bodies_touch(const VerdictWatch *watch, const WatchedBody *a, const WatchedBody *b);
 

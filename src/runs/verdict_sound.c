@@ -82,7 +82,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
         if (energy_counts(watch, body)) sum += body->energy;
         watch->farthest = larger(watch->farthest, larger(fabs(body->last.x), fabs(body->last.y)));
         if (own > most) most = own, hottest = i;
-        if (energy_is_judged(watch) && own / body->mass + watch->pull * (up - watch->lowest) > burst &&
+        if (energy_is_judged(watch) && own + body->mass * (watch->pull * (up - watch->lowest) - burst) > 0 &&
             own / body->mass > rounding * watch->farthest * rounding * watch->farthest / (dt * dt))
             verdict_note(watch, VERDICT_EXPLODES, i, sqrt(vx * vx + vy * vy), "m/s");
     }
@@ -142,6 +142,7 @@ bool check_passes(VerdictWatch *watch, Error *error) {
     for (size_t k = 0; k < watch->finder.pairs.count; k++) {
         const BodyPair pair = watch->finder.pairs.pairs[k];
         const WatchedBody *a = &watch->bodies[pair.a], *b = &watch->bodies[pair.b];
+        if (way_past(a, b) <= pass_share * fmin(a->side, b->side)) continue;
         const double way = larger(way_between(&a->last, &a->before), way_between(&b->last, &b->before));
         check_pass(watch, pair.a, pair.b, (Pose[2]){a->before, a->last}, (Pose[2]){b->before, b->last},
                    way / (double)watch->run.dt);
@@ -151,13 +152,14 @@ bool check_passes(VerdictWatch *watch, Error *error) {
 
 bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) {
     const int half = steps_of(watch, deep_units), longest = half > 4 ? half : 4;
+    const double shallow = step->frame > 1 ? fmin(watch->deepest, deep_share * watch->smallest) : 0; /* m: no news */
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
         const double depth = -(double)contact->separation;
         if (contact->b >= watch->body_count) continue;
         WatchedBody *a = &watch->bodies[contact->a], *b = &watch->bodies[contact->b];
         a->held = b->held = a->is_static || b->is_static ? step->frame : a->held > b->held ? a->held : b->held;
-        if (depth <= 0) continue;
+        if (depth <= shallow) continue;
         watch->deepest = larger(watch->deepest, depth);
         const double side = a->side < b->side ? a->side : b->side;
         if (step->frame == 1 && depth > overlap_share * side) watch->judged_from = INFINITY;

@@ -20,10 +20,6 @@ bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const 
     return ok;
 }
 
-StepObserver simulate_verdict_observer(SimulateVerdict *verdict) {
-    return (StepObserver){verdict_watch_observe, &verdict->watch};
-}
-
 bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure) {
     if (failure->kind != ERROR_NONE && failure->failure == FAILURE_NONE) return false;
     if (failure->kind != ERROR_NONE) verdict_watch_failed(&verdict->watch, verdict->watch.frame + 1, failure);

@@ -18,7 +18,7 @@ TEST(a_run_that_overflows_has_a_verdict) {
     SimulateVerdict verdict;
     const Method method = method_named("engine");
     assert_ok(simulate_verdict_begin(&verdict, &scene, &method, &error), error);
-    const StepObserver observer = simulate_verdict_observer(&verdict);
+    const StepObserver observer = {verdict_watch_observe, &verdict.watch};
     assert_refused(simulate_observed(&scene, &method, &observer, &error), "is NaN or infinite");
     assert_true(simulate_verdict_end(&verdict, &error));
     assert_int_equal(verdict.reading.verdict, VERDICT_NON_FINITE);

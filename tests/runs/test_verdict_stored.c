@@ -12,7 +12,7 @@ static void judge(Scene *scene, const char *text, char made[TRAJECTORY_VERDICT_S
     Error error = {0};
     SimulateVerdict verdict;
     assert_ok(simulate_verdict_begin(&verdict, scene, &method, &error), error);
-    const StepObserver observer = simulate_verdict_observer(&verdict);
+    const StepObserver observer = {verdict_watch_observe, &verdict.watch};
     Recorder *recorder = recorder_create(scene, &method, &error);
     const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1};
     assert_ok(simulate_watched(scene, &method, &watch, &error), error);
