@@ -152,7 +152,7 @@ bool check_passes(VerdictWatch *watch, Error *error) {
 
 bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) {
     const int half = steps_of(watch, deep_units), longest = half > 4 ? half : 4;
-    const double shallow = step->frame > 1 ? fmin(watch->deepest, deep_share * watch->smallest) : 0; /* m: no news */
+    const double shallow = fmin(watch->deepest, deep_share * watch->smallest); /* m: it is no news */
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
         const double depth = -(double)contact->separation;

@@ -337,8 +337,8 @@ TEST(what_is_on_the_other_side_has_tunnelled) {
     static const struct {
         float from, step, height;
         bool tunnels;
-    } cases[] = {{-3, 1.5f, 0, false},     {-2, 0.3f, 0, true}, {-2, 0.3f, 0.45f, true},
-                 {-2, 0.3f, 0.55f, false}, {-2, 4, 0, true},    {-2, 4, 3, false}};
+    } cases[] = {{-3, 1.5f, 0, false}, {-2, 0.3f, 0, true},   {-2, 0.3f, 0.45f, true}, {-2, 0.3f, 0.55f, false},
+                 {-2, 4, 0.45f, true}, {-2, 4, 0.55f, false}, {-3.75f, 1.5f, 0, true}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Trial trial = box_on_ground();
         trial.run.gravity.y = 0;
