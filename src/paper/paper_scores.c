@@ -19,35 +19,6 @@
 
 enum { COMPONENTS = 2 };
 
-/* RMS errors on test rows: of the network, and of the mean of the training rows. */
-static bool score_transfer(const Dataset *dataset, const Network *network, TransferRow *result, Error *error) {
-    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[COMPONENTS];
-    if (scratch == NULL) return error_memory(error, "study");
-    double mean[COMPONENTS] = {0}, squares = 0, squares_constant = 0;
-    int64_t trained = 0, count = 0;
-    for (int64_t row = 0; row < dataset->rows; row++) {
-        if (dataset_is_test(dataset, row)) continue;
-        for (int k = 0; k < COMPONENTS; k++) mean[k] += (double)dataset_target(dataset, row, COMPONENTS, k);
-        trained++;
-    }
-    for (int k = 0; k < COMPONENTS; k++) mean[k] /= (double)trained;
-    for (int64_t row = 0; row < dataset->rows; row++) {
-        if (!dataset_is_test(dataset, row)) continue;
-        network_predict(network, dataset->inputs + row * dataset_inputs(dataset), scratch, output);
-        for (int k = 0; k < COMPONENTS; k++) {
-            const double right = (double)dataset_target(dataset, row, COMPONENTS, k), e = (double)output[k] - right,
-                         c = mean[k] - right;
-            squares += e * e;
-            squares_constant += c * c;
-            count++;
-        }
-    }
-    free(scratch);
-    result->error = sqrt(squares / (double)count);
-    result->constant = sqrt(squares_constant / (double)count);
-    return true;
-}
-
 bool transfer_study_run(const Dataset *const data[TRANSFER_SCENES], const TransferStudy *study, TransferRow *row,
                         const Progress *progress, Error *error) {
     enum { PYRAMID = TRANSFER_SCENES - 1 };
@@ -69,7 +40,10 @@ bool transfer_study_run(const Dataset *const data[TRANSFER_SCENES], const Transf
         network = next;
         ok = network != NULL;
     }
-    ok = ok && score_transfer(drawn, network, row, error);
+    RowErrors errors;
+    ok = ok && row_errors_find(&errors, network, drawn, COMPONENTS, false, error);
+    if (ok) row->error = sqrt(errors.network[0] / errors.rows[0]); /* of one scene */
+    if (ok) row->constant = sqrt(errors.constant[0] / errors.rows[0]);
     network_destroy(network);
     dataset_destroy(drawn);
     return ok;

@@ -126,18 +126,8 @@ PaperNetwork paper_network(int i) {
     return network;
 }
 
-/* Errors in the units of networks.csv. */
-enum { LARGEST = 10, ROW_KINDS = PAPER_TRAINING_SCENES + 1, TRAIN_ROWS = PAPER_TRAINING_SCENES };
-
-typedef struct RowErrors {
-    double network[ROW_KINDS], constant[ROW_KINDS], rows[ROW_KINDS]; /* sums: test rows of a scene; training rows */
-    double largest[LARGEST];                                         /* of the network's test rows, falling */
-    double right;                                                    /* test rows */
-} RowErrors;
-
-/* network: NULL: none, the mean in its place. The paper does not define the accuracy of its gate (section 3: 90%):
-   here all outputs of a right row are within 5% of their range. False with error set when memory is short. */
-static bool find_errors(const Network *network, const Dataset *dataset, int outputs, RowErrors *errors, Error *error) {
+bool row_errors_find(RowErrors *errors, const Network *network, const Dataset *dataset, int outputs, bool ranged,
+                     Error *error) {
     const double near_share = 0.05;
     const int inputs = dataset_inputs(dataset);
     double mean[PAIR_CHANGES] = {0}, range[PAIR_CHANGES];
@@ -156,7 +146,7 @@ static bool find_errors(const Network *network, const Dataset *dataset, int outp
             count++;
         }
         mean[k] /= count;
-        range[k] = most > least ? most - least : 1;
+        range[k] = ranged && most > least ? most - least : 1;
     }
     for (int64_t row = 0; row < dataset->rows; row++) {
         double of_network = 0, of_constant = 0;
@@ -212,7 +202,7 @@ bool paper_constants_write(PaperPlan *plan, const PaperPart *part, FILE *lines, 
         const uint64_t seed = plan->options->seed + (uint64_t)i;
         ok = split_begin(&split, dataset, seed, error);
         if (!ok) break;
-        ok = find_errors(NULL, &split.dataset, outputs, &errors, error);
+        ok = row_errors_find(&errors, NULL, &split.dataset, outputs, true, error);
         split_free(&split);
         ConstantRow row = {.target = part->index,
                            .seed = (double)seed,
@@ -307,7 +297,7 @@ static bool score_and_store(const PaperPlan *plan, const PaperPart *part, const 
                             int iterations, FILE *lines, Error *error) {
     const PaperNetwork *of = &plan->networks[part->index];
     RowErrors errors;
-    if (!find_errors(network, dataset, network->widths[network->layers], &errors, error)) return false;
+    if (!row_errors_find(&errors, network, dataset, network->widths[network->layers], true, error)) return false;
     const double rows = of_scenes(errors.rows);
     TrainedRow row = {.network = of->name,
                       .factor = of->factor,

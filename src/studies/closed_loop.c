@@ -13,7 +13,16 @@
 #include <stdlib.h>
 
 bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
-    if (!rollout_log(log, method, launched, error)) return false;
+    Method parsed;
+    if (!method_parse(&parsed, method, error)) return false;
+    Rollout rollout = {.log = *log};
+    Stepper *stepper = stepper_create(&parsed, launched, error);
+    const bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error);
+    stepper_destroy(stepper);
+    *log = rollout.log;
+    rollout.log = (RunLog){0};
+    rollout_free(&rollout);
+    if (!ok) return false;
     return log->frames >= launched->frames ||
            error_input(error, launched->name, "the run of %s ends at frame %d with a state that is NaN or infinite",
                        method, log->frames);

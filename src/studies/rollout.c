@@ -161,13 +161,15 @@ void step_scores_free(StepScores *scores) {
     *scores = (StepScores){0};
 }
 
+static bool reserve_scores(StepScores *scores, size_t count) {
+    return array_reserve((void **)&scores->error, &scores->error_capacity, count, sizeof *scores->error) &&
+           array_reserve((void **)&scores->share, &scores->share_capacity, count, sizeof *scores->share) &&
+           array_reserve((void **)&scores->place, &scores->place_capacity, count, sizeof *scores->place);
+}
+
 bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const ContactSolution *solution,
                      const ReferenceVelocity *reference, bool push_out) {
-    size_t wanted = (size_t)scores->count + 1;
-    if (!array_reserve((void **)&scores->error, &scores->error_capacity, wanted, sizeof *scores->error) ||
-        !array_reserve((void **)&scores->share, &scores->share_capacity, wanted, sizeof *scores->share) ||
-        !array_reserve((void **)&scores->place, &scores->place_capacity, wanted, sizeof *scores->place))
-        return false;
+    if (!reserve_scores(scores, (size_t)scores->count + 1)) return false;
     const SolutionError found = solution_error(problem, solution->velocities, reference);
     const ContactCriteria criteria = contact_criteria(problem, solution, push_out);
     CriteriaSum *sum = &scores->criteria;
@@ -218,10 +220,7 @@ static void copy_log(RunLog *to, const RunLog *from) {
 static bool copy_scores(StepScores *to, const StepScores *from) {
     const size_t count = (size_t)from->count;
     if (count == 0) return true;
-    if (!array_reserve((void **)&to->error, &to->error_capacity, count, sizeof *to->error) ||
-        !array_reserve((void **)&to->share, &to->share_capacity, count, sizeof *to->share) ||
-        !array_reserve((void **)&to->place, &to->place_capacity, count, sizeof *to->place))
-        return false;
+    if (!reserve_scores(to, count)) return false;
     memcpy(to->error, from->error, count * sizeof *to->error);
     memcpy(to->share, from->share, count * sizeof *to->share);
     memcpy(to->place, from->place, count * sizeof *to->place);
@@ -280,19 +279,6 @@ bool shared_steps_run(SharedSteps *shared, Stepper *stepper, const Scene *launch
         rollout_run(&shared->rollout, stepper, &first, sampling, sampling != NULL ? shared->scores : NULL, error);
     converged_step_free(&shared->rollout.converged);
     shared->ended = shared->rollout.log.frames < steps;
-    return ok;
-}
-
-bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
-    Method parsed;
-    if (!method_parse(&parsed, method, error)) return false;
-    Rollout rollout = {.log = *log};
-    Stepper *stepper = stepper_create(&parsed, launched, error);
-    const bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error);
-    stepper_destroy(stepper);
-    *log = rollout.log;
-    rollout.log = (RunLog){0};
-    rollout_free(&rollout);
     return ok;
 }
 

@@ -148,9 +148,6 @@ bool shared_steps_run(SharedSteps *shared, Stepper *stepper, const Scene *launch
                       Error *error);
 void shared_steps_free(SharedSteps *shared);
 
-/* Logs a run by the method of this name, which ends early if its state becomes NaN or infinite. */
-bool rollout_log(RunLog *log, const char *method, const Scene *launched, Error *error);
-
 /* The frozen protocol: every method solves the same steps, sampled from engine runs. */
 
 typedef struct Snapshot {

@@ -281,42 +281,38 @@ static void summarise_all(const Timing *timing) {
    it no longer while the others work: by at most so much. */
 static const double undisturbed = 1.03;
 
-/* Seconds of the contender's solver in a launch: each step at its quickest. */
+/* Nanoseconds of the contender's solver in a launch, at its quickest; NaN if it cannot run. */
 static double quickest(const Timing *timing, Timed *timed, Error *error) {
-    enum { TRIES = 5 };
-    StepLog logs[TRIES] = {{0}};
-    double sum = 0;
-    for (int r = 0; r < TRIES; r++)
-        if (!run_part(timing, timed, 1, &logs[r], error)) sum = NAN;
-    for (int i = 0; i < logs[0].count; i++) {
-        int64_t least = logs[0].items[i].solver;
-        for (int r = 1; r < TRIES; r++) least = logs[r].items[i].solver < least ? logs[r].items[i].solver : least;
-        sum += 1e-9 * (double)least;
+    StepLog log = {0};
+    double least = INFINITY;
+    for (int tries = 0; tries < 10; tries++) {
+        double sum = 0;
+        if (!run_part(timing, timed, 1, &log, error)) sum = NAN;
+        for (int i = 0; i < log.count; i++) sum += (double)log.items[i].solver;
+        least = sum < least || isnan(sum) ? sum : least;
     }
-    for (int r = 0; r < TRIES; r++) free(logs[r].items);
-    return sum;
+    free(log.items);
+    return least;
 }
 
 static void choose_threads(Timing *timing) {
-    const int most = omp_get_max_threads(),
-              threads = CPU_COUNT(&timing->cores) < most ? CPU_COUNT(&timing->cores) : most;
+    const int most = omp_get_max_threads(), cores = CPU_COUNT(&timing->cores), threads = cores < most ? cores : most;
+    double alone, together = NAN;
     atomic_bool done = false;
-    double alone = 0, together = 0;
-    if (timing->options->one_core || timing->count < threads || threads < 2 || is_external(&timing->items[0])) return;
+    if (timing->options->one_core || timing->count < threads || threads < 2) return;
     stay(&timing->cores, 0);
     alone = quickest(timing, &timing->items[0], &(Error){0});
 #pragma omp parallel num_threads(threads)
     {
         const int thread = omp_get_thread_num();
-        StepLog log = {0};
+        Error failure = {0}; /* also met by what is measured then */
         stay(&timing->cores, thread);
+#pragma omp barrier
         if (thread == 0) {
-            together = quickest(timing, &timing->items[0], &(Error){0});
+            together = quickest(timing, &timing->items[0], &failure);
             atomic_store(&done, true);
         }
-        while (!atomic_load(&done) && run_part(timing, &timing->items[thread], 1, &log, &(Error){0})) {
-        }
-        free(log.items);
+        while (!atomic_load(&done)) quickest(timing, &timing->items[thread], &failure);
         sched_setaffinity(0, sizeof timing->cores, &timing->cores);
     }
     if (together <= undisturbed * alone) timing->threads = threads;
