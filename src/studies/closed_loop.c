@@ -103,7 +103,7 @@ bool closed_loop_time(const Method *method, const SnapshotList *states, int repe
                       double *us_step_engine, Error *error) {
     Contender engine, other = {.method = *method};
     const Contender *const both[] = {&engine, &other};
-    const TimingOptions options = {.launches = states->items[0].scene, .repetitions = repetitions, .one_core = true};
+    const TimingOptions options = {.launches = states->items[0].scene, .repetitions = repetitions};
     StepCost closed[2][PHASES], frozen[2][PHASES];
     if (!method_parse(&engine.method, "engine", error) ||
         !timing_measure(both, 2, &options, states, closed, frozen, NULL, error))

@@ -14,9 +14,7 @@
 
 #include <assert.h>
 #include <math.h>
-#include <omp.h>
 #include <sched.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -107,12 +105,9 @@ typedef struct Timed {
 typedef struct Timing {
     const TimingOptions *options;
     const SnapshotList *snapshots;
-    int count, parts; /* parts: launches and two */
-    Timed *items;     /* [count] */
-    int64_t overhead; /* ns: of reading the clock, which is subtracted from every measurement */
-    int repetition;
-    cpu_set_t cores;                      /* that the process may use */
-    int threads;                          /* that measure at once, each on a core of its own */
+    int count, parts;                     /* parts: launches and two */
+    Timed *items;                         /* [count] */
+    int64_t overhead;                     /* ns: of reading the clock, which is subtracted from every measurement */
     StepCost (*costs[PROTOCOLS])[PHASES]; /* [count] each: the caller's */
     double *numbers;                      /* scratch, [repetitions] and [count] */
 } Timing;
@@ -151,38 +146,16 @@ static bool run_part(const Timing *timing, Timed *timed, int part, StepLog *log,
     return ok;
 }
 
-/* The thread stays on a core, to avoid the cost of migration, where the system can do that. */
-static void stay(const cpu_set_t *cores, int thread) {
-    cpu_set_t core;
-    CPU_ZERO(&core);
-    for (size_t i = 0; i < CPU_SETSIZE; i++)
-        if (CPU_ISSET(i, cores) && thread-- == 0) CPU_SET(i, &core);
-    if (thread < 0) sched_setaffinity(0, sizeof core, &core);
-}
-
-/* A repetition of what is due of a contender. */
-static bool repeat(void *context, int i, Error *error) {
-    Timing *timing = context;
-    Timed *timed = &timing->items[i];
-    bool ok = true;
-    stay(&timing->cores, omp_get_thread_num());
-    for (int part = 0; ok && part < timing->parts; part++)
-        if (timed->due[part])
-            ok = run_part(timing, timed, part, &logs_of(timing, timed, part)[timing->repetition], error);
-    sched_setaffinity(0, sizeof timing->cores, &timing->cores);
-    return ok;
-}
-
 /* What is due of all contenders, in turns. */
-static bool repeat_all(Timing *timing, const Progress *progress, Error *error) {
+static bool repeat_all(const Timing *timing, const Progress *progress, Error *error) {
     const int repetitions = timing->options->repetitions;
     for (int r = 0; r < repetitions; r++) {
-        bool ok = true;
-        timing->repetition = r;
-        if (timing->threads > 1)
-            ok = parallel_for(&(ParallelWork){repeat, timing}, timing->count, "timing", NULL, error);
-        for (int i = 0; ok && timing->threads == 1 && i < timing->count; i++) ok = repeat(timing, i, error);
-        if (!ok) return false;
+        for (int i = 0; i < timing->count; i++)
+            for (int part = 0; part < timing->parts; part++) {
+                Timed *timed = &timing->items[i];
+                if (timed->due[part] && !run_part(timing, timed, part, &logs_of(timing, timed, part)[r], error))
+                    return false;
+            }
         if (!progress_report(progress, r + 1, repetitions))
             return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
     }
@@ -277,47 +250,6 @@ static void summarise_all(const Timing *timing) {
         }
 }
 
-/* Cores may share caches and power. So several are used only if the launch that a contender was warmed up with takes
-   it no longer while the others work: by at most so much. */
-static const double undisturbed = 1.03;
-
-/* Nanoseconds of the contender's solver in a launch, at its quickest; NaN if it cannot run. */
-static double quickest(const Timing *timing, Timed *timed, Error *error) {
-    StepLog log = {0};
-    double least = INFINITY;
-    for (int tries = 0; tries < 10; tries++) {
-        double sum = 0;
-        if (!run_part(timing, timed, 1, &log, error)) sum = NAN;
-        for (int i = 0; i < log.count; i++) sum += (double)log.items[i].solver;
-        least = sum < least || isnan(sum) ? sum : least;
-    }
-    free(log.items);
-    return least;
-}
-
-static void choose_threads(Timing *timing) {
-    const int most = omp_get_max_threads(), cores = CPU_COUNT(&timing->cores), threads = cores < most ? cores : most;
-    double alone, together = NAN;
-    atomic_bool done = false;
-    if (timing->options->one_core || timing->count < threads || threads < 2) return;
-    stay(&timing->cores, 0);
-    alone = quickest(timing, &timing->items[0], &(Error){0});
-#pragma omp parallel num_threads(threads)
-    {
-        const int thread = omp_get_thread_num();
-        Error failure = {0}; /* also met by what is measured then */
-        stay(&timing->cores, thread);
-#pragma omp barrier
-        if (thread == 0) {
-            together = quickest(timing, &timing->items[0], &failure);
-            atomic_store(&done, true);
-        }
-        while (!atomic_load(&done)) quickest(timing, &timing->items[thread], &failure);
-        sched_setaffinity(0, sizeof timing->cores, &timing->cores);
-    }
-    if (together <= undisturbed * alone) timing->threads = threads;
-}
-
 static bool make_timed(const Timing *timing, const Contender *contender, Timed *timed, Error *error) {
     const Scene *scene = &timing->options->launches[0];
     const size_t parts = (size_t)timing->parts, repetitions = (size_t)timing->options->repetitions;
@@ -341,9 +273,7 @@ static bool measure(Timing *timing, const Contender *const *contenders, const Pr
     }
     for (int i = 0; i < timing->count; i++)
         if (!make_timed(timing, contenders[i], &timing->items[i], error)) return false;
-    if (!warm_up(timing, error)) return false;
-    choose_threads(timing);
-    if (!repeat_all(timing, progress, error)) return false;
+    if (!warm_up(timing, error) || !repeat_all(timing, progress, error)) return false;
     summarise_all(timing);
     if (!repeat_all(timing, NULL, error)) return false;
     summarise_all(timing);
@@ -358,12 +288,18 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
                      .count = count,
                      .parts = options->launch_count + 2,
                      .items = calloc((size_t)count, sizeof *timing.items),
-                     .threads = 1,
                      .costs = {[PROTOCOL_CLOSED] = closed, [PROTOCOL_FROZEN] = frozen},
                      .numbers = malloc((size_t)(options->repetitions + count) * sizeof *timing.numbers)};
-    sched_getaffinity(0, sizeof timing.cores, &timing.cores);
+    /* The thread stays on its core, to avoid the cost of migration, where the system can do that. */
+    const int here = sched_getcpu();
+    cpu_set_t before, core;
+    CPU_ZERO(&core);
+    if (here >= 0) CPU_SET((size_t)here, &core);
+    const bool pinned =
+        here >= 0 && sched_getaffinity(0, sizeof before, &before) == 0 && sched_setaffinity(0, sizeof core, &core) == 0;
     const bool ok = timing.items != NULL && timing.numbers != NULL ? measure(&timing, contenders, progress, error)
                                                                    : error_memory(error, "timing");
+    if (pinned) sched_setaffinity(0, sizeof before, &before);
     for (int i = 0; timing.items != NULL && i < count; i++) {
         const Timed *timed = &timing.items[i];
         for (int k = 0; timed->logs != NULL && k < timing.parts * options->repetitions; k++) free(timed->logs[k].items);
@@ -380,11 +316,8 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
 
 bool timing_of_launch(const Contender *const *contenders, int count, const Scene *launched, int last_frame,
                       int repetitions, StepCost (*closed)[PHASES], Error *error) {
-    const TimingOptions options = {.launches = launched,
-                                   .launch_count = 1,
-                                   .repetitions = repetitions,
-                                   .last_frame = last_frame,
-                                   .one_core = true};
+    const TimingOptions options = {
+        .launches = launched, .launch_count = 1, .repetitions = repetitions, .last_frame = last_frame};
     StepCost frozen[TIMING_OF_LAUNCH][PHASES];
     assert(count <= TIMING_OF_LAUNCH);
     return timing_measure(contenders, count, &options, &(SnapshotList){0}, closed, frozen, NULL, error);

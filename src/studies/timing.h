@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cost of contenders, measured in turns, with repetitions: on one core, or on several that do not disturb each
-   other, as is measured before. The first steps of each, those of one launch, do not count.
+/* The cost of contenders, measured in turns on one core, with repetitions: on two cores at once, one method or another
+   takes a third longer. The first steps of each, those of one launch, do not count.
 
    A time varies if the distance of its quartiles, as a share of its median, is more than TIMES_VARY_FACTOR that of
    the middle one of the other contenders in the same protocol and phase, more than TIMES_VARY_LEAST, and more than a
@@ -34,7 +34,6 @@ typedef struct TimingOptions {
     int launch_count, repetitions; /* each repetition runs all launches */
     int last_frame;                /* of each run, which ends with the phase after the impact */
     int shared_steps;              /* of all launches: measured once (contender_forgets()) */
-    bool one_core;                 /* not on several */
 } TimingOptions;
 
 /* Fills closed[count][PHASES] (closed loop) and frozen[count][PHASES] (frozen steps). */

@@ -152,7 +152,7 @@ static void measure(Measured *measured, const char *const *texts, int count, int
     const Contender *contenders[MARKED];
     const SnapshotList none = {0};
     const TimingOptions options = {
-        .launches = scene, .launch_count = 1, .repetitions = REPETITIONS, .last_frame = last_frame, .one_core = true};
+        .launches = scene, .launch_count = 1, .repetitions = REPETITIONS, .last_frame = last_frame};
     for (int i = 0; i < count; i++) {
         contenders[i] = &measured->contenders[i];
         measured->contenders[i].method = method_named(texts[i]);
