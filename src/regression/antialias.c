@@ -166,9 +166,8 @@ static bool is_less(const uint8_t *a, const uint8_t *b, int channel) {
     return a[channel] != b[channel] ? a[channel] < b[channel] : memcmp(a, b, CHANNELS) < 0;
 }
 
-/* Whether all colours are mixtures of two, as far as rounding shows. */
-static bool are_mixtures(const uint8_t *const *colours, int count) {
-    enum { ROUNDING = 2 };
+/* Whether all colours are mixtures of two, but for the rounding of each. */
+static bool are_mixtures(const uint8_t *const *colours, int count, double rounding) {
     uint8_t low[CHANNELS], high[CHANNELS];
     memcpy(low, colours[0], CHANNELS);
     memcpy(high, colours[0], CHANNELS);
@@ -190,12 +189,13 @@ static bool are_mixtures(const uint8_t *const *colours, int count) {
     for (int i = 0; i < count; i++) {
         const int part = colours[i][widest] - one[widest];
         for (int c = 0; c < CHANNELS; c++)
-            if (abs((colours[i][c] - one[c]) * most - part * (other[c] - one[c])) > ROUNDING * most) return false;
+            if (abs((colours[i][c] - one[c]) * most - part * (other[c] - one[c])) > rounding * most) return false;
     }
     return true;
 }
 
-/* 4. */
+/* 4. The colour and the part that its widest channel tells are off by a level each at most; what both pictures show lies
+   between ends that each has rounded: half a level more. */
 static bool keeps_colours(const EdgeRows *a, const EdgeRows *b, int x) {
     enum { WINDOW = 9 };
     const uint8_t *both[2 * WINDOW];
@@ -204,7 +204,8 @@ static bool keeps_colours(const EdgeRows *a, const EdgeRows *b, int x) {
         both[i] = a->rows[row] + at;
         both[WINDOW + i] = b->rows[row] + at;
     }
-    return are_mixtures(both, 2 * WINDOW) || !are_mixtures(both, WINDOW) || !are_mixtures(both + WINDOW, WINDOW);
+    return are_mixtures(both, 2 * WINDOW, 2.5) || !are_mixtures(both, WINDOW, 2) ||
+           !are_mixtures(both + WINDOW, WINDOW, 2);
 }
 
 static int contrast_of(const Window *p, const Window *q, int c) {

@@ -351,6 +351,35 @@ TEST(which_picture_is_expected_does_not_matter) {
     }
 }
 
+/* Of an edge in a browser that moved by a part of a pixel, around a pixel with 1% of the other colour: (38, 64, 215) was
+   (38, 65, 217). */
+TEST(faint_ends_of_edges_may_change) {
+    enum { WIDTH = 7 };
+    static const uint32_t pictures[2][WIDTH * WIDTH] = {
+        {0x2641d9, 0x2840d4, 0x862240, 0x9c1c1e, 0x9c1c1e, 0x9c1c1e, 0x9c1c1e, 0x2641d9, 0x2641d9, 0x3b3ab6,
+         0x991c22, 0x9c1c1e, 0x9c1c1e, 0x9c1c1e, 0x2641d9, 0x2641d9, 0x2641d9, 0x5d2f82, 0x9c1c1e, 0x9c1c1e,
+         0x9c1c1e, 0x2641d9, 0x2641d9, 0x2641d9, 0x2640d7, 0x862240, 0x9c1c1e, 0x9c1c1e, 0x2641d9, 0x2641d9,
+         0x2641d9, 0x2641d9, 0x3b3ab6, 0x991c22, 0x9c1c1e, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9,
+         0x5d2f82, 0x9c1c1e, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d7, 0x844e47},
+        {0x2641d9, 0x2641d9, 0x6b2a6a, 0x9c1c1e, 0x9c1c1e, 0x9c1c1e, 0x9c1c1e, 0x2641d9, 0x2641d9, 0x2b3fd0,
+         0x8b2137, 0x9c1c1e, 0x9c1c1e, 0x9c1c1e, 0x2641d9, 0x2641d9, 0x2641d9, 0x4138ad, 0x9b1c1f, 0x9c1c1e,
+         0x9c1c1e, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x632c75, 0x9c1c1e, 0x9c1c1e, 0x2641d9, 0x2641d9,
+         0x2641d9, 0x2641d9, 0x2840d4, 0x862240, 0x9c1c1e, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9,
+         0x3b3ab6, 0x9b1c1f, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x2641d9, 0x653f75}};
+    Image *images[2];
+    uint8_t masked[WIDTH * WIDTH] = {0};
+    for (int i = 0; i < 2; i++) {
+        images[i] = image_sized(WIDTH, WIDTH);
+        for (int k = 0; k < WIDTH * WIDTH; k++)
+            for (int c = 0; c < 4; c++)
+                images[i]->pixels[4 * k + c] = (uint8_t)(c < 3 ? pictures[i][k] >> (16 - 8 * c) : 255);
+    }
+    assert_ok(antialias_mark(images[0], images[1], masked, &error), error);
+    assert_int_equal(masked[WIDTH * WIDTH / 2], IGNORED_EDGE);
+    image_destroy(images[0]);
+    image_destroy(images[1]);
+}
+
 /* Pictures smaller than the windows. */
 TEST(small_pictures_are_compared) {
     for (int width = 1; width <= 4; width++)
