@@ -182,13 +182,13 @@ static bool fit_round(Trainer *trainer, SainForm form, int round, Error *error) 
         sum += loss;
         in_sum++;
     }
+    sain_set_weights(network, adam->weights);
     if (ok && !trainer->stage.stopped && training->on_score != NULL) {
         ok = sain_fit_errors(&trainer->batches, adam->weights, &trainer->held_out_samples, &score.held_out, error);
         score.loss = sum / in_sum;
         if (ok) training->on_score(training->context, &score);
     }
     sain_fit_free(&trainer->batches);
-    sain_set_weights(network, adam->weights);
     return ok;
 }
 

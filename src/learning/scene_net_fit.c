@@ -57,6 +57,20 @@ bool scene_net_samples_look(SceneNetSamples *samples, int first, const SceneNet 
     return ok || error_memory(error, "samples");
 }
 
+/* Inputs of new launches exceed those of the training by a little. */
+void scene_net_set_ranges(SceneNet *network, const SceneNetSamples *samples) {
+    const float margin = 0.1f;
+    for (int k = 0; k < scene_net_inputs(network); k++) {
+        float low = samples->items[0].inputs[k], high = low;
+        for (int i = 1; i < samples->count; i++) {
+            low = fminf(low, samples->items[i].inputs[k]);
+            high = fmaxf(high, samples->items[i].inputs[k]);
+        }
+        network->low[k] = low - margin * (high - low) - 1e-6f;
+        network->high[k] = high + margin * (high - low) + 1e-6f;
+    }
+}
+
 static const double linear_from = 0.3;  /* threshold of smooth L1, in scales */
 static const double least_error = 0.01; /* m/s: below it the loss is nearly quadratic */
 

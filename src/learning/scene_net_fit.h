@@ -41,6 +41,9 @@ void scene_net_samples_free(SceneNetSamples *samples);
    network has projections. */
 bool scene_net_samples_look(SceneNetSamples *samples, int first, const SceneNet *network, Error *error);
 
+/* Sets the ranges of the inputs to those of samples that were looked at, a tenth wider on both sides. */
+void scene_net_set_ranges(SceneNet *network, const SceneNetSamples *samples);
+
 /* The first network: slots, input projections (principal components, whitened), output scales, random weights. */
 
 typedef struct SceneNetWidths {

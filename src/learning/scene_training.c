@@ -135,17 +135,7 @@ static bool fit_round(Trainer *trainer, double share, Error *error) {
     progress_next_stage(&trainer->stage, share);
     if (!scene_net_fit(network, samples, &fit, &trainer->progress, error)) return false;
 
-    const float margin = 0.1f;
-    for (int k = 0; k < scene_net_inputs(network); k++) {
-        float low = samples->items[0].inputs[k], high = low;
-        for (int i = 1; i < samples->count; i++) {
-            low = fminf(low, samples->items[i].inputs[k]);
-            high = fmaxf(high, samples->items[i].inputs[k]);
-        }
-        network->low[k] = low - margin * (high - low) - 1e-6f;
-        network->high[k] = high + margin * (high - low) + 1e-6f;
-    }
-
+    scene_net_set_ranges(network, samples);
     SceneNetScore score = {.round = round,
                            .samples = samples->count,
                            .unconverged = (int)(samples->unconverged + trainer->held_out.unconverged)};
