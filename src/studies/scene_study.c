@@ -203,78 +203,37 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
     return ok;
 }
 
-/* The times of all methods. */
-
-typedef struct SceneTimes {
-    const SceneStudy *study;
-    int count;
-    Scene *launches;                      /* [count] */
-    SnapshotList *lists;                  /* [count] of each launch */
-    SnapshotList snapshots;               /* of all */
-    StepCost (*costs[PROTOCOLS])[PHASES]; /* [contenders] */
-} SceneTimes;
-
-static bool prepare_launch(void *context, int i, Error *error) {
-    SceneTimes *times = context;
-    const SceneStudy *study = times->study;
-    Scene *launched = &times->launches[i];
-    const int spread = (2 * i + 1) * study->striking_count / (2 * times->count);
-    *launched = scene_study_launch(study, study->striking[spread]);
-    return snapshots_add(&times->lists[i], launched, &study->size.frozen, error);
-}
-
-static bool measure_times(SceneTimes *times, const Progress *progress, Error *error) {
-    const SceneStudy *study = times->study;
-    const double prepared = 0.1; /* about the share of the time that preparations take */
-    ProgressStage before = {progress, 0, prepared, false}, then = {progress, prepared, 1 - prepared, false};
-    const ParallelWork work = {prepare_launch, times};
-    if (!parallel_for(&work, times->count, study->scene->name, &(Progress){progress_stage, &before}, error))
-        return false;
-    /* The frozen steps of all launches go into one list. */
-    SnapshotList *all = &times->snapshots;
-    for (int i = 0; i < times->count; i++) {
-        SnapshotList *list = &times->lists[i];
-        if (!array_reserve((void **)&all->items, &all->capacity, (size_t)(all->count + list->count) + 1,
-                           sizeof *all->items))
-            return error_memory(error, "study");
-        if (list->count > 0) memcpy(all->items + all->count, list->items, (size_t)list->count * sizeof *all->items);
-        all->count += list->count;
-        list->count = 0;
+bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *progress, Error *error) {
+    const int count = scene_study_timed(study), contenders = study->contender_count;
+    Scene *launches = calloc((size_t)count, sizeof *launches);
+    SnapshotList frozen = {0};
+    StepCost(*costs[PROTOCOLS])[PHASES];
+    bool ok = launches != NULL;
+    for (int p = 0; p < PROTOCOLS; p++)
+        ok = (costs[p] = calloc((size_t)contenders + 1, sizeof *costs[p])) != NULL && ok;
+    if (!ok) error_memory(error, "study");
+    for (int i = 0; ok && i < count; i++) {
+        launches[i] = scene_study_launch(study, study->striking[(2 * i + 1) * study->striking_count / (2 * count)]);
+        ok = snapshots_add(&frozen, &launches[i], &study->size.frozen, error);
     }
-    const TimingOptions options = {.launches = times->launches,
-                                   .launch_count = times->count,
+    const TimingOptions options = {.launches = launches,
+                                   .launch_count = count,
                                    .repetitions = study->size.repetitions,
                                    .last_frame = study->scene->frames,
                                    .shared_steps = study->shared_steps};
-    return timing_measure(study->contenders, study->contender_count, &options, &times->snapshots,
-                          times->costs[PROTOCOL_CLOSED], times->costs[PROTOCOL_FROZEN],
-                          &(Progress){progress_stage, &then}, error);
-}
-
-bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *progress, Error *error) {
-    const size_t contenders = (size_t)study->contender_count + 1;
-    SceneTimes times = {.study = study, .count = scene_study_timed(study)};
-    times.lists = calloc((size_t)times.count, sizeof *times.lists);
-    times.launches = calloc((size_t)times.count, sizeof *times.launches);
-    bool room = times.lists != NULL && times.launches != NULL;
-    for (int p = 0; p < PROTOCOLS; p++) {
-        times.costs[p] = calloc(contenders, sizeof *times.costs[p]);
-        room = room && times.costs[p] != NULL;
-    }
-    const bool ok = room ? measure_times(&times, progress, error) : error_memory(error, "study");
-    for (int i = 0; ok && i < study->contender_count; i++)
+    ok = ok && timing_measure(study->contenders, contenders, &options, &frozen, costs[PROTOCOL_CLOSED],
+                              costs[PROTOCOL_FROZEN], progress, error);
+    for (int i = 0; ok && i < contenders; i++)
         for (int p = 0; p < PROTOCOLS; p++)
             for (int phase = 0; phase < PHASES; phase++) {
-                const StepCost *cost = &times.costs[p][i][phase];
+                const StepCost *cost = &costs[p][i][phase];
                 const double stored[] = {cost->solver, cost->solver_q1, cost->solver_q3,
                                          cost->step,   cost->engine,    cost->varies};
                 fwrite(stored, sizeof stored, 1, results);
             }
-    for (int i = 0; times.lists != NULL && i < times.count; i++) snapshots_free(&times.lists[i]);
-    snapshots_free(&times.snapshots);
-    for (int p = 0; p < PROTOCOLS; p++) free(times.costs[p]);
-    free(times.lists);
-    free(times.launches);
+    for (int p = 0; p < PROTOCOLS; p++) free(costs[p]);
+    snapshots_free(&frozen);
+    free(launches);
     return ok;
 }
 

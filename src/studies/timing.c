@@ -149,16 +149,15 @@ static bool run_part(const Timing *timing, Timed *timed, int part, StepLog *log,
 /* What is due of all contenders, in turns. */
 static bool repeat_all(const Timing *timing, const Progress *progress, Error *error) {
     const int repetitions = timing->options->repetitions;
-    for (int r = 0; r < repetitions; r++) {
-        for (int i = 0; i < timing->count; i++)
-            for (int part = 0; part < timing->parts; part++) {
-                Timed *timed = &timing->items[i];
+    for (int r = 0; r < repetitions; r++)
+        for (int i = 0; i < timing->count; i++) {
+            Timed *timed = &timing->items[i];
+            for (int part = 0; part < timing->parts; part++)
                 if (timed->due[part] && !run_part(timing, timed, part, &logs_of(timing, timed, part)[r], error))
                     return false;
-            }
-        if (!progress_report(progress, r + 1, repetitions))
-            return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
-    }
+            if (!progress_report(progress, r * timing->count + i + 1, repetitions * timing->count))
+                return error_interrupted(error, "timing", "stopped in repetition %d of %d", r + 1, repetitions);
+        }
     return true;
 }
 
