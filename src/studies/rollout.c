@@ -101,31 +101,20 @@ double run_log_moved(const RunLog *log, const Scene *scene) {
     return moved;
 }
 
-static double mean_distance(const RunLog *log, const RunLog *other, const Scene *scene, int frame) {
-    double sum = 0;
-    int count = 0;
-    size_t row = (size_t)frame * (size_t)log->bodies;
-    for (int i = 0; i < log->bodies; i++) {
-        if (scene->bodies[i].fixed) continue;
-        sum += vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]);
-        count++;
-    }
-    return count > 0 ? sum / count : NAN;
-}
-
-/* Of whole frames 1 .. last. */
-static double mean_square(const RunLog *log, const RunLog *other, const Scene *scene, int last) {
+/* The distance of bodies, or its square, over whole frames first .. last. */
+static double mean_apart(const RunLog *log, const RunLog *other, const Scene *scene, int first, int last,
+                         bool squared) {
     double sum = 0;
     int64_t count = 0;
-    for (int frame = 1; frame <= last; frame++)
+    for (int frame = first; frame <= last; frame++)
         for (int i = 0; i < log->bodies; i++) {
             const size_t at = (size_t)frame * (size_t)log->bodies + (size_t)i;
             const double apart = vec2_distance(log->position[at], other->position[at]);
             if (scene->bodies[i].fixed) continue;
-            sum += apart * apart;
+            sum += squared ? apart * apart : apart;
             count++;
         }
-    return count > 0 ? sum / (2 * (double)count) : NAN;
+    return count > 0 ? sum / (double)count : NAN;
 }
 
 RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene) {
@@ -148,9 +137,10 @@ RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene
     }
     int rest = converged->touch > 0 ? converged->touch - 1 : last;
     if (log->touch > 0 && log->touch - 1 < rest) rest = log->touch - 1;
-    if (rest > 0 && rest <= last && rest <= known) measures.drift = mean_distance(log, converged, scene, rest);
+    if (rest > 0 && rest <= last && rest <= known)
+        measures.drift = mean_apart(log, converged, scene, rest, rest, false);
     const int whole = known < converged->frames ? known : converged->frames;
-    measures.rollout_mse = last >= whole ? mean_square(log, converged, scene, whole) : NAN;
+    measures.rollout_mse = last >= whole ? mean_apart(log, converged, scene, 1, whole, true) / 2 : NAN;
     return measures;
 }
 
@@ -273,6 +263,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
 
 bool shared_steps_run(SharedSteps *shared, Stepper *stepper, const Scene *launched, int steps, const Sampling *sampling,
                       Error *error) {
+    if (shared->rollout.world != NULL) return true;
     Scene first = *launched;
     first.frames = steps;
     const bool ok =

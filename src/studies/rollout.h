@@ -143,7 +143,7 @@ typedef struct SharedSteps {
     bool ended; /* one of them failed */
 } SharedSteps;
 
-/* Takes them with one of the launches. The runs that begin so have the same stepper and sampling. */
+/* Takes them with one of the launches, once. The runs that begin so have the same stepper and sampling. */
 bool shared_steps_run(SharedSteps *shared, Stepper *stepper, const Scene *launched, int steps, const Sampling *sampling,
                       Error *error);
 void shared_steps_free(SharedSteps *shared);

@@ -146,8 +146,7 @@ static bool score(void *context, int i, Error *error) {
     bool ok = stepper != NULL;
     if (ok && study->shared_steps > 0 && contender_forgets(study->contenders[contender])) {
         rollout.shared = shared;
-        ok = shared->rollout.world != NULL ||
-             shared_steps_run(shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
+        ok = shared_steps_run(shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
     }
     ok = ok &&
          rollout_run(&rollout, stepper, &piece->launched, &study->size.closed, scores->steps[PROTOCOL_CLOSED], error);
@@ -167,8 +166,7 @@ static bool run_converged(LaunchPiece *piece, Error *error) {
     bool ok = stepper != NULL;
     if (ok && study->shared_steps > 0) {
 #pragma omp critical(converged_runs)
-        if (study->converged.rollout.world == NULL)
-            ok = shared_steps_run(&study->converged, stepper, &piece->launched, study->shared_steps, NULL, error);
+        ok = shared_steps_run(&study->converged, stepper, &piece->launched, study->shared_steps, NULL, error);
         piece->converged.shared = &study->converged;
     }
     ok = ok && rollout_run(&piece->converged, stepper, &piece->launched, NULL, NULL, error);

@@ -206,9 +206,8 @@ TEST(push_out_counts_for_methods_that_have_it) {
 TEST(runs_that_share_their_first_steps_are_whole_runs) {
     OWN(Scene) *scene = scene_named("families/gate");
     scene->frames = 100; /* the bomb appears after step 60 */
-    Launch launch = launch_of(scene);
-    launch.x += 0.5f;
-    const Scene other = launch_scene(scene, &launch);
+    Scene other = *scene;
+    other.bomb.x.value += 0.5f;
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         const Contender contender = {.method = {.kind = kind}};
         if (!contender_forgets(&contender) || method_lacks_network(&contender.method, scene)) continue;
@@ -220,13 +219,13 @@ TEST(runs_that_share_their_first_steps_are_whole_runs) {
         assert_ok(shared_steps_run(&shared, stepper, &other, 59, &few, &error), error);
         assert_ok(rollout_run(&whole, stepper, scene, &few, scores[0], &error), error);
         assert_ok(rollout_run(&begun, stepper, scene, &few, scores[1], &error), error);
+        const size_t places = (size_t)(scene->frames + 1) * (size_t)whole.log.bodies;
         assert_int_equal(begun.log.frames, scene->frames);
-        assert_memory_equal(begun.log.position, whole.log.position,
-                            (size_t)(scene->frames + 1) * (size_t)whole.log.bodies * sizeof(Vec2));
+        assert_memory_equal(begun.log.position, whole.log.position, places * sizeof(Vec2));
         for (int phase = 0; phase < PHASES; phase++) {
-            assert_int_equal(scores[1][phase].count, scores[0][phase].count);
-            assert_memory_equal(scores[1][phase].error, scores[0][phase].error,
-                                (size_t)scores[0][phase].count * sizeof(double));
+            const StepScores *of = scores[0];
+            assert_int_equal(scores[1][phase].count, of[phase].count);
+            assert_memory_equal(scores[1][phase].error, of[phase].error, (size_t)of[phase].count * sizeof(double));
         }
         shared_steps_free(&shared);
         free_scores(scores[0]);
