@@ -152,17 +152,4 @@ TEST(launches_that_part_after_an_unconverged_step_do_not_count) {
     for (int i = 0; i < LAUNCHES; i++) run_log_free(&converged[i]);
 }
 
-TEST(both_methods_are_timed) {
-    OWN(Scene) *scene = scene_named("stack");
-    scene->frames = 60;
-    const Sampling sampling = {.after = 20, .rest = 20};
-    SnapshotList states = {0};
-    assert_ok(snapshots_add(&states, scene, &sampling, &error), error);
-    double us_step = 0, us_step_engine = 0;
-    const Method method = method_named("engine:k=1");
-    assert_ok(closed_loop_time(&method, &states, 3, &us_step, &us_step_engine, &error), error);
-    assert_true(us_step > 0 && us_step_engine > 0);
-    snapshots_free(&states);
-}
-
 RUN_TESTS(NULL, NULL)
