@@ -169,20 +169,4 @@ TEST(splits_and_names_out_of_range_are_refused) {
     }
 }
 
-TEST(words_that_do_not_fit_are_refused) {
-    static const struct {
-        const char *name, *word, *text;
-    } cases[] = {{"view", "sideways", "view: a word that is not known"},
-                 {"target", "", "target: a word"},
-                 {"labels", "me", "labels: a word"},
-                 {"view", "raw", "inputs"},
-                 {"view", "contact", "inputs"},
-                 {"target", "points", "changes"}};
-    const Dataset dataset = example();
-    NetArrays arrays = read_arrays(write_example(&dataset));
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        refuse_file(is_read, write_text(&arrays, cases[i].name, cases[i].word), cases[i].text);
-    free_arrays(&arrays);
-}
-
 RUN_TESTS(NULL, NULL)
