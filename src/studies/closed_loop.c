@@ -22,10 +22,10 @@ bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Err
     *log = rollout.log;
     rollout.log = (RunLog){0};
     rollout_free(&rollout);
-    if (!ok) return false;
-    return log->frames >= launched->frames ||
-           error_input(error, launched->name, "the run of %s ends at frame %d with a state that is NaN or infinite",
-                       method, log->frames);
+    return ok &&
+           (log->frames >= launched->frames ||
+            error_input(error, launched->name, "the run of %s ends at frame %d with a state that is NaN or infinite",
+                        method, log->frames));
 }
 
 static const double apart_distance = 0.1; /* m */

@@ -141,12 +141,12 @@ static bool score(void *context, int i, Error *error) {
     LaunchScores *scores = &piece->scores[contender];
     Stepper *stepper =
         stepper_pool_stepper(&study->steppers, contender, &study->contenders[contender]->method, study->scene, error);
-    SharedSteps *shared = stepper_pool_shared(&study->steppers, contender);
     Rollout rollout = {0};
     bool ok = stepper != NULL;
-    if (ok && study->shared_steps > 0 && contender_forgets(study->contenders[contender])) {
+    if (study->shared_steps > 0 && contender_forgets(study->contenders[contender])) {
+        SharedSteps *shared = stepper_pool_shared(&study->steppers, contender);
+        ok = ok && shared_steps_run(shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
         rollout.shared = shared;
-        ok = shared_steps_run(shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
     }
     ok = ok &&
          rollout_run(&rollout, stepper, &piece->launched, &study->size.closed, scores->steps[PROTOCOL_CLOSED], error);

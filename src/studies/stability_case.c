@@ -181,10 +181,9 @@ void converged_runs_free(ConvergedRuns *runs) {
 bool unconverged_print(FILE *results, int section, MapCell *row, const ConvergedRun *beside, Error *error) {
     if (beside == NULL || beside->convergence.fallbacks.not_converged == 0) return true;
     const Convergence *convergence = &beside->convergence;
-    const Fallbacks *fallbacks = &convergence->fallbacks;
     row->steps = convergence->steps;
-    row->not_converged = fallbacks->not_converged;
-    row->residual = isfinite(fallbacks->residual) ? fallbacks->residual : NAN;
+    row->not_converged = convergence->fallbacks.not_converged;
+    row->residual = isfinite(convergence->fallbacks.residual) ? convergence->fallbacks.residual : NAN;
     row->first = convergence->first > 0 ? (double)convergence->first : NAN;
     return piece_tables_print(results, &unconverged_layout, section, row, error);
 }

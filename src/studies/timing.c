@@ -112,8 +112,6 @@ typedef struct Timing {
     double *numbers;                      /* scratch, [repetitions] and [count] */
 } Timing;
 
-static bool is_external(const Timed *timed) { return stepper_describe(timed->stepper)->external; }
-
 static int protocol_of(const Timing *timing, int part) {
     return part == timing->parts - 1 ? PROTOCOL_FROZEN : PROTOCOL_CLOSED;
 }
@@ -124,24 +122,21 @@ static StepLog *logs_of(const Timing *timing, const Timed *timed, int part) {
 
 static bool run_part(const Timing *timing, Timed *timed, int part, StepLog *log, Error *error) {
     const TimingOptions *options = timing->options;
-    const int64_t overhead = timing->overhead;
     log->count = 0;
     if (protocol_of(timing, part) == PROTOCOL_FROZEN)
         return stepper_describe(timed->stepper)->whole_scenes ||
-               run_frozen(timed->stepper, timing->snapshots, timed->world, overhead, log, error);
+               run_frozen(timed->stepper, timing->snapshots, timed->world, timing->overhead, log, error);
     const int shared = timed->shares ? options->shared_steps : 0;
     const Scene *launched = &options->launches[part > 0 ? part - 1 : 0];
     if (part == 0 ? shared == 0 : timed->ended) return true;
     World *world = scene_world(launched, error);
     if (world == NULL) return false;
-    bool ended, ok;
-    if (part == 0) {
-        ok = run_closed(timed->stepper, launched, world, 1, shared, overhead, log, &timed->ended, error) &&
-             world_copy(timed->start, world, error);
-    } else {
-        ok = (shared == 0 || world_copy(world, timed->start, error)) &&
-             run_closed(timed->stepper, launched, world, shared + 1, options->last_frame, overhead, log, &ended, error);
-    }
+    bool ended = false;
+    const bool ok = (part == 0 || shared == 0 || world_copy(world, timed->start, error)) &&
+                    run_closed(timed->stepper, launched, world, part == 0 ? 1 : shared + 1,
+                               part == 0 ? shared : options->last_frame, timing->overhead, log, &ended, error) &&
+                    (part > 0 || world_copy(timed->start, world, error));
+    if (part == 0) timed->ended = ended;
     world_destroy(world);
     return ok;
 }
@@ -204,8 +199,9 @@ static StepCost summarise(const Timing *timing, const Timed *timed, int protocol
     for (int part = 0; part < timing->parts; part++)
         if (protocol_of(timing, part) == protocol) add_part(timing, timed, part, phase, &sum);
     StepCost unknown = {.solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .engine = NAN};
-    if (is_external(timed) && sum.engine > 0) unknown.engine = sum.engine / sum.steps;
-    if (sum.steps == 0 || is_external(timed)) return unknown;
+    const bool external = stepper_describe(timed->stepper)->external;
+    if (external && sum.engine > 0) unknown.engine = sum.engine / sum.steps;
+    if (sum.steps == 0 || external) return unknown;
     return (StepCost){.solver = sum.solver / sum.steps,
                       .solver_q1 = sum.solver_q1 / sum.steps,
                       .solver_q3 = sum.solver_q3 / sum.steps,

@@ -82,18 +82,15 @@ TEST(accurate_methods_find_the_rigid_answers) {
         const double apart = 0.02 * (study->scan.to - study->scan.from);
         for (int m = 0; study->rigid != NULL && m < 2; m++) {
             ConvergedRuns converged = {0};
-            VerdictReading below, above;
-            const ConvergedRun *beside;
+            VerdictReading found[2];
             const Method method = method_named(m > 0 ? "reference" : "interior");
-            assert_ok(
-                stability_scan_run(&scan, &method, study->rigid() - apart, 0, &converged, &below, &beside, &error),
-                error);
-            assert_ok(
-                stability_scan_run(&scan, &method, study->rigid() + apart, 0, &converged, &above, &beside, &error),
-                error);
-            if (!verdict_holds(below.verdict) || above.verdict != VERDICT_FALLS)
-                fail_msg("%s by %s: %s, then %s", study->name, method.text, verdict_words[below.verdict],
-                         verdict_words[above.verdict]);
+            for (int above = 0; above < 2; above++)
+                assert_ok(stability_scan_run(&scan, &method, study->rigid() + (above ? apart : -apart), 0, &converged,
+                                             &found[above], &(const ConvergedRun *){NULL}, &error),
+                          error);
+            if (!verdict_holds(found[0].verdict) || found[1].verdict != VERDICT_FALLS)
+                fail_msg("%s by %s: %s, then %s", study->name, method.text, verdict_words[found[0].verdict],
+                         verdict_words[found[1].verdict]);
             converged_runs_free(&converged);
         }
     }

@@ -26,12 +26,11 @@ static bool check_side(Golden *golden, int i, const StabilityScan *scan, bool ho
     const BorderRow *row = border_row(&golden->table, i);
     const double value = holds ? row->holds_at : row->fails_at;
     VerdictReading reading;
-    const ConvergedRun *beside;
     Method method;
     if (isnan(value)) return true;
     if (!method_of(row, &method, error) ||
         !stability_scan_run(scan, &method, value, 0, &golden->converged[scan->study - stability_studies], &reading,
-                            &beside, error))
+                            &(const ConvergedRun *){NULL}, error))
         return false;
     if (verdict_holds(reading.verdict) == holds && (int)reading.verdict <= row->verdict) return true;
     return csv_table_error(&golden->table, i, 0, error, "%s, %s: %s at %s %g (frame %d, body %d, %g %s)", row->study,
