@@ -208,6 +208,7 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
                               .level_since = frame,
                               .is_static = from->inv_mass == 0,
                               .is_bomb = i == watch->run.bomb};
+        watch->thinnest = fmin(watch->thinnest, body->side);
         if (body->is_static) {
             const double at = across_of(watch, &pose), reach = reach_along(&box, across);
             watch->floor = fmin(watch->floor, up - reach_along(&box, upwards));
@@ -241,6 +242,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
                             .up_x = pull > 0 ? -x / pull : 0,
                             .up_y = pull > 0 ? -y / pull : 1,
                             .smallest = INFINITY,
+                            .thinnest = INFINITY,
                             .floor = INFINITY,
                             .low = INFINITY,
                             .high = -INFINITY,

@@ -165,7 +165,8 @@ typedef struct VerdictWatch {
     VerdictReading worst; /* so far, from hangs on */
     int frame, body_count;
     double up_x, up_y, pull;   /* unit vector; m/s^2 */
-    double mean, smallest;     /* m: mean size of the bodies at the start; smallest side of a dynamic one */
+    double mean;               /* m: mean size of the bodies at the start */
+    double smallest, thinnest; /* m: smallest side of a dynamic body; of any */
     double floor, low, high;   /* m: the lowest point of all static bodies; their ends across gravity */
     double held[2];            /* m: the same ends, with what contacts join to them in this step */
     double unit;               /* s */

@@ -17,6 +17,8 @@ static const double regain_share = 0.05;  /* a stack that sank under its weight 
 static const double burst_factor = 5;     /* a heavy body's elastic blow gives a light one 4 times its energy per kg */
 static const double least_share = 0.1;    /* of a size: at least what lifts all bodies so far is available */
 static const double overlap_share = 0.02; /* of a side: such overlaps at the start are pushed apart */
+static const double shallow_share =
+    0.3; /* of the smaller side: hardly deeper are those that were too deep, and are not */
 static const double deep_units = 0.5, hang_units = 0.5;
 static const double hang_share = 0.15; /* of g t^2: three heights of a free flight, t apart, differ by a third of it */
 /* float32 rounds a position by 6e-8 of it; its steps add up like a random walk. */
@@ -110,10 +112,12 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     watch->unit_began = step->frame;
 }
 
-/* Whether b has gone through a: along an axis of a it was on one side and is on the other, along the other one it was
-   in a by more than `pass_share`. What turned by 60 degrees has other sides. */
-static bool has_passed(const WatchedBody *a, const WatchedBody *b, const Pose of_a[2], const Pose of_b[2]) {
-    const double limit = pass_share * fmin(a->side, b->side), w = (double)b->box.x, h = (double)b->box.y;
+/* Whether b has gone through a: along an axis of a it was on one side and is on the other, by no more than `beside` of
+   the smaller side deep; along the other axis it was in a by more than `pass_share` of it. What turned by 60 degrees has
+   other sides. */
+static bool has_passed(const WatchedBody *a, const WatchedBody *b, const Pose of_a[2], const Pose of_b[2],
+                       double beside) {
+    const double side = fmin(a->side, b->side), limit = pass_share * side, w = (double)b->box.x, h = (double)b->box.y;
     double at[2][2], reach[2][2]; /* m: before and now, along both axes */
     for (int now = 0; now < 2; now++) {
         const double c = cos(of_a[now].angle), s = sin(of_a[now].angle), turn = of_b[now].angle - of_a[now].angle;
@@ -123,16 +127,18 @@ static bool has_passed(const WatchedBody *a, const WatchedBody *b, const Pose of
         at[now][1] = c * y - s * x, reach[now][1] = ((double)a->box.y + q * w + p * h) / 2;
     }
     for (int k = 0; k < 2; k++)
-        if (at[0][k] * at[1][k] < 0 && fabs(at[0][k]) > reach[0][k] - limit && fabs(at[1][k]) > reach[1][k] - limit &&
+        if (at[0][k] * at[1][k] < 0 && fabs(at[0][k]) > reach[0][k] - beside * side &&
+            fabs(at[1][k]) > reach[1][k] - beside * side &&
             fabs(at[0][!k] + at[1][!k]) < reach[0][!k] + reach[1][!k] - 2 * limit)
             return fabs(turn_between(of_a[1].angle, of_a[0].angle)) < M_PI / 3;
     return false;
 }
 
-static void check_pass(VerdictWatch *watch, int a, int b, const Pose of_a[2], const Pose of_b[2], double speed) {
+static void check_pass(VerdictWatch *watch, int a, int b, const Pose of_a[2], const Pose of_b[2], double beside,
+                       double speed) {
     const WatchedBody *one = &watch->bodies[a], *other = &watch->bodies[b];
     if (watch->worst.verdict >= VERDICT_TUNNELS) return;
-    if (!has_passed(one, other, of_a, of_b) && !has_passed(other, one, of_b, of_a)) return;
+    if (!has_passed(one, other, of_a, of_b, beside) && !has_passed(other, one, of_b, of_a, beside)) return;
     verdict_note(watch, VERDICT_TUNNELS, other->is_static ? a : b, speed, "m/s");
     watch->worst.other = other->is_static ? b : a;
 }
@@ -144,7 +150,7 @@ bool check_passes(VerdictWatch *watch, Error *error) {
         const WatchedBody *a = &watch->bodies[pair.a], *b = &watch->bodies[pair.b];
         if (way_past(a, b) <= pass_share * fmin(a->side, b->side)) continue;
         const double way = larger(way_between(&a->last, &a->before), way_between(&b->last, &b->before));
-        check_pass(watch, pair.a, pair.b, (Pose[2]){a->before, a->last}, (Pose[2]){b->before, b->last},
+        check_pass(watch, pair.a, pair.b, (Pose[2]){a->before, a->last}, (Pose[2]){b->before, b->last}, pass_share,
                    way / (double)watch->run.dt);
     }
     return true;
@@ -152,7 +158,7 @@ bool check_passes(VerdictWatch *watch, Error *error) {
 
 bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) {
     const int half = steps_of(watch, deep_units), longest = half > 4 ? half : 4;
-    const double shallow = fmin(watch->deepest, deep_share * watch->smallest); /* m: it is no news */
+    const double shallow = fmin(watch->deepest, deep_share * watch->thinnest); /* m: it is no news */
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
         const double depth = -(double)contact->separation;
@@ -188,7 +194,7 @@ bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) 
             watch->deep[kept++] = *pair;
         else if (pair->since > 1 &&
                  pair->deepest > pass_share * fmin(watch->bodies[pair->a].side, watch->bodies[pair->b].side))
-            check_pass(watch, pair->a, pair->b, pair->of_a, pair->of_b, watch->speed);
+            check_pass(watch, pair->a, pair->b, pair->of_a, pair->of_b, shallow_share, watch->speed);
     }
     watch->deep_count = kept;
     return true;
