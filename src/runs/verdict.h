@@ -31,7 +31,7 @@
 
    Carrier. A body's carrier is what it touches first if it moves down by up to half its side or, if it starts at rest,
    as far as it would fall in a unit; or what it touches beside itself, as in an arch. Its reference is its pose at the
-   start or, of what has no carrier then, when the bomb strikes; without a carrier it is judged by rest and leaving only.
+   start or, of what has no carrier then, when the bomb strikes; without one it is judged by rest and leaving only.
 
    Fell, at the end: a body is lower than at its reference by more than half its side and the gaps below it, and so
    relative to its carrier, beside how deep it is in that; or its carrier fell, too: neither sag nor pressing in is a

@@ -113,8 +113,8 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
 }
 
 /* Whether b has gone through a: along an axis of a it was on one side and is on the other, by no more than `beside` of
-   the smaller side deep; along the other axis it was in a by more than `pass_share` of it. What turned by 60 degrees has
-   other sides. */
+   the smaller side deep; along the other axis it was in a by more than `pass_share` of it. What turned by 60 degrees
+   has other sides. */
 static bool has_passed(const WatchedBody *a, const WatchedBody *b, const Pose of_a[2], const Pose of_b[2],
                        double beside) {
     const double side = fmin(a->side, b->side), limit = pass_share * side, w = (double)b->box.x, h = (double)b->box.y;
