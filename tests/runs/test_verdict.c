@@ -355,6 +355,19 @@ TEST(what_is_on_the_other_side_has_tunnelled) {
     }
 }
 
+/* Too deep is what is a quarter of the thinner body deep, a static one, too: by less than a quarter of the box. */
+TEST(what_goes_through_a_thin_plate_has_tunnelled) {
+    Trial trial = {.count = 1, .bodies = {{.size = {20, 0.25f}}}, .run = box_on_ground().run};
+    Body *box = add_box(&trial, 0, 1);
+    trial.run.gravity.y = 0;
+    box->velocity.y = -12;
+    for (int frame = 1; frame <= 10; frame++) {
+        go(&trial, frame);
+        box->position.y -= 0.2f;
+    }
+    assert_verdict(end(&trial), VERDICT_TUNNELS);
+}
+
 TEST(what_touches_nothing_falls_or_hangs) {
     for (int i = 0; i < 3; i++) {
         Trial trial = box_on_ground();
