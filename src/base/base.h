@@ -200,9 +200,6 @@ bool parse_float(const char *text, float *value);
 /* The same in double, in the range of float32. */
 bool parse_double(const char *text, double *value);
 
-/* Both. */
-bool parse_number(const char *text, float *value, double *full);
-
 /* The decimal number that text begins with, in the range of float32; *rest is what follows it. */
 bool parse_leading_double(const char *text, double *value, const char **rest);
 

@@ -66,30 +66,28 @@ static bool take_number(const char *text, char terminator, Number *number, const
     return parse_convert(text, number);
 }
 
-bool parse_number(const char *text, float *value, double *full) {
-    Number number, divisor = {1, 1};
+/* A number, or a fraction of two. */
+static bool parse_number(const char *text, Number *number) {
+    Number divisor = {1, 1};
     const char *rest;
-    if (!take_number(text, '\0', &number, &rest) &&
-        !(take_number(text, '/', &number, &rest) && take_number(rest, '\0', &divisor, &rest) && divisor.single != 0))
+    if (!take_number(text, '\0', number, &rest) &&
+        !(take_number(text, '/', number, &rest) && take_number(rest, '\0', &divisor, &rest) && divisor.single != 0))
         return false;
-    *value = number.single / divisor.single;
-    *full = number.full / divisor.full;
-    return isfinite(*value);
+    *number = (Number){number->single / divisor.single, number->full / divisor.full};
+    return isfinite(number->single);
 }
 
 bool parse_float(const char *text, float *value) {
-    double full;
-    float single;
-    const bool ok = parse_number(text, &single, &full);
-    if (ok) *value = single;
+    Number number;
+    const bool ok = parse_number(text, &number);
+    if (ok) *value = number.single;
     return ok;
 }
 
 bool parse_double(const char *text, double *value) {
-    double full;
-    float single;
-    const bool ok = parse_number(text, &single, &full);
-    if (ok) *value = full;
+    Number number;
+    const bool ok = parse_number(text, &number);
+    if (ok) *value = number.full;
     return ok;
 }
 

@@ -94,14 +94,20 @@ static bool list_rows(Many *many, int input, Error *error) {
     return ok;
 }
 
+static bool compare_row(const Many *many, const Row *row, CompareOptions *options, RunComparison *c, Error *error) {
+    *options = *many->options;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) options->paths[side] = row->paths[side];
+    *c = (RunComparison){.options = options};
+    return compare_runs_make(c, error);
+}
+
 /* False with error set if memory or the system fails. A file that is missing or damaged is a row that fails. */
 static bool judge(Many *many, Row *row, Error *error) {
     const bool alone = row->judged.verdict != NULL; /* of one folder only */
-    CompareOptions options = *many->options;
-    options.paths[0] = row->paths[EXPECTED], options.paths[1] = row->paths[ACTUAL];
-    RunComparison c = {.options = &options};
+    RunComparison c;
+    CompareOptions options;
     Error why = {0};
-    const bool made = !alone && compare_runs_make(&c, &why);
+    const bool made = !alone && compare_row(many, row, &options, &c, &why);
     if (made) {
         row->judged = compare_runs_case(&c, 0);
         row->parted = c.parting.beyond;
@@ -111,7 +117,7 @@ static bool judge(Many *many, Row *row, Error *error) {
     row->judged.kind = "trajectories";
     row->judged.name = row->paths[ACTUAL];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) row->judged.paths[side] = row->paths[side];
-    compare_runs_free(&c);
+    if (!alone) compare_runs_free(&c);
     if (made || alone) return true;
     text_add(row->judged.words.text, sizeof row->judged.words.text, "%s", why.message);
     if (why.kind != ERROR_INPUT) return *error = why, false;
@@ -192,11 +198,7 @@ static void write_json(JsonWriter *json, const void *context) {
 static ReportCase case_at(const void *context, int i) { return ((const Many *)context)->rows[i].judged; }
 
 static void write_results(FILE *out, const void *context) {
-    JsonWriter json = {.out = out};
-    json_begin_object(&json, NULL, JSON_LINES);
-    json_put_text(&json, "format", "twinbox compare many 1");
-    write_json(&json, context);
-    json_end(&json);
+    json_output_print(out, &(JsonOutput){"twinbox compare many 1", write_json, context});
 }
 
 static void write_page(FILE *out, const void *context) {
@@ -222,10 +224,9 @@ static bool write_report(Many *many, Error *error) {
     for (int i = 0; i < many->count; i++) failed += many->rows[i].judged.failed;
     bool ok = true;
     if (first != NULL) {
-        CompareOptions options = *many->options;
-        options.paths[0] = first->paths[EXPECTED], options.paths[1] = first->paths[ACTUAL];
-        RunComparison c = {.options = &options};
-        ok = compare_runs_make(&c, error) && compare_runs_page(&c, folder, error);
+        CompareOptions options;
+        RunComparison c;
+        ok = compare_row(many, first, &options, &c, error) && compare_runs_page(&c, folder, error);
         many->link = c.link;
         compare_runs_free(&c);
     }

@@ -225,11 +225,7 @@ ReportCase compare_runs_case(const void *context, int i) {
 }
 
 static void write_results(FILE *out, const void *context) {
-    JsonWriter json = {.out = out};
-    json_begin_object(&json, NULL, JSON_LINES);
-    json_put_text(&json, "format", "twinbox compare runs 1");
-    compare_runs_write_json(&json, context);
-    json_end(&json);
+    json_output_print(out, &(JsonOutput){"twinbox compare runs 1", compare_runs_write_json, context});
 }
 
 bool compare_runs_page(RunComparison *c, const char *folder, Error *error) {

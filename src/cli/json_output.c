@@ -7,14 +7,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-typedef struct Output {
-    const char *format;
-    JsonOutputWrite *write;
-    const void *context;
-} Output;
-
-static void json_output_print(FILE *out, const void *context) {
-    const Output *output = context;
+void json_output_print(FILE *out, const void *context) {
+    const JsonOutput *output = context;
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_LINES);
     json_put_text(&json, "format", output->format);
@@ -29,7 +23,7 @@ bool json_output_check(bool json, Error *error) {
 
 /* Through memory, because JsonWriter needs the C locale. */
 bool json_output(const char *format, JsonOutputWrite *write, const void *context, Error *error) {
-    const Output output = {format, write, context};
+    const JsonOutput output = {format, write, context};
     size_t size;
     char *text = file_print(json_output_print, &output, &size);
     if (text == NULL) return error_memory(error, "--json");

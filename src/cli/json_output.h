@@ -8,6 +8,7 @@
 #include "cli/options.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #define OPTION_JSON(T, member) \
     "--json", 0, NULL, "Print the result as one JSON object on standard output", OPTION_FLAG(T, member)
@@ -17,6 +18,14 @@ bool json_output_check(bool json, Error *error);
 
 /* Prints what `write` puts between the format and the end of the object. */
 typedef void JsonOutputWrite(JsonWriter *json, const void *context);
+
+/* The same into a file: the object of a JsonOutput. */
+typedef struct JsonOutput {
+    const char *format;
+    JsonOutputWrite *write;
+    const void *context;
+} JsonOutput;
+void json_output_print(FILE *out, const void *output);
 bool json_output(const char *format, JsonOutputWrite *write, const void *context, Error *error);
 
 /* "point": [x, y] */

@@ -131,25 +131,21 @@ static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, 
 }
 
 /* What traces do not state, but a picture needs: a step, and sizes. Bodies become squares, as many of which would fill a
-   quarter of a square as wide as what they span in both runs. */
+   quarter of a square as wide as what they span in all frames of the first run. */
 static void show_traces(Trajectory *const runs[SIDES]) {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (int i = 0; i < SIDES * runs[0]->bodies; i++) {
-        const Trajectory *run = runs[i % SIDES];
-        const int frames = runs[0]->frames < runs[1]->frames ? runs[0]->frames : runs[1]->frames, body = i / SIDES;
-        for (int frame = 0; frame < frames; frame++)
-            for (int column = 0; trajectory_has(run, frame, body) && column < 2; column++) {
-                const double number = trajectory_number(run, trajectory_at(run, frame, body), column);
-                low[column] = fmin(low[column], number), high[column] = fmax(high[column], number);
-            }
+    const Trajectory *first = runs[EXPECTED];
+    Vec2 low = vec2(INFINITY, INFINITY), high = vec2(-INFINITY, -INFINITY);
+    for (size_t i = 0; i < (size_t)first->frames * (size_t)first->bodies; i++) { /* NaN is neither low nor high */
+        const Vec2 at = first->position[i];
+        low = vec2(fminf(low.x, at.x), fminf(low.y, at.y));
+        high = vec2(fmaxf(high.x, at.x), fmaxf(high.y, at.y));
     }
-    const double span = fmax(high[0] - low[0], high[1] - low[1]), side = span / (2 * sqrt(runs[0]->bodies));
-    for (RegressionSide side_of = EXPECTED; side_of < SIDES; side_of++) {
-        Trajectory *run = runs[side_of];
-        if (!(run->dt > 0)) run->dt = runs[1 - side_of]->dt > 0 ? runs[1 - side_of]->dt : 1.0F / 60;
-        for (int body = 0; body < run->bodies; body++)
-            if (!(run->size[body].x > 0))
-                run->size[body] = side > 0 && isfinite(side) ? vec2((float)side, (float)side) : vec2(1, 1);
+    const float span = fmaxf(high.x - low.x, high.y - low.y) / (2 * sqrtf((float)first->bodies));
+    const float dt = fmaxf(runs[EXPECTED]->dt, runs[ACTUAL]->dt), side = span > 0 && isfinite(span) ? span : 1;
+    for (int i = 0; i < SIDES * first->bodies; i++) {
+        Trajectory *run = runs[i % SIDES];
+        run->dt = dt > 0 ? dt : 1.0F / 60;
+        if (!(run->size[i / SIDES].x > 0)) run->size[i / SIDES] = vec2(side, side);
     }
 }
 

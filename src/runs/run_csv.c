@@ -368,29 +368,8 @@ static bool take_index(const CsvRows *rows, const Fields *fields, int column, in
 enum { DIGITS = 19 }; /* that a uint64_t holds */
 __extension__ typedef unsigned __int128 Wide;
 
-/* The float64 nearest to digits / 10^places, ties to even; digits > 0. */
-static double nearest_double(uint64_t digits, int places) {
-    static const uint64_t powers[DIGITS + 1] = {1,
-                                                UINT64_C(10),
-                                                UINT64_C(100),
-                                                UINT64_C(1000),
-                                                UINT64_C(10000),
-                                                UINT64_C(100000),
-                                                UINT64_C(1000000),
-                                                UINT64_C(10000000),
-                                                UINT64_C(100000000),
-                                                UINT64_C(1000000000),
-                                                UINT64_C(10000000000),
-                                                UINT64_C(100000000000),
-                                                UINT64_C(1000000000000),
-                                                UINT64_C(10000000000000),
-                                                UINT64_C(100000000000000),
-                                                UINT64_C(1000000000000000),
-                                                UINT64_C(10000000000000000),
-                                                UINT64_C(100000000000000000),
-                                                UINT64_C(1000000000000000000),
-                                                UINT64_C(10000000000000000000)};
-    const uint64_t power = powers[places];
+/* The float64 nearest to digits / power, ties to even; digits > 0. */
+static double nearest_double(uint64_t digits, uint64_t power) {
     const int shift = __builtin_clzll(digits) + 64;
     const Wide dividend = (Wide)digits << shift, quotient = dividend / power; /* at least 64 bits */
     const uint64_t high = (uint64_t)(quotient >> 64);
@@ -405,15 +384,17 @@ static double nearest_double(uint64_t digits, int places) {
    as long. */
 static bool take_number(const Field *field, double *value) {
     const char *first = field->begin + (*field->begin == '-' || *field->begin == '+'), *c = first;
-    uint64_t digits = 0;
-    int places = -1;
-    for (; c < field->end && ((*c >= '0' && *c <= '9') || (*c == '.' && places < 0)); c++) {
-        places += places >= 0 || *c == '.';
-        if (*c != '.') digits = digits * 10 + (uint64_t)(*c - '0');
+    uint64_t digits = 0, power = 1; /* of 10, behind the point */
+    bool point = false;
+    for (; c < field->end && ((*c >= '0' && *c <= '9') || (*c == '.' && !point)); c++) {
+        if (*c == '.')
+            point = true;
+        else
+            digits = digits * 10 + (uint64_t)(*c - '0'), power *= point ? 10 : 1;
     }
-    const int64_t count = c - first - (places >= 0);
+    const int64_t count = c - first - point;
     if (c == field->end && count > 0 && count <= DIGITS) {
-        *value = digits == 0 ? 0.0 : nearest_double(digits, places > 0 ? places : 0);
+        *value = digits == 0 ? 0.0 : nearest_double(digits, power);
         if (*field->begin == '-') *value = -*value;
         return true;
     }

@@ -3,6 +3,7 @@
 #include "fuzz.h"
 
 #include "paper/paper_tables.h"
+#include "runs/compare_runs.h"
 #include "runs/run_files.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
@@ -98,13 +99,23 @@ static void check_run(const Trajectory *run) {
     trajectory_destroy(again);
 }
 
-/* Options: bit 0 degrees, bit 1 a dt, bit 2 sizes, which begin behind a NUL. */
+/* A trace is equal to itself. */
+static void check_trace(const Trajectory *run) {
+    TrajectoryDifference difference;
+    trajectory_compare(run, run, &difference);
+    if (!difference.equal) fuzz_fail("a trace is not equal to itself");
+}
+
+/* Options: bit 0 degrees, bit 1 a dt, bit 2 sizes, which begin behind a NUL; bit 3 as a trace. */
 static Trajectory *read_run(const uint8_t *data, size_t size, const char **path, Error *error) {
     const unsigned choice = data[0];
     const uint8_t *text = data + 1, *end = memchr(text, '\0', size - 1);
     const size_t length = end == NULL || (choice & 4) == 0 ? size - 1 : (size_t)(end - text);
     const size_t rest = length < size - 1 ? size - 2 - length : 0;
-    CsvRunOptions options = {.name = "fuzz", .degrees = (choice & 1) != 0, .dt = (choice & 2) != 0 ? 0.01F : 0};
+    CsvRunOptions options = {.name = "fuzz",
+                             .degrees = (choice & 1) != 0,
+                             .dt = (choice & 2) != 0 ? 0.01F : 0,
+                             .as_trace = (choice & 8) != 0};
     CsvRunNotes notes = {0};
     *path = fuzz_file("run.csv", text, length);
     if ((choice & 4) != 0) options.sizes = fuzz_file("sizes.csv", text + size - 1 - rest, rest);
@@ -121,6 +132,6 @@ void fuzz_csv_run(const uint8_t *data, size_t size) {
     if (size == 0) return;
     Trajectory *run = read_run(data, size, &path, &error);
     fuzz_end(run != NULL, &error, path);
-    if (run != NULL) check_run(run);
+    if (run != NULL) (run->there != NULL ? check_trace : check_run)(run);
     trajectory_destroy(run);
 }
