@@ -159,7 +159,8 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
 
 double trajectory_distance(const Trajectory *a, const Trajectory *b, int frame) {
     double largest = 0;
-    for (int body = 0; !same_bytes(a, b, frame) && body < most_bodies(a, b); body++)
+    const int bodies = same_bytes(a, b, frame) ? 0 : most_bodies(a, b);
+    for (int body = 0; body < bodies; body++)
         largest = fmax(largest, trajectory_state_difference(a, b, frame, body).distance);
     return largest;
 }
@@ -254,44 +255,37 @@ static bool contact_difference(const Trajectory *a, const Trajectory *b, int ste
     return ok;
 }
 
-/* Whether a body is farther apart in two runs than the tolerance allows. */
-static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, const PoseTolerance *tolerance) {
-    const double turn = 2 * acos(-1);
-    if (trajectory_same_state(a, b, frame, body)) return false;
-    if (!tolerance->given) return true;
-    StateDifference by = trajectory_state_difference(a, b, frame, body);
-    /* NaN is within no tolerance. */
-    return !by.in_a || !by.in_b || a->no_poses || b->no_poses || !(by.distance <= tolerance->distance) ||
-           !(fabs(remainder(by.angle, turn)) <= tolerance->angle);
+/* NaN is within no tolerance, nor is a hash. */
+static bool is_near(const Trajectory *a, const Trajectory *b, const StateDifference *by,
+                    const PoseTolerance *tolerance) {
+    return tolerance->given && by->in_a && by->in_b && !a->no_poses && !b->no_poses &&
+           by->distance <= tolerance->distance && fabs(remainder(by->angle, 2 * acos(-1))) <= tolerance->angle;
 }
 
-static void count_frames(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
-                         TrajectoryParting *parting) {
-    static const PoseTolerance exact = {0};
+static void note(PartedBody *parted, int frame, int body, const StateDifference *by) {
+    if (parted->frame < 0) *parted = (PartedBody){frame, body, 0, *by};
+    parted->bodies += parted->frame == frame;
+}
+
+/* Sets the first differences, in any bit and beyond the tolerance, and counts frames. */
+static void find_parted(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                        TrajectoryParting *parting) {
+    parting->first = parting->beyond = (PartedBody){.frame = -1, .body = -1};
     for (int frame = 0; frame < parting->frames; frame++) {
         bool equal = true, within = true;
-        const bool same = same_bytes(a, b, frame);
-        for (int body = 0; !same && body < most_bodies(a, b) && within; body++) {
-            equal = equal && !apart(a, b, frame, body, &exact);
-            within = equal || !apart(a, b, frame, body, tolerance);
+        const int bodies = same_bytes(a, b, frame) ? 0 : most_bodies(a, b);
+        for (int body = 0; body < bodies; body++) {
+            if (trajectory_same_state(a, b, frame, body)) continue;
+            const StateDifference by = trajectory_state_difference(a, b, frame, body);
+            equal = false;
+            note(&parting->first, frame, body, &by);
+            if (is_near(a, b, &by, tolerance)) continue;
+            within = false;
+            note(&parting->beyond, frame, body, &by);
         }
         parting->equal += equal;
         parting->within += within && !equal;
     }
-}
-
-/* The first frame from `frame` on in which a body differs. */
-static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int frame, int frames,
-                              const PoseTolerance *tolerance) {
-    PartedBody parted = {.frame = -1, .body = -1};
-    for (; parted.frame < 0 && frame < frames; frame++)
-        for (int body = 0; !same_bytes(a, b, frame) && body < most_bodies(a, b); body++) {
-            if (!apart(a, b, frame, body, tolerance) || parted.bodies++ > 0) continue;
-            parted.frame = frame;
-            parted.body = body;
-            parted.by = trajectory_state_difference(a, b, frame, body);
-        }
-    return parted;
 }
 
 static PartCause find_cause(const Trajectory *a, const Trajectory *b, const TrajectoryParting *parting) {
@@ -317,11 +311,7 @@ bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseToleran
                                    .poses_only = !trajectory_both_move(a, b),
                                    .no_contacts = a->no_contacts || b->no_contacts,
                                    .no_impulses = a->no_impulses || b->no_impulses};
-    parting->first = find_parted(a, b, 0, frames, &(PoseTolerance){0});
-    parting->beyond = parting->first;
-    count_frames(a, b, tolerance, parting);
-    if (tolerance->given && parting->first.frame >= 0)
-        parting->beyond = find_parted(a, b, parting->first.frame, frames, tolerance);
+    find_parted(a, b, tolerance, parting);
     int last = parting->first.frame >= 0 ? parting->first.frame : frames - 1;
     bool contacts = !a->no_contacts && !b->no_contacts;
     parting->step = -1;
