@@ -137,11 +137,6 @@ static void print_fit(FILE *out, const Scene *scene) {
             "    rounding: %.6g m from 0, positions are %.3g m apart (float32), and a body moves by %.3g m in a step: "
             "make dt longer, or move the scene towards 0\n",
             fit.far, fit.apart, fit.moved);
-    if (fit.side < (double)CONTACT_THIN)
-        fprintf(out,
-                "    thin: boxes under %g m that lie on one another can change places with the engine, which has "
-                "Box2D-Lite's contacts; methods that mend them hold if they converge\n",
-                (double)CONTACT_THIN);
 }
 
 /* "launches from x = -4.9 to -1.25 and from 1.25 to 4.9 m": where they miss, if they differ in x. */

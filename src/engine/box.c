@@ -132,9 +132,20 @@ static inline bool allowed(const Vec2 *across, Vec2 normal) {
     return across == NULL || fabsf(vec2_dot(*across, normal)) < 0.7072f;
 }
 
+/* Where b has been pressed past the centre of a along the axis of the last normal, which is within 45 degrees of it:
+   the place on the side that b had, and the separation of that face. */
+static void keep_side(Vec2 *place, Vec2 *face, Mat22 to_box, Vec2 last) {
+    const Vec2 side = mat22_multiply(to_box, last);
+    const bool along_x = fabsf(side.x) > fabsf(side.y);
+    float *at = along_x ? &place->x : &place->y;
+    if (!(*at * (along_x ? side.x : side.y) < 0)) return;
+    *(along_x ? &face->x : &face->y) -= 2 * fabsf(*at);
+    *at = -*at;
+}
+
 /* False if an axis separates the boxes by more than the gap. */
 static inline __attribute__((always_inline)) bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b,
-                                                                      const Vec2 *across, float gap) {
+                                                                      const Vec2 *across, float gap, const Vec2 *last) {
     Mat22 to_a = mat22_transpose(a->rotation), to_b = mat22_transpose(b->rotation);
     Vec2 between = vec2_sub(b->position, a->position);
     Vec2 in_a = mat22_multiply(to_a, between), in_b = mat22_multiply(to_b, between);
@@ -144,6 +155,10 @@ static inline __attribute__((always_inline)) bool find_reference_face(ReferenceF
     if (face_a.x > gap || face_a.y > gap) return false;
     Vec2 face_b = vec2_sub(vec2_sub(vec2_abs(in_b), mat22_multiply(mat22_transpose(turn), a->half)), b->half);
     if (face_b.x > gap || face_b.y > gap) return false;
+    if (last != NULL) {
+        keep_side(&in_a, &face_a, to_a, *last);
+        keep_side(&in_b, &face_b, to_b, *last);
+    }
 
     *face = (ReferenceFace){false, false, face_a.x, toward(in_a.x, a->rotation.column1)};
     if (!allowed(across, face->normal)) face->separation = -INFINITY;
@@ -206,10 +221,10 @@ static inline bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, 
 /* Returns the separation along the reference face. Inlined, so that contacts by all faces without a gap cost no more
    than if there were no others. */
 static inline __attribute__((always_inline)) float compute(Manifold *manifold, const Box *a, const Box *b,
-                                                           const Vec2 *across, float gap) {
+                                                           const Vec2 *across, float gap, const Vec2 *last) {
     manifold->count = 0;
     ReferenceFace face;
-    if (!find_reference_face(&face, a, b, across, gap)) return INFINITY;
+    if (!find_reference_face(&face, a, b, across, gap, last)) return INFINITY;
     manifold->normal = face.normal;
 
     const Box *reference = face.of_b ? b : a, *incident = face.of_b ? a : b;
@@ -240,12 +255,12 @@ static inline __attribute__((always_inline)) float compute(Manifold *manifold, c
     return face.separation;
 }
 
-void manifold_compute(Manifold *manifold, const Box *a, const Box *b) { compute(manifold, a, b, NULL, 0.0f); }
+void manifold_compute(Manifold *manifold, const Box *a, const Box *b) { compute(manifold, a, b, NULL, 0.0f, NULL); }
 
-void manifold_compute_within(Manifold *manifold, const Box *a, const Box *b, float gap) {
-    compute(manifold, a, b, NULL, gap);
+void manifold_compute_within(Manifold *manifold, const Box *a, const Box *b, float gap, const Vec2 *last) {
+    compute(manifold, a, b, NULL, gap, last);
 }
 
-float manifold_compute_across(Manifold *manifold, const Box *a, const Box *b, Vec2 normal) {
-    return compute(manifold, a, b, &normal, 0.0f);
+float manifold_compute_across(Manifold *manifold, const Box *a, const Box *b, float gap, Vec2 normal) {
+    return compute(manifold, a, b, &normal, gap, NULL);
 }

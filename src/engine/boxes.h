@@ -29,7 +29,7 @@ typedef enum Edge { NO_EDGE, EDGE_TOP, EDGE_LEFT, EDGE_BOTTOM, EDGE_RIGHT } Edge
 
 typedef struct ManifoldPoint {
     Vec2 position;    /* m, world, on the reference face */
-    float separation; /* m, <= 0 */
+    float separation; /* m, positive where a gap is */
     uint32_t feature; /* bytes from the lowest: incoming and outgoing edge of a, then of b */
 } ManifoldPoint;
 
@@ -42,12 +42,13 @@ typedef struct Manifold {
 /* Fills the manifold of a and b; count is 0 if they do not touch. */
 void manifold_compute(Manifold *manifold, const Box *a, const Box *b);
 
-/* The same for boxes that are apart by no more than `gap` m, too; so are points. */
-void manifold_compute_within(Manifold *manifold, const Box *a, const Box *b, float gap);
+/* The same for boxes that are apart by no more than `gap` m, too; so are points. last: NULL, or the normal with which
+   they touched before; b stays on that side of a, even where its centre has been pressed past that of a. */
+void manifold_compute_within(Manifold *manifold, const Box *a, const Box *b, float gap, const Vec2 *last);
 
 /* The same, by the faces alone that are at 45 degrees and more to `normal`. Returns the separation of the face that it
-   takes, m, also if no point lies on both boxes; it is positive for boxes that do not touch. */
-float manifold_compute_across(Manifold *manifold, const Box *a, const Box *b, Vec2 normal);
+   takes, m, also if no point lies on both boxes; it is above the gap for boxes that do not touch. */
+float manifold_compute_across(Manifold *manifold, const Box *a, const Box *b, float gap, Vec2 normal);
 
 /* Broad phase: which pairs of boxes may touch. */
 

@@ -72,6 +72,10 @@ static float smallest_half(const Box *a, const Box *b) {
 
 static float radius(const Box *box) { return sqrtf(vec2_dot(box->half, box->half)); }
 
+/* The gap at which boxes touch, and the step between two that is none, of half of the smallest side. At 1 m that is the
+   overlap that contacts leave, CONTACT_SLOP, by which sweeps that end early let neighbours sink unequally. */
+static const float gap_share = 0.02f;
+
 static const float least_cosine = 0.98f; /* of the angle up to which directions count as one, as in Box2D */
 
 /* Adds the arbiter of the last step with the points that it had; false if it must be found again. A single point is: a
@@ -110,8 +114,9 @@ static bool before(int a, int b, int of_a, int of_b) { return a < of_a || (a == 
    steps, which start on the floor, slide over seams, and others do not.
 
    Here the pair takes the faces across instead, if a support, which is another pair of one of the two boxes with that
-   normal, is beside it and the box overlaps the tile no deeper than it overlaps the support: then the tile does not
-   stick out. Jolt Physics drops such contacts, too, of the triangles of a mesh ("enhanced internal edge removal"). */
+   normal, is beside it and the box overlaps the tile no deeper than it overlaps the support, up to the gap at which
+   boxes touch: then the tile does not stick out. Jolt Physics drops such contacts, too, of the triangles of a mesh
+   ("enhanced internal edge removal"). */
 
 /* For each body a list of its arbiters: heads [bodies], then for each arbiter the next one of a and of b; -1 ends it.
    An entry is 2 * arbiter + (0: the body is a, 1: it is b). */
@@ -141,7 +146,7 @@ typedef struct Side {
 /* Whether the tile does not stick out of the support, compared where their points are nearest. A box that only just
    touches the tile has no point across. */
 static bool is_flush(const Side *side, const ContactSet *set, const Arbiter *support) {
-    const float tolerance = 1e-3f * side->least;
+    const float tolerance = gap_share * side->least;
     const ManifoldPoint touch = {set->contacts[set->arbiters[side->arbiter].first].position, -side->depth, 0};
     const ManifoldPoint *points = side->across.count > 0 ? side->across.points : &touch;
     const Vec2 tangent = vec2_cross_scalar(side->across.normal, 1.0f);
@@ -175,8 +180,9 @@ static bool mend_seams(ContactSet *set, const Box *boxes) {
         if (!arbiter->narrow) continue;
         const Box *a = &boxes[arbiter->a], *b = &boxes[arbiter->b];
         Side side = {.arbiter = i, .least = smallest_half(a, b)};
-        side.depth = -manifold_compute_across(&side.across, a, b, set->contacts[arbiter->first].normal);
-        if (!(side.depth >= 0 && side.depth < side.least)) continue; /* the box is on the tile more than in it */
+        side.depth =
+            -manifold_compute_across(&side.across, a, b, gap_share * side.least, set->contacts[arbiter->first].normal);
+        if (!(side.depth < side.least)) continue; /* the box is on the tile more than in it */
         if (body_count == 0) {
             for (int k = 0; k < set->arbiter_count; k++)
                 if (set->arbiters[k].b >= body_count) body_count = set->arbiters[k].b + 1;
@@ -194,20 +200,17 @@ static bool mend_seams(ContactSet *set, const Box *boxes) {
     return true;
 }
 
-static const float gap_share = 0.05f; /* of the smaller side of thin boxes */
-
-float contact_gap(const Box *box, ContactRules rules) {
-    const float side = 2.0f * smallest_half(box, box);
-    return rules.mend && side < CONTACT_THIN ? gap_share * side : 0;
+float contact_reach(const Box *box, ContactRules rules) {
+    return rules.mend ? 0.5f * gap_share * smallest_half(box, box) : 0;
 }
 
-/* Adds the arbiter of a pair, if it touches. */
-static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool mend) {
+/* Adds the arbiter of a pair, if it touches. last: the normal of the last step, or NULL. */
+static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool mend, const Vec2 *last) {
     const Box *a = &boxes[pair.a], *b = &boxes[pair.b];
     const float least = smallest_half(a, b);
     Manifold manifold;
-    if (mend && 2.0f * least < CONTACT_THIN)
-        manifold_compute_within(&manifold, a, b, gap_share * 2.0f * least);
+    if (mend)
+        manifold_compute_within(&manifold, a, b, gap_share * least, last);
     else
         manifold_compute(&manifold, a, b);
     if (manifold.count == 0) return;
@@ -224,7 +227,7 @@ static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool 
 
 bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last,
                          ContactRules rules) {
-    const Arbiter *old = last->arbiters, *end = old + (rules.keep > 0 ? last->arbiter_count : 0);
+    const Arbiter *old = last->arbiters, *end = old + (rules.keep > 0 || rules.mend ? last->arbiter_count : 0);
     const BodyPair *pair = pairs->pairs, *pairs_end = pair + pairs->count;
     set->arbiter_count = set->contact_count = 0;
     if (!reserve(set, pairs->count + (size_t)(end - old))) return false;
@@ -232,8 +235,9 @@ bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxe
     while (pair < pairs_end || old < end) {
         const bool is_old = old < end && (pair == pairs_end || !before(pair->a, pair->b, old->a, old->b));
         const bool may_touch = !is_old || (pair < pairs_end && pair->a == old->a && pair->b == old->b);
-        if (!(is_old && keep_arbiter(set, last, old, boxes, rules.keep)) && may_touch)
-            find_arbiter(set, *pair, boxes, rules.mend);
+        if (!(is_old && rules.keep > 0 && keep_arbiter(set, last, old, boxes, rules.keep)) && may_touch)
+            find_arbiter(set, *pair, boxes, rules.mend,
+                         is_old && old->count > 0 ? &last->contacts[old->first].normal : NULL);
         old += is_old;
         pair += may_touch;
     }

@@ -31,9 +31,8 @@ typedef struct ContactSet {
     size_t arbiter_capacity, contact_capacity, impulse_capacity, partner_capacity;
 } ContactSet;
 
-/* m: the distance from which on a thin box touches others, where contacts are mended; 0: not before it overlaps
-   them. */
-float contact_gap(const Box *box, ContactRules rules);
+/* m: by how much to widen the bounds of a box, so that those of boxes that touch overlap. */
+float contact_reach(const Box *box, ContactRules rules);
 
 void contact_set_free(ContactSet *set);
 

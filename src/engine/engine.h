@@ -137,16 +137,15 @@ typedef bool ContactSolve(void *state, const ContactProblem *problem, ContactSol
    weight, which it would otherwise buckle by. The price: support up to `keep` beyond an edge. Sweeps that end early
    still let boxes sink. Source: Catto, Box2D's contact recycling (2026), whose tolerance is a length.
 
-   mend: no ghosts at seams (contact_problem.c); and thin boxes (CONTACT_THIN) touch before they overlap. */
+   mend: boxes touch from a gap of 1% of the smaller side on, which a step may close and no more, and keep the sides
+   with which they touch; and there are no ghosts at seams (contact_problem.c). As Box2D-Lite finds contacts, boxes that
+   rounding or the end of sweeps sets apart fall until they overlap, each layer of a stack a step after the one below;
+   and thin ones are pressed past one another, and then pushed out on the wrong side. Box2D v3, too, has contacts before
+   boxes overlap: from four slops on. */
 typedef struct ContactRules {
     float keep;
     bool mend;
 } ContactRules;
-
-/* m: the smallest side below which boxes are thin. As Box2D-Lite finds contacts, boxes that rounding or the end of
-   sweeps sets apart fall until they overlap. In a stack of thin boxes this presses the centre of one past that of
-   another; and contacts, which push centres apart, then push it out on the wrong side. */
-#define CONTACT_THIN (5 * CONTACT_SLOP)
 
 /* The mutable state of a simulation: bodies, the contacts that persist between them, and the step.
 

@@ -144,7 +144,7 @@ static bool collide(World *world) {
         Bounds *bounds = &world->bounds[i];
         *box = box_make(body->position, body->size, body->angle);
         *bounds = bounds_of_box(box);
-        const float gap = contact_gap(box, world->rules);
+        const float gap = contact_reach(box, world->rules);
         if (gap == 0) continue;
         bounds->low = vec2_sub(bounds->low, vec2(gap, gap));
         bounds->high = vec2_add(bounds->high, vec2(gap, gap));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Soft step: the solver of Box2D v3. One collision pass, then n substeps of h = dt / n; each applies its gravity and
    the impulses of the substep before, visits all contacts once as damped springs, moves the bodies, and visits all
-   contacts once more without the springs (relaxation), with friction, so that the velocity that corrects overlap does
-   not stay in the bodies. Erin Catto, "Solver2D" (box2d.org, 2024) and "Soft Constraints" (GDC 2011).
+   contacts once more without the springs (relaxation), so that the velocity that corrects overlap does not stay in the
+   bodies; both with friction. Erin Catto, "Solver2D" (box2d.org, 2024) and "Soft Constraints" (GDC 2011).
 
    A contact of effective mass m with overlap s < 0, relative normal velocity v and impulse p of this substep gets
 
@@ -11,9 +11,7 @@
    w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close,
    no more. The arms of impulses stay those of the collision pass; s follows the poses.
 
-   Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are SKIN inside the boxes; without it
-   contacts would come and go. With `keep` they stay, as in Box2D since March 2026, and need no skin. Left out are
-   Box2D's bounds on speed, its continuous collision, sleep and restitution. It visits one contact after the other, not
+   With `keep` contacts stay, as in Box2D since March 2026. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It visits one contact after the other, not
    four at a time.
 
    Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. Without
@@ -71,8 +69,6 @@ typedef struct SoftStep {
     size_t kept_capacity;
 } SoftStep;
 
-#define SKIN 0.005f         /* m, Box2D's linear slop; of thin boxes less */
-#define SKIN_SHARE 0.1f     /* of the smallest side */
 #define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
 
 static void push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
@@ -129,7 +125,7 @@ static void solve_normal(const SoftPair *pair, SoftPoint *point, SoftBody *a, So
     push(a, b, point, vec2_scale(point->impulse.normal - old, pair->normal));
 }
 
-/* One visit of all contacts; relaxing: without the springs, with friction. */
+/* One visit of all contacts; relaxing: without the springs. */
 static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
     static const Softness rigid = {1, 0, 0};
     for (const SoftPair *pair = stepping->pairs; pair < stepping->pairs + stepping->pair_count; pair++) {
@@ -138,7 +134,7 @@ static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
         const Softness *softness = relaxing ? &rigid : pair->softness;
         for (int k = 0; k < pair->count; k++) solve_normal(pair, &points[k], &a, &b, softness, inverse_h);
         const Vec2 tangent = vec2_cross_scalar(pair->normal, 1.0f);
-        for (SoftPoint *point = points; relaxing && point < points + pair->count; point++) {
+        for (SoftPoint *point = points; point < points + pair->count; point++) {
             const float velocity = vec2_dot(relative_velocity(&a, &b, point), tangent), old = point->impulse.tangent;
             const float most = pair->friction * point->impulse.normal;
             point->impulse.tangent = contact_clamp(old - point->mass_tangent * velocity, -most, most);
@@ -208,21 +204,16 @@ static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) 
                                                              contact->friction,
                                                              moving ? &stepping->moving : &stepping->fixed};
     }
-    const Vec2 a = problem->bodies[contact->a].size, b = problem->bodies[contact->b].size;
-    const float side = fminf(fminf(a.x, a.y), fminf(b.x, b.y)), skin = fminf(SKIN, SKIN_SHARE * side);
-    const float apart = contact->separation + (stepping->keep > 0 ? 0 : skin);
-    /* The impulses of the last substep. In a step of unknown past an equal share of those of the last step; and there
-       a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP are at rest. */
+    /* The impulses of the last substep. In a step of unknown past an equal share of those of the last step. */
     const int before = stepping->memory.before[i];
     const float share = 1.0f / (float)stepping->substeps;
     const ContactImpulse start = before >= 0
                                      ? stepping->kept[before]
                                      : (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
-    const float gap = before < 0 && contact->warm_normal > 0 && apart > 0 ? 0 : apart;
     const Vec2 between = vec2_sub(contact->arm_b, contact->arm_a);
     stepping->points[i] = (SoftPoint){.arm_a = contact->arm_a,
                                       .arm_b = contact->arm_b,
-                                      .base = gap - vec2_dot(between, contact->normal),
+                                      .base = contact->separation - vec2_dot(between, contact->normal),
                                       .mass_normal = contact->mass_normal,
                                       .mass_tangent = contact->mass_tangent,
                                       .impulse = start};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contacts that are mended: which faces a box and a tile touch with, and from when on thin boxes touch. Answers follow
-   from the places of the boxes. */
+/* Contacts that are mended: which faces a box and a tile touch with, and from which gap on boxes touch. Answers
+   follow from the places of the boxes. */
 #include "owned.h"
 
 #include "engine/engine.h"
@@ -87,14 +87,14 @@ TEST(a_box_does_not_catch_behind_a_narrow_gap) {
     assert_normal(&wide, true, -1, 0);
 }
 
-/* A step of a thousandth of half a side, 0.4 mm, is none. */
+/* A step of a hundredth of the side, 8 mm, is none. */
 TEST(a_step_stops_a_box) {
-    static const float steps[] = {5e-4f, 1e-3f, 0.01f, 0.3f};
-    for (int i = 0; i < 4; i++) {
+    static const float steps[] = {8.1e-3f, 0.01f, 0.3f};
+    for (int i = 0; i < 3; i++) {
         const Place place = {.ahead = 1e-3f, .step = steps[i], .scale = 1};
         assert_normal(&place, true, -1, 0);
     }
-    const Place less = {.ahead = 1e-3f, .step = 3e-4f, .scale = 1}, wall = {.ahead = 1e-3f, .scale = 1, .tall = true};
+    const Place less = {.ahead = 1e-3f, .step = 7.9e-3f, .scale = 1}, wall = {.ahead = 1e-3f, .scale = 1, .tall = true};
     assert_normal(&less, true, 0, 1);
     assert_normal(&wall, true, -1, 0);
 }
@@ -121,17 +121,34 @@ static int contacts_of_plates(float thickness, float gap, ContactRules rules, Co
     return count;
 }
 
-/* 5% of a side below 0.05 m; the gap may close within the step, and no more. */
-TEST(thin_boxes_touch_before_they_overlap) {
+/* From a gap of 1% of the smaller side on, which may close within the step, and no more. */
+TEST(boxes_touch_before_they_overlap) {
     const ContactRules mend = {.mend = true}, lite = {0};
-    ContactPoint point;
-    assert_int_equal(contacts_of_plates(0.03f, 0.001f, mend, &point), 2);
-    assert_near(point.separation, 0.001, 1e-7);
-    assert_near(point.bias, -0.1, 1e-5);
-    assert_int_equal(contacts_of_plates(0.03f, 0.002f, mend, &point), 0);
-    assert_int_equal(contacts_of_plates(0.03f, 0.001f, lite, &point), 0);
-    assert_int_equal(contacts_of_plates(0.06f, 0.001f, mend, &point), 0);
-    assert_int_equal(contacts_of_plates(0.03f, -0.001f, lite, &point), 2);
+    static const float sides[] = {0.01f, 0.1f, 1};
+    for (int i = 0; i < 3; i++) {
+        ContactPoint point;
+        const float gap = 0.0095f * sides[i];
+        assert_int_equal(contacts_of_plates(sides[i], gap, mend, &point), 2);
+        assert_near(point.separation, gap, 1e-6 * (double)sides[i]);
+        assert_near(point.bias, -100 * gap, 1e-4 * (double)sides[i]);
+        assert_int_equal(contacts_of_plates(sides[i], 1.1f * gap, mend, &point), 0);
+        assert_int_equal(contacts_of_plates(sides[i], gap, lite, &point), 0);
+        assert_int_equal(contacts_of_plates(sides[i], -gap, lite, &point), 2);
+    }
+}
+
+/* The upper one has been pressed past the centre of the lower one, and is pushed back up. */
+TEST(boxes_that_touch_keep_their_sides) {
+    const Box below = box_make(vec2(0, 0), vec2(2, 0.1f), 0),
+              above = box_make(vec2(0.3f, -0.03f), vec2(1, 0.1f), 0.01f);
+    const Vec2 last = vec2(0.02f, 0.9998f);
+    Manifold manifold;
+    manifold_compute_within(&manifold, &below, &above, 0.001f, &last);
+    assert_int_equal(manifold.count, 2);
+    assert_true(manifold.normal.y > 0.99f);
+    for (int i = 0; i < 2; i++) assert_near(manifold.points[i].separation, -0.13, 0.006);
+    manifold_compute_within(&manifold, &below, &above, 0.001f, NULL);
+    assert_true(manifold.normal.y < -0.99f);
 }
 
 RUN_TESTS(NULL, NULL)
