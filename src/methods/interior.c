@@ -429,10 +429,11 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     const bool single = islands->count == 1 && islands->islands[0].bodies == islands->moving &&
                         islands->islands[0].contacts == problem->contact_count;
     solver->work = 0;
-    if (!single) return solve_islands(solver, problem, solution, error);
-    const bool done = solve_island(solver, problem, &solver->looks[0], solution, error);
-    solver->work = INTERIOR_MOST_WORK - solver->left;
-    return done;
+    if (!(single ? solve_island(solver, problem, &solver->looks[0], solution, error)
+                 : solve_islands(solver, problem, solution, error)))
+        return false;
+    if (single) solver->work = INTERIOR_MOST_WORK - solver->left;
+    return islands_take_gain(&solver->islands, problem, solution) || error_memory(error, "interior");
 }
 
 double interior_work_done(const void *state) { return ((const State *)state)->work; }

@@ -91,15 +91,6 @@ void interior_iterate(Interior *s, const InteriorKernels *kernels, const Interio
         }
         s->residual = kernels->answer(s);
     }
-    /* Between jammed bodies impulses can grow without an effect on velocities, until their rounding in float makes
-       velocities of a quarter of the problem's. */
-    const double largest = 0x1p22 * speed;
-    bool jammed = false;
-    for (int i = 0; i < s->group_count; i++) {
-        const Vec4 held = s->groups[i].answer_normal * s->groups[i].inverse_normal;
-        jammed |= (held[0] > largest) | (held[1] > largest) | (held[2] > largest) | (held[3] > largest);
-    }
-    if (jammed) s->residual = INFINITY;
 }
 
 bool interior_end(const Interior *s, const Sweeps *sweeps, const ContactProblem *problem, ContactSolution *solution) {

@@ -140,7 +140,7 @@ typedef struct InteriorAttempt {
 
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most as often as the attempt says and
    `most` times, and sets `residual` and `iterations`. If it ends above, its answer is the best so far, the start
-   included. The residual is infinite if float cannot hold the impulses. speed: m/s. */
+   included. speed: m/s. */
 void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorAttempt *attempt, double speed,
                       double near, int most);
 

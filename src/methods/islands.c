@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Islands by union-find over the contacts (methods/islands.h). */
 #include "methods/islands.h"
+#include "methods/impulses.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,14 +13,22 @@ void islands_free(Islands *islands) {
     *islands = (Islands){0};
 }
 
+/* What an answer does in an island. */
+struct Gain {
+    double across, square; /* J: m v dv and m dv dv, of velocities v before and changes dv */
+    float missed, bias;    /* m/s: the largest change of a contact's velocity by one more visit; the largest bias */
+    float share;
+};
+
 /* An island has at most one body that does not move for each contact. */
 static bool islands_reserve(Islands *s, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count,
                  all = bodies + contacts;
-    return ARRAY_BLOCK_RESERVE(&s->by_body, ARRAY_PART(s->islands, bodies), ARRAY_PART(s->parent, bodies),
-                               ARRAY_PART(s->number, bodies), ARRAY_PART(s->members, bodies),
-                               ARRAY_PART(s->behind_members, bodies), ARRAY_PART(s->behind_contacts, bodies),
-                               ARRAY_PART(s->place, bodies), ARRAY_PART(s->in_island, bodies)) &&
+    return ARRAY_BLOCK_RESERVE(&s->by_body, ARRAY_PART(s->islands, bodies), ARRAY_PART(s->gains, bodies),
+                               ARRAY_PART(s->parent, bodies), ARRAY_PART(s->number, bodies),
+                               ARRAY_PART(s->members, bodies), ARRAY_PART(s->behind_members, bodies),
+                               ARRAY_PART(s->behind_contacts, bodies), ARRAY_PART(s->place, bodies),
+                               ARRAY_PART(s->in_island, bodies)) &&
            ARRAY_BLOCK_RESERVE(&s->by_contact, ARRAY_PART(s->island, contacts), ARRAY_PART(s->contacts, contacts),
                                ARRAY_PART(s->bodies, all), ARRAY_PART(s->body_copies, all),
                                ARRAY_PART(s->contact_copies, contacts), ARRAY_PART(s->velocities, all),
@@ -153,4 +163,70 @@ void islands_put(const Islands *s, int k, const ContactProblem *part, const Cont
         if (s->parent[s->bodies[i]] >= 0) solution->velocities[s->bodies[i]] = of_part->velocities[i];
     for (int i = 0; i < part->contact_count; i++) solution->impulses[contacts[i]] = of_part->impulses[i];
     fallbacks_add(&solution->fallbacks, &of_part->fallbacks);
+}
+
+/* Energy that the answer gives to a body is across + square / 2. */
+static void add_body(struct Gain *gain, const ProblemBody *body, const BodyVelocity *after) {
+    const double x = (double)body->velocity.x, y = (double)body->velocity.y, spin = (double)body->angular_velocity;
+    const double dx = (double)after->linear.x - x, dy = (double)after->linear.y - y,
+                 turn = (double)after->angular - spin;
+    const double mass = body->inv_mass > 0 ? 1 / (double)body->inv_mass : 0,
+                 inertia = body->inv_inertia > 0 ? 1 / (double)body->inv_inertia : 0;
+    gain->across += mass * (x * dx + y * dy) + inertia * (spin * turn);
+    gain->square += mass * (dx * dx + dy * dy) + inertia * (turn * turn);
+}
+
+static bool gains(const struct Gain *gain) { return 2 * gain->across + gain->square > 0; }
+
+static void add_contact(struct Gain *gain, const ContactPoint *contact, const ContactSolution *solution,
+                        ContactImpulse impulse) {
+    const BodyVelocity *a = &solution->velocities[contact->a], *b = &solution->velocities[contact->b];
+    const Vec2 velocity = vec2_sub(vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b)),
+                                   vec2_add(a->linear, scalar_cross_vec2(a->angular, contact->arm_a)));
+    const float slip = vec2_dot(velocity, vec2_cross_scalar(contact->normal, 1.0f));
+    const float limit = contact->friction * impulse.normal;
+    const float held = contact_clamp(impulse.tangent - contact->mass_tangent * slip, -limit, limit);
+    const float normal =
+        fminf(vec2_dot(velocity, contact->normal) - contact->bias, impulse.normal / contact->mass_normal);
+    gain->missed = fmaxf(gain->missed, fmaxf(fabsf(normal), fabsf(held - impulse.tangent) / contact->mass_tangent));
+    gain->bias = fmaxf(gain->bias, contact->bias);
+}
+
+bool islands_take_gain(Islands *s, const ContactProblem *problem, ContactSolution *solution) {
+    bool any = false;
+    for (int i = 0; i < problem->body_count && !any; i++) {
+        struct Gain alone = {0};
+        add_body(&alone, &problem->bodies[i], &solution->velocities[i]);
+        any = gains(&alone);
+    }
+    if (!any) return true;
+    if (!islands_find(s, problem)) return false;
+    for (int k = 0; k < s->count; k++) s->gains[k] = (struct Gain){.share = 1};
+    for (int i = 0; i < problem->body_count; i++) {
+        const int32_t k = island_of_body(s, i);
+        if (k >= 0) add_body(&s->gains[k], &problem->bodies[i], &solution->velocities[i]);
+    }
+    for (int i = 0; i < problem->contact_count; i++)
+        if (s->island[i] >= 0 && gains(&s->gains[s->island[i]]))
+            add_contact(&s->gains[s->island[i]], &problem->contacts[i], solution, solution->impulses[i]);
+    for (int k = 0; k < s->count; k++) {
+        struct Gain *gain = &s->gains[k];
+        if (gains(gain) && gain->missed > gain->bias)
+            gain->share = gain->across < 0 ? (float)(-gain->across / gain->square) : 0;
+    }
+    for (int i = 0; i < problem->body_count; i++) {
+        const int32_t k = island_of_body(s, i);
+        if (k < 0 || s->gains[k].share == 1) continue;
+        const float share = s->gains[k].share;
+        const ProblemBody *body = &problem->bodies[i];
+        BodyVelocity *v = &solution->velocities[i];
+        v->linear = vec2_add(body->velocity, vec2_scale(share, vec2_sub(v->linear, body->velocity)));
+        v->angular = body->angular_velocity + share * (v->angular - body->angular_velocity);
+    }
+    for (int i = 0; i < problem->contact_count; i++) {
+        if (s->island[i] < 0 || s->gains[s->island[i]].share == 1) continue;
+        solution->impulses[i].normal *= s->gains[s->island[i]].share;
+        solution->impulses[i].tangent *= s->gains[s->island[i]].share;
+    }
+    return true;
 }

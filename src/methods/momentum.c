@@ -66,6 +66,7 @@ void momentum_free(Momentum *momentum) {
     sweeps_free(&momentum->sweeps);
     free(momentum->arrays.memory);
     free(momentum->more_factors);
+    islands_free(&momentum->islands);
     *momentum = (Momentum){0};
 }
 
@@ -261,10 +262,11 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
 }
 
 bool momentum_end(Momentum *momentum, ContactSolution *solution) {
-    if (sweeps_end(&momentum->sweeps, solution)) return true;
-    if (!sweeps_begin_coloured(&momentum->sweeps, momentum->sweeps.kernel, momentum->problem)) return false;
-    sweeps_end(&momentum->sweeps, solution);
-    return true;
+    if (!sweeps_end(&momentum->sweeps, solution)) {
+        if (!sweeps_begin_coloured(&momentum->sweeps, momentum->sweeps.kernel, momentum->problem)) return false;
+        sweeps_end(&momentum->sweeps, solution);
+    }
+    return islands_take_gain(&momentum->islands, momentum->problem, solution);
 }
 
 bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,

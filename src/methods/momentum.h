@@ -4,6 +4,7 @@
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/islands.h"
 #include "methods/stopping.h"
 #include "methods/sweeps.h"
 
@@ -33,6 +34,7 @@ typedef struct Momentum {
     float *of_pairs;         /* [sweeps.pair_count] what was last measured */
     float *factors;          /* [sweeps of a block, sweeps.groups] */
     ArrayBlock arrays;
+    Islands islands;
 } Momentum;
 
 void momentum_free(Momentum *momentum);
@@ -51,7 +53,8 @@ bool momentum_run(Momentum *momentum, const float *factors, int count);
    is short. */
 bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float *factors);
 
-/* Stores the solution; that of the warm start if it is NaN or infinite. False when memory is short. */
+/* Stores the solution, which adds no energy; that of the warm start if it is NaN or infinite. False when memory is
+   short. */
 bool momentum_end(Momentum *momentum, ContactSolution *solution);
 
 /* All of these, from the warm start, with the momentum's rule. */

@@ -18,6 +18,7 @@
    Bit-exact: the sweeps are the engine's (sweeps.h), and products are summed in a fixed order. */
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/islands.h"
 #include "methods/methods.h"
 #include "methods/stopping.h"
 #include "methods/sweeps.h"
@@ -52,6 +53,7 @@ typedef struct Nncg {
     NncgRow *body_before, *body_direction; /* [body_count] the same of the velocities */
     NncgIsland *islands;                   /* [sweeps.groups] */
     ArrayBlock arrays;
+    Islands parts;
 } Nncg;
 
 static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS("sweeps"), KEEP_SETTING(SETTING_OWN), {0}};
@@ -141,16 +143,18 @@ static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem)
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Nncg *solver = state;
     if (!run(solver, sweeps_best_kernel(), problem)) return error_memory(error, "nncg");
-    if (sweeps_end(&solver->sweeps, solution) || solver->sweeps.kernel == SWEEP_ONE_BY_ONE) return true;
-    if (!run(solver, SWEEP_ONE_BY_ONE, problem)) return error_memory(error, "nncg");
-    sweeps_end(&solver->sweeps, solution);
-    return true;
+    if (!sweeps_end(&solver->sweeps, solution) && solver->sweeps.kernel != SWEEP_ONE_BY_ONE) {
+        if (!run(solver, SWEEP_ONE_BY_ONE, problem)) return error_memory(error, "nncg");
+        sweeps_end(&solver->sweeps, solution);
+    }
+    return islands_take_gain(&solver->parts, problem, solution) || error_memory(error, "nncg");
 }
 
 static void destroy(void *state) {
     Nncg *solver = state;
     if (solver == NULL) return;
     sweeps_free(&solver->sweeps);
+    islands_free(&solver->parts);
     free(solver->arrays.memory);
     free(solver);
 }

@@ -344,7 +344,8 @@ static bool scene_net_solve(void *state, const ContactProblem *problem, ContactS
         usable = is_bounded(sweeps);
     }
     if (usable && !run_sweeps(solver, problem, route)) return error_memory(error, "scene-net");
-    if (usable && sweeps_end(sweeps, solution)) return true;
+    if (usable && sweeps_end(sweeps, solution))
+        return islands_take_gain(&solver->momentum.islands, problem, solution) || error_memory(error, "scene-net");
     /* Without the network. */
     solution->fallbacks.not_finite += predicts;
     return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->choice.rest, solution, error);
