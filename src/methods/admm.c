@@ -25,6 +25,7 @@ static void destroy(void *state) {
     if (admm == NULL) return;
     sweeps_free(&admm->sweeps);
     interior_free(&admm->interior);
+    islands_free(&admm->islands);
     free(admm->memory.memory);
     free(admm);
 }
@@ -69,9 +70,8 @@ static void iterate(Admm *admm) {
     }
 }
 
-static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve_island(Admm *admm, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     static const SequentialOptions options = {.accumulate = true, .warm = true};
-    Admm *admm = state;
     if (!sweeps_begin(&admm->sweeps, sweeps_best_kernel(), problem, true) ||
         !interior_load(&admm->interior, interior_best(), &admm->sweeps, problem) ||
         !ARRAY_BLOCK_RESERVE(&admm->memory, ARRAY_PART(admm->groups, admm->interior.group_count)))
@@ -81,6 +81,20 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     sequential_impulses_solve(problem, &options, admm->rule.k, solution);
     solution->fallbacks.by_sweeps = 1;
     return true;
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    Admm *admm = state;
+    if (!islands_find(&admm->islands, problem)) return error_memory(error, "admm");
+    contact_solution_begin(problem, solution);
+    for (int k = 0; k < admm->islands.count; k++) {
+        ContactSolution of_part;
+        const ContactProblem part = islands_take(&admm->islands, problem, k, &of_part);
+        if (!solve_island(admm, &part, &of_part, error)) return false;
+        islands_put(&admm->islands, k, &part, &of_part, solution);
+    }
+    solution->fallbacks.by_sweeps = solution->fallbacks.by_sweeps > 0;
+    return islands_take_gain(&admm->islands, problem, solution) || error_memory(error, "admm");
 }
 
 const ContactSolverKind solver_admm = {

@@ -50,11 +50,15 @@ static inline void begin_group(AdmmGroup *g, const InteriorGroup *from) {
     g->friction = from->friction * g->root_normal / g->root_tangent;
     g->g_normal = g->root_normal * (from->free_normal - from->bias);
     g->g_tangent = g->root_tangent * from->free_tangent;
+    /* The dual cone's nearest point to z is z and the cone's nearest point to -z (Moreau). */
+    g->z_tangent = g->g_tangent;
+    g->z_normal = g->g_normal + g->friction * size4(g->g_tangent);
+    project(g, -g->z_normal, -g->z_tangent);
+    g->z_normal += g->y_normal;
+    g->z_tangent += g->y_tangent;
     project(g, from->answer_normal / g->root_normal, from->answer_tangent / g->root_tangent);
     g->x_normal = g->y_normal;
     g->x_tangent = g->y_tangent;
-    g->z_tangent = g->root_tangent * from->tangent;
-    g->z_normal = g->root_normal * (from->normal - from->bias) + g->friction * size4(g->z_tangent);
 }
 
 static void begin(Admm *admm) {
