@@ -215,7 +215,7 @@ static void destroy(void *state) {
 }
 
 static void set_factors(float *factors, int count) {
-    for (int s = 0; s < count; s++) factors[s] = momentum_factor_tuned(s, count);
+    for (int s = 0; s < count; s++) factors[s] = momentum_factor(s);
 }
 
 static void *create(const Settings *chosen, Error *error) {

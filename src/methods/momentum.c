@@ -14,10 +14,13 @@
    error, and the error grows if e (1 + 2 beta) > 1 (its factor z solves z^2 + e (1 + beta) z - e beta = 0). So the
    first sweeps have a lower beta where contacts slide.
 
-   Sweeps are watched there, and in runs of 32 or more: each island's residual is measured after blocks of 16, or of 8
-   where contacts slide or a stopping rule reads it. If the residual exceeds 4 times the least, one block follows
-   without extrapolation, and momentum restarts (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient
-   Schemes", 2015). An island whose residual is not its least in the end goes back to the solution that was best.
+   Sweeps are watched there, and in runs of more than 16: each island's residual, the largest change by one more visit,
+   is measured after blocks of 16, or of 8 where contacts slide or a stopping rule reads it, and in the end; its
+   velocities are first computed anew from the impulses. If the residual exceeds twice the least, the island goes back
+   to the solution that was best, and momentum restarts (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient
+   Schemes", 2015), with a beta that rises half as long as before, or it would take the same course for ever. An island
+   whose residual is not its least in the end goes back, too. Nothing here depends on the number of sweeps that follow:
+   more sweeps continue fewer.
 
    Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the first sweeps of an
    impact gain little. */
@@ -32,34 +35,28 @@
 #include <math.h>
 #include <stdlib.h>
 
-float momentum_factor_tuned(int sweep, int count) {
-    float rising = (float)sweep / ((float)sweep + 1.4f), most = 1.0f - 7.0f / (15.0f + (float)count);
-    return rising < most ? rising : most;
-}
+float momentum_factor(int sweep) { return sweep == 0 ? 0 : 1.0f - 7.0f / (15.0f + (float)sweep); }
 
 float *momentum_factors_make(int count) {
     float *factors = malloc((size_t)count * sizeof *factors);
-    for (int s = 0; factors != NULL && s < count; s++) factors[s] = momentum_factor_tuned(s, count);
+    for (int s = 0; factors != NULL && s < count; s++) factors[s] = momentum_factor(s);
     return factors;
 }
 
-/* The course of an island. Residuals are squared and summed over its contacts, (m/s)^2 (residual_of_pair()). */
+/* The course of an island. Residuals are squared, (m/s)^2, the largest of its pairs (residual_of_pair()). */
 struct MomentumIsland {
     float left, best; /* after the last block; the least, whose solution is kept */
-    float least;      /* since the last restart, */
-    int sweeps;       /* so many sweeps ago */
+    int sweeps;       /* since the last restart */
+    int longest;      /* beta stays that of this many sweeps */
     float most;       /* beta is at most this, in the first sweeps */
-    bool plain;       /* the next block is without extrapolation */
 };
 
 enum {
     SLIDING_EVERY = 8, /* sweeps between two looks at an island in which contacts slide, and at others: */
-    CALM_EVERY = 16,   /* a look takes the time of two sweeps */
-    LONGEST_BLOCK = 2 * CALM_EVERY - 1,
-    LONG_RUN = 48 /* sweeps: from here on velocities are recomputed from the impulses at each look */
+    CALM_EVERY = 16    /* a look takes the time of three sweeps */
 };
 
-/* Momentum makes residuals rise and fall. It restarts at this multiple of the least sum of squares. */
+/* Momentum makes residuals rise and fall. It restarts at this multiple of the least square. */
 static const float risen = 4;
 
 void momentum_free(Momentum *momentum) {
@@ -118,16 +115,15 @@ bool momentum_begin(Momentum *momentum, const ContactProblem *problem) {
     sweeps->block = STOPPING_BLOCK;
     if (!ARRAY_BLOCK_RESERVE(&momentum->arrays, ARRAY_PART(momentum->courses, pairs), /* as many islands at most */
                              ARRAY_PART(momentum->chosen, pairs), ARRAY_PART(momentum->of_pairs, pairs),
-                             ARRAY_PART(momentum->factors, LONGEST_BLOCK * pairs)))
+                             ARRAY_PART(momentum->factors, CALM_EVERY * pairs)))
         return false;
     watch_sliding(momentum);
     return true;
 }
 
-static void restart(MomentumIsland *course, bool plain) {
-    course->least = course->left;
+static void begin_course(MomentumIsland *course) {
     course->sweeps = 0;
-    course->plain = plain;
+    course->longest = SWEEPS_MAX;
 }
 
 /* Sweeps of a run, as many as are done. total: 0 where a stopping rule ends it. */
@@ -137,11 +133,10 @@ typedef struct Run {
 } Run;
 
 /* Whether the island is judged now. Its looks depend on nothing but itself and the run, so they are no matter of
-   others. The last part is never short; a run with a single part has no look. */
+   others, and of no longer run. A run with a single part has no look. */
 static bool is_due(const MomentumIsland *course, const Run *run) {
     const int every = run->total == 0 || course->most < 1 ? SLIDING_EVERY : CALM_EVERY;
-    if (run->done == run->total) return run->total >= 2 * every;
-    return run->done % every == 0 && (run->total == 0 || run->total - run->done >= every);
+    return run->done % every == 0 ? run->total != every : run->done == run->total && run->total > every;
 }
 
 /* Measures the residuals of the chosen islands, and copies the solutions of those that are better than ever. */
@@ -149,12 +144,13 @@ static void measure(Momentum *momentum) {
     Sweeps *sweeps = &momentum->sweeps;
     MomentumIsland *courses = momentum->courses;
     bool *chosen = momentum->chosen;
-    if (momentum->refreshes) sweeps_refresh(sweeps, momentum->problem, chosen);
+    sweeps_refresh(sweeps, momentum->problem, chosen);
     residual_of_pairs(sweeps, momentum->of_pairs);
     for (int k = 0; k < sweeps->groups; k++)
         if (chosen[k]) courses[k].left = 0;
     for (int i = 0; i < sweeps->pair_count; i++)
-        if (chosen[sweeps->group[i]]) courses[sweeps->group[i]].left += momentum->of_pairs[i];
+        if (chosen[sweeps->group[i]] && !(momentum->of_pairs[i] <= courses[sweeps->group[i]].left))
+            courses[sweeps->group[i]].left = momentum->of_pairs[i];
     for (int k = 0; k < sweeps->groups; k++) {
         chosen[k] = chosen[k] && courses[k].left <= courses[k].best;
         if (chosen[k]) courses[k].best = courses[k].left;
@@ -162,18 +158,14 @@ static void measure(Momentum *momentum) {
     sweeps_keep(sweeps, chosen);
 }
 
-/* At a look. Returns true where numbers are NaN or infinite: the island goes back to what was best. */
+/* At a look. Returns true where momentum has carried the island too far, or to numbers that are NaN or infinite: it
+   goes back to what was best, and takes another course from there. */
 static bool judge(MomentumIsland *course) {
-    const bool lost = !(course->left < HUGE_VALF);
-    if (lost) course->left = course->best;
-    if (lost || course->left > risen * course->least) {
-        restart(course, true);
-        return lost;
-    }
-    course->least = course->left < course->least ? course->left : course->least;
-    if (course->plain) course->sweeps = 0;
-    course->plain = false;
-    return false;
+    if (course->left <= risen * course->best) return false;
+    course->left = course->best;
+    course->longest = (course->sweeps < course->longest ? course->sweeps : course->longest) / 2;
+    course->sweeps = 0;
+    return true;
 }
 
 static void look(Momentum *momentum, const Run *run) {
@@ -200,7 +192,7 @@ static bool run_block(Momentum *momentum, Run *run, int count) {
         for (int k = 0; k < sweeps->groups; k++) {
             const MomentumIsland *course = &momentum->courses[k];
             const int sweep = course->sweeps + s;
-            const float wanted = course->plain || sweep == 0 ? 0 : run->factors[sweep];
+            const float wanted = sweep == 0 ? 0 : run->factors[sweep < course->longest ? sweep : course->longest];
             const bool begins = run->done + s < SLIDING_EVERY || (run->total > 0 && run->total < 2 * SLIDING_EVERY);
             const float most = begins || course->most < 0 ? course->most : 1;
             *factor++ = sweep == 0 || wanted < most ? wanted : most;
@@ -225,20 +217,19 @@ static void settle(Momentum *momentum) {
 }
 
 bool momentum_run(Momentum *momentum, const float *factors, int count) {
-    if (count < 2 * CALM_EVERY && !momentum->watched) return sweeps_run_momentum(&momentum->sweeps, factors, count);
+    if (count <= CALM_EVERY && !momentum->watched) return sweeps_run_momentum(&momentum->sweeps, factors, count);
     const int every = momentum->watched ? SLIDING_EVERY : CALM_EVERY;
     Run run = {.factors = factors, .total = count};
-    momentum->refreshes = count >= LONG_RUN;
     watch(momentum);
     for (int k = 0; k < momentum->sweeps.groups; k++) {
-        restart(&momentum->courses[k], false);
+        begin_course(&momentum->courses[k]);
         momentum->courses[k].best = HUGE_VALF; /* not the start: its impulses may be outside of the cones */
     }
     choose_all(momentum); /* for islands in which the first numbers are infinite */
     sweeps_keep(&momentum->sweeps, momentum->chosen);
     while (run.done < count) {
         const int left = count - run.done;
-        if (!run_block(momentum, &run, left < 2 * every ? left : every)) return false;
+        if (!run_block(momentum, &run, left < every ? left : every)) return false;
     }
     settle(momentum);
     return true;
@@ -249,12 +240,11 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
     const Sweeps *sweeps = &momentum->sweeps;
     if (!stopping_needs_more(rule, 0, sweeps, problem)) return true;
     Run run = {.factors = factors};
-    momentum->refreshes = true;
     watch(momentum);
     for (int k = 0; k < sweeps->groups; k++) momentum->courses[k].best = HUGE_VALF;
     choose_all(momentum);
     measure(momentum);
-    for (int k = 0; k < sweeps->groups; k++) restart(&momentum->courses[k], false);
+    for (int k = 0; k < sweeps->groups; k++) begin_course(&momentum->courses[k]);
     while (stopping_needs_more(rule, run.done, sweeps, problem))
         if (!run_block(momentum, &run, STOPPING_BLOCK)) return false;
     if (residual_reaches(sweeps, problem->contact_count, rule->near)) settle(momentum);

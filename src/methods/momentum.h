@@ -11,10 +11,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The hand-tuned factor before sweep s of `count`, counted from 0: s / (s + 1.4), at most 1 - 7 / (15 + count). The
-   limit is lower for few sweeps, as they have no time to correct the overshoot of a large factor. Tuned on launches of
-   the stack and the pyramids together. */
-float momentum_factor_tuned(int sweep, int count);
+/* The factor before sweep s, counted from 0: 1 - 7 / (15 + s), and 0 before the first. It does not depend on the number
+   of sweeps, so that more sweeps continue fewer. Tuned on launches of the stack and the pyramids together. */
+float momentum_factor(int sweep);
 
 /* The hand-tuned factors of `count` sweeps; the caller frees them. NULL when memory is short. */
 float *momentum_factors_make(int count);
@@ -28,7 +27,6 @@ typedef struct Momentum {
     float *more_factors; /* [rule.more] */
     const ContactProblem *problem;
     bool watched;            /* its islands have courses */
-    bool refreshes;          /* long runs recompute velocities from the impulses after each block */
     MomentumIsland *courses; /* [sweeps.groups] */
     bool *chosen;            /* [sweeps.groups] */
     float *of_pairs;         /* [sweeps.pair_count] what was last measured */
@@ -42,9 +40,9 @@ void momentum_free(Momentum *momentum);
 /* momentum->sweeps have begun with this problem, which must stay until the end. False when memory is short. */
 bool momentum_begin(Momentum *momentum, const ContactProblem *problem);
 
-/* `count` sweeps with factors[count]. Of 32 or more, each island's residual is not above the least of those that 16,
-   32, ... of them left; where contacts slide so that visits overshoot, of 16 or more, that 8, 16, ... of them left.
-   False when memory is short. */
+/* `count` sweeps with factors[count]. Each island's residual is not above the least of those that 16, 32, ... fewer of
+   them left; where contacts slide so that visits overshoot, that 8, 16, ... of them left. False when memory is
+   short. */
 bool momentum_run(Momentum *momentum, const float *factors, int count);
 
 /* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb

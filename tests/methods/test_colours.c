@@ -104,7 +104,7 @@ TEST(a_star_has_one_colour_or_more_than_there_are) {
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
     uint32_t seed = 3;
     float factors[10];
-    for (int s = 0; s < 10; s++) factors[s] = momentum_factor_tuned(s, 10);
+    for (int s = 0; s < 10; s++) factors[s] = momentum_factor(s);
     for (int moving = 0; moving < 2; moving++) {
         make_random(&random, &seed, BODIES_MAX, 0, 1);
         for (int i = 0; i < BODIES_MAX; i++)

@@ -152,7 +152,7 @@ static bool check_step(void *context, int frame, const World *world, Error *erro
 TEST(more_sweeps_never_have_a_larger_residual_than_the_best_so_far) {
     static Course course;
     const Method engine = method_named("engine");
-    for (int s = 0; s < LONGEST; s++) course.factors[s] = momentum_factor_tuned(s, LONGEST);
+    for (int s = 0; s < LONGEST; s++) course.factors[s] = momentum_factor(s);
     for (int seed = 0; course.problems < PROBLEMS; seed++) {
         OWN(Scene) *scene = random_structure(seed);
         const float friction = 0.1f * (float)(seed % 31);
@@ -212,7 +212,7 @@ TEST(refreshed_velocities_keep_the_course) {
     OWN(ContactSolver) engine = make_engine("");
     float factors[SWEEPS];
     OWN(Sweeps) whole = {0}, parts = {0};
-    for (int s = 0; s < SWEEPS; s++) factors[s] = momentum_factor_tuned(s, SWEEPS);
+    for (int s = 0; s < SWEEPS; s++) factors[s] = momentum_factor(s);
     for (int step = 0; step < 40; step++) {
         run(world, &engine, 1);
         const ContactProblem *problem = world_problem(world);

@@ -37,7 +37,7 @@ static int sweep_until(Known *known, const float *factors, int count, float near
     const ContactProblem *problem = &known->random.problem;
     Momentum momentum = {0};
     float more_factors[MORE];
-    for (int s = 0; s < MORE; s++) more_factors[s] = momentum_factor_tuned(s, MORE);
+    for (int s = 0; s < MORE; s++) more_factors[s] = momentum_factor(s);
     int times = 0;
     for (bool more = true; more; times += more) {
         const StoppingRule rule = {.near = near, .more = 8 * times};
@@ -71,7 +71,7 @@ static void assert_same_velocities(const Known *known) {
 /* 10 sweeps, and 8, 16 or 24 more while the residual is 0.0075 m/s or more. */
 static int sweep_calmly(Known *known) {
     float factors[REST / 2];
-    for (int s = 0; s < REST / 2; s++) factors[s] = momentum_factor_tuned(s, REST / 2);
+    for (int s = 0; s < REST / 2; s++) factors[s] = momentum_factor(s);
     return sweep_until(known, factors, REST / 2, near_aim * 0.15f, CALM_MORE);
 }
 

@@ -104,8 +104,8 @@ TEST(one_solver_has_the_same_bits_step_after_step) {
 static void sweep_with_momentum(const ContactProblem *problem, int n, ContactSolution *solution) {
     OWN(Sweeps) sweeps = {0};
     float first[7], more[48];
-    for (int s = 0; s < 7; s++) first[s] = momentum_factor_tuned(s, 7);
-    for (int s = 0; s < 48; s++) more[s] = momentum_factor_tuned(s, 48);
+    for (int s = 0; s < 7; s++) first[s] = momentum_factor(s);
+    for (int s = 0; s < 48; s++) more[s] = momentum_factor(s);
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
     assert_true(sweeps_run_momentum(&sweeps, first, 7));
     if (n > 0) sweeps_refresh(&sweeps, problem, NULL);
