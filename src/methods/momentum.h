@@ -40,7 +40,7 @@ void momentum_free(Momentum *momentum);
 /* momentum->sweeps have begun with this problem, which must stay until the end. False when memory is short. */
 bool momentum_begin(Momentum *momentum, const ContactProblem *problem);
 
-/* `count` sweeps with factors[count]. Each island's residual is not above the least of those that 16, 32, ... fewer of
+/* `count` sweeps with factors[count]. Each island's residual is not above the least of those that 16, 32, ... of
    them left; where contacts slide so that visits overshoot, that 8, 16, ... of them left. False when memory is
    short. */
 bool momentum_run(Momentum *momentum, const float *factors, int count);
