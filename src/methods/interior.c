@@ -121,7 +121,7 @@ static const float restless_from = 2;
    the error of sweeps of the same work is 3.5 times that of interior if it tries them, 10 times if not. */
 static const float uneven_from = 10, heavy_from = 100;
 /* Of the pace. */
-static const float closing = 1e-3f, calm_speed = 10;
+static const float calm_speed = 10;
 
 typedef struct State {
     float near; /* m/s */
@@ -302,10 +302,6 @@ static bool iterate(State *solver, const ContactProblem *problem, const Look *st
         if (!solver->loaded && !(start(solver, problem, step->calm) && load_interior(solver, problem, step)))
             return false;
         solver->loaded = false;
-        /* Contacts of a calm island aim to close: an interior point leaves each a little open. What opens is not found
-           in the next step, falls, and lands on what lies below. */
-        if (step->calm)
-            interior_close(interior, (double)smaller(solver->near, closing * step->pace), (double)problem->dt);
         const double speed = step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
         interior_iterate(interior, interior_best(), attempt, speed, near, most);
         solver->left -= interior->iterations * interior->iteration_work;

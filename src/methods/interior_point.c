@@ -169,11 +169,7 @@ static void load_pair(Interior *s, int i, const Sweeps *sweeps, const ContactPro
     const Vec4 before = block_pair_velocity(&problem->bodies[ends.a], &problem->bodies[ends.b]);
     for (int k = 0, slot = i % BLOCK_PAIRS * 2; k < sweep_pair_points(pair); k++, slot++) {
         block_rows_load(&group->rows, slot, rows, k, pair->normal, pair->points[k].arm_a, pair->points[k].arm_b);
-        const ContactPoint *contact = &problem->contacts[sweeps->first[i] + k];
         load_slot(group, slot, pair, k);
-        group->depth[slot] = -(double)contact->separation;
-        s->rounding =
-            larger(s->rounding, 0x1p-24 * larger(fabs((double)contact->position.x), fabs((double)contact->position.y)));
         group->free_normal[slot] = dot(rows->normal[k], before);
         group->free_tangent[slot] = dot(rows->tangent[k], before);
         s->contact_count++;
@@ -192,11 +188,10 @@ bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sw
     const Vec4 zero = {0}, one = {1, 1, 1, 1};
     s->group_count = (sweeps->pair_count + BLOCK_PAIRS - 1) / BLOCK_PAIRS;
     s->contact_count = 0;
-    s->rounding = 0;
     for (int i = 0; i < s->group_count; i++) { /* without contacts: open, at rest, without effect */
         InteriorGroup *g = &s->groups[i];
         g->rows = (BlockRows){zero, zero, zero, zero, zero, zero};
-        g->inverse_normal = g->inverse_tangent = g->depth = zero;
+        g->inverse_normal = g->inverse_tangent = zero;
         g->free_normal = g->free_tangent = g->answer_normal = g->answer_tangent = zero;
         g->mass_normal = g->mass_tangent = g->friction = one;
         g->bias = -one;
@@ -221,23 +216,4 @@ bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sw
     s->iteration_work = interior_work(products, sweeps->pair_count);
     s->iterations = 0;
     return true;
-}
-
-/* m: the overlap that a contact at rest closes to. Both exceed the rounding of positions; where nothing holds sideways,
-   a box that is pressed in on one side tilts, and slides. */
-static const double closed = (double)CONTACT_SLOP / 200, closed_slippery = 3e-6;
-/* Contacts that lack at most this share of it are left: closing these, too, makes those of a loop take turns. So are
-   those that lack less than positions round to: no box would move, but the speed would come again in every step. */
-static const double lacking = 0.02, most_lacking = 0.9;
-
-void interior_close(Interior *s, double speed, double dt) {
-    for (int i = 0; i < s->group_count; i++) {
-        InteriorGroup *g = &s->groups[i];
-        for (int k = 0; k < BLOCK_SLOTS; k++) {
-            const double depth = g->friction[k] < (double)INTERIOR_SLIPPERY ? closed_slippery : closed;
-            const double missing = depth - g->depth[k];
-            if (missing > fmin(fmax(lacking * depth, s->rounding), most_lacking * depth))
-                g->bias[k] -= fmin(speed, missing / dt);
-        }
-    }
 }

@@ -45,12 +45,12 @@ typedef struct InteriorGroup {
     BlockRows rows;                       /* J_n and J_t */
     Vec4 mass_normal, mass_tangent;       /* kg, effective; 1 without a contact */
     Vec4 inverse_normal, inverse_tangent; /* 1/kg; 0 without a contact */
-    Vec4 friction, bias, depth;           /* depth: m, overlap */
-    Vec4 l, t, z, p, q;                   /* N s and m/s, see above */
-    Vec4 normal, tangent;                 /* J_n v and J_t v, m/s */
-    Vec4 free_normal, free_tangent;       /* the same of v' */
-    Vec4 answer_normal, answer_tangent;   /* N s: impulses inside the cone, the result */
-    Vec4 best_normal, best_tangent;       /* N s: the answer with the least residual so far */
+    Vec4 friction, bias;
+    Vec4 l, t, z, p, q;                 /* N s and m/s, see above */
+    Vec4 normal, tangent;               /* J_n v and J_t v, m/s */
+    Vec4 free_normal, free_tangent;     /* the same of v' */
+    Vec4 answer_normal, answer_tangent; /* N s: impulses inside the cone, the result */
+    Vec4 best_normal, best_tangent;     /* N s: the answer with the least residual so far */
     /* of an iteration */
     Vec4 aim_normal, aim_tangent; /* the targets of l z, and of p (mu l - t) and q (mu l + t) */
     Vec4 dn, dt, s;               /* D_n, D_t, s */
@@ -69,7 +69,6 @@ typedef struct Interior {
        the first solve of an iteration; corrected: of the second */
     Vec4 *velocities, *start, *changes, *corrected;
     double residual;       /* m/s, of the answer */
-    double rounding;       /* m: of the farthest contact's position in float */
     double heaviest;       /* kg, body that moves */
     double iteration_work; /* of an iteration, in sweeps over the same contacts */
     int iterations;        /* of the last solve */
@@ -106,10 +105,6 @@ double interior_work(double products, int pair_count);
 
 /* Friction below this holds nothing. */
 #define INTERIOR_SLIPPERY 0.01f
-
-/* Lets contacts close by up to `speed` (m/s) in a step of dt (s), until they overlap a little: an interior point leaves
-   each a little open, and boxes that rest on each other would part. */
-void interior_close(Interior *interior, double speed, double dt);
 
 /* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus the least scale
    of the attempt. */
