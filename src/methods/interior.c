@@ -381,7 +381,8 @@ static bool solve_as_reference(State *solver, const ContactProblem *problem, con
         impulse->tangent = contact_clamp(impulse->tangent, -limit, limit);
         finite &= isfinite(limit) && isfinite(impulse->tangent);
     }
-    solver->best = finite ? reference->residual : INFINITY;
+    /* What it did not solve may hold jammed bodies with impulses that grow for ever: sweeps begin from the warm start. */
+    solver->best = finite && reference->residual <= (double)step->enough ? reference->residual : INFINITY;
     return true;
 }
 

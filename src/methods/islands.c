@@ -225,8 +225,10 @@ bool islands_take_gain(Islands *s, const ContactProblem *problem, ContactSolutio
     }
     for (int i = 0; i < problem->contact_count; i++) {
         if (s->island[i] < 0 || s->gains[s->island[i]].share == 1) continue;
-        solution->impulses[i].normal *= s->gains[s->island[i]].share;
-        solution->impulses[i].tangent *= s->gains[s->island[i]].share;
+        const float share = s->gains[s->island[i]].share, normal = share * solution->impulses[i].normal;
+        const float limit = problem->contacts[i].friction * normal; /* rounded into the cone */
+        solution->impulses[i] =
+            (ContactImpulse){normal, contact_clamp(share * solution->impulses[i].tangent, -limit, limit)};
     }
     return true;
 }

@@ -118,7 +118,7 @@ static void solve_changes(Reference *r) {
 
 /* m/s: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would throw z, p, q about. */
 static const double rounding = 1e-12;
-static const double inside = 0.5, calm = 0.01; /* of the start: offset from the bounds, share of the scale; m/s */
+static const double inside = 0.5; /* of the start: offset from the bounds, share of the scale */
 static const double bound_share = 0.995;       /* of the way to the nearest bound that a step may go */
 static const double least_shrink = 1e-4;       /* of the target, in a step */
 
@@ -147,7 +147,7 @@ static void begin(Reference *r, double scale) {
     }
     apply(r);
     missed(r, &rms);
-    const Vec4 off = all4(inside * (scale * rms + calm)), zero = all4(0), one = all4(1);
+    const Vec4 off = all4(inside * (scale * rms + r->calm)), zero = all4(0), one = all4(1);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         ReferencePoint *now = &g->now;

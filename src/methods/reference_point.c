@@ -208,6 +208,7 @@ static bool answer_unsolved(Reference *r, const ContactProblem *problem, const C
 bool reference_solve(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
     r->aim = REFERENCE_TOLERANCE / 10;
     r->enough = REFERENCE_TOLERANCE / 4;
+    r->calm = 0.01;
     r->most = INT_MAX;
     r->persist = r->push_out = true;
     if (!solve_scaled(r, problem, start, error)) return false;
@@ -217,6 +218,7 @@ bool reference_solve(Reference *r, const ContactProblem *problem, const ContactI
 
 bool reference_solve_to(Reference *r, const ContactProblem *problem, double tolerance, int most, Error *error) {
     r->aim = r->enough = tolerance;
+    r->calm = 20 * tolerance;
     r->most = most;
     r->persist = false;
     r->push_out = true;

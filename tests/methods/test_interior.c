@@ -171,7 +171,7 @@ TEST(momentum_is_exact) {
     for (int k = 0; k < 2; k++) assert_near(after[k], before[k], rounding);
 }
 
-static const InteriorAttempt quick = {&interior_quick, 1e-3, 1e6, 100}, gentle = {&interior_gentle, 1e-7, 1e6, 100};
+static const InteriorAttempt quick = {&interior_quick, 1e-3, 1e6, 100};
 
 static void kernels_agree(const ContactProblem *problem) {
     OWN(Sweeps) sweeps = {0};
@@ -282,35 +282,6 @@ TEST(a_nan_ends_in_the_fallback) {
     assert_int_equal(found.fallbacks.by_sweeps, 1);
 }
 
-/* A box between two fixed ones, with opposite impulses that cancel: they do not change any velocity, but their rounding
-   in float would. */
-static double residual_of_jam(float jam) {
-    OWN(World) *world = make_world();
-    for (int i = -1; i <= 1; i += 2)
-        add_body(world, &(BodyDef){.size = {1, 1}, .fixed = true, .friction = 0.2f, .position = {(float)i, 0}});
-    add_body(world, &(BodyDef){.size = {1.01f, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0}});
-    const ContactProblem *problem = next_problem(world);
-    ContactPoint contacts[4];
-    assert_int_equal(problem->contact_count, 4);
-    memcpy(contacts, problem->contacts, sizeof contacts);
-    for (int i = 0; i < 4; i++) contacts[i].warm_normal = jam;
-    ContactProblem jammed = *problem;
-    jammed.contacts = contacts;
-    OWN(Sweeps) sweeps = {0};
-    Interior interior = {0};
-    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), &jammed));
-    assert_true(interior_load(&interior, interior_best(), &sweeps, &jammed));
-    interior_iterate(&interior, interior_best(), &gentle, 10, 1, 20);
-    const double residual = interior.residual;
-    interior_free(&interior);
-    return residual;
-}
-
-TEST(impulses_too_large_for_float_are_no_solution) {
-    assert_true(residual_of_jam(1e3f) <= 1);
-    assert_true(isinf(residual_of_jam(1e10f)));
-}
-
 /* `rows` rows of a pyramid, or as many boxes in stacks of ten. */
 static World *make_boxes(int rows, bool stacks) {
     World *world = make_world();
@@ -333,7 +304,7 @@ TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
         const ContactProblem *problem = next_problem(world);
         OWN(ContactSolution) found = make_solution(problem), swept = make_solution(problem);
         solve_with(&solver_interior, "near=0.001", problem, &found);
-        solve_with(&solver_momentum, "k=1,near=0.001,more=128", problem, &swept);
+        solve_with(&solver_momentum, "k=1,near=0.001,more=776", problem, &swept);
         assert_int_equal(found.fallbacks.by_sweeps, !stacks);
         const size_t size = (size_t)problem->body_count * sizeof *found.velocities;
         assert_int_equal(memcmp(found.velocities, swept.velocities, size) == 0, !stacks);

@@ -106,6 +106,7 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
     uint32_t seed = 17;
     const int counts[] = {1, 2, 3, 10, 25};
     int begun_anew = 0;
+    Islands islands = {0};
     for (int c = 0; c < 5; c++) {
         const char *text = printed("k=%d", counts[c]);
         OWN(ContactSolver) nncg = make_solver(&solver_nncg, text);
@@ -115,11 +116,13 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
             if (i % 5 == 0) calm_down(&random, &seed);
             OWN(ContactSolution) plain = make_solution(&random.problem), found = make_solution(&random.problem);
             begun_anew += solve_plainly(&random.problem, counts[c], &plain);
+            assert_true(islands_take_gain(&islands, &random.problem, &plain));
             assert_ok(solver_nncg.solve(nncg.state, &random.problem, &found, &error), error);
             assert_same_bits(&random.problem, &found, &plain, text);
         }
     }
     assert_true(begun_anew > 10);
+    islands_free(&islands);
 }
 
 /* A stack put down without a warm start: the impulses under box i must carry m g dt (n - i). Plain sweeps pass the

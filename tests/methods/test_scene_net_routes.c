@@ -46,7 +46,7 @@ static int sweep_until(Known *known, const float *factors, int count, float near
         assert_true(momentum_run_more(&momentum, &rule, more_factors));
         more = 8 * times < most && residual_reaches(&momentum.sweeps, problem->contact_count, near);
     }
-    assert_true(sweeps_end(&momentum.sweeps, &known->expected));
+    assert_true(momentum_end(&momentum, &known->expected));
     momentum_free(&momentum);
     return times;
 }
