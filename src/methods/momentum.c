@@ -18,7 +18,8 @@
    is measured after blocks of 16, or of 8 where contacts slide or a stopping rule reads it, and in the end; its
    velocities are first computed anew from the impulses. If the residual exceeds twice the least, the island goes back
    to the solution that was best, and momentum restarts (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient
-   Schemes", 2015), with a beta that rises half as long as before, or it would take the same course for ever. An island
+   Schemes", 2015), with a beta that rises half as long as before, or it would take the same course for ever; longer again
+   with each look that finds no rise. An island
    whose residual is not its least in the end goes back, too. Nothing here depends on the number of sweeps that follow:
    more sweeps continue fewer.
 
@@ -161,7 +162,11 @@ static void measure(Momentum *momentum) {
 /* At a look. Returns true where momentum has carried the island too far, or to numbers that are NaN or infinite: it
    goes back to what was best, and takes another course from there. */
 static bool judge(MomentumIsland *course) {
-    if (course->left <= risen * course->best) return false;
+    if (course->left <= risen * course->best) {
+        const int longer = course->longest + course->longest / 4 + 1;
+        course->longest = longer < SWEEPS_MAX ? longer : SWEEPS_MAX;
+        return false;
+    }
     course->left = course->best;
     course->longest = (course->sweeps < course->longest ? course->sweeps : course->longest) / 2;
     course->sweeps = 0;
