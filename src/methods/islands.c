@@ -226,9 +226,10 @@ bool islands_take_gain(Islands *s, const ContactProblem *problem, ContactSolutio
     for (int i = 0; i < problem->contact_count; i++) {
         if (s->island[i] < 0 || s->gains[s->island[i]].share == 1) continue;
         const float share = s->gains[s->island[i]].share, normal = share * solution->impulses[i].normal;
-        const float limit = problem->contacts[i].friction * normal; /* rounded into the cone */
-        solution->impulses[i] =
-            (ContactImpulse){normal, contact_clamp(share * solution->impulses[i].tangent, -limit, limit)};
+        const float tangent = share * solution->impulses[i].tangent, limit = problem->contacts[i].friction * normal;
+        solution->impulses[i] = (ContactImpulse){0, 0}; /* unless they are finite; rounded into the cone */
+        if (isfinite(normal) && isfinite(tangent))
+            solution->impulses[i] = (ContactImpulse){normal, contact_clamp(tangent, -limit, limit)};
     }
     return true;
 }
