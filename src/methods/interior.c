@@ -366,7 +366,7 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
 static bool solve_as_reference(State *solver, const ContactProblem *problem, const Look *step,
                                ContactSolution *solution, Error *error) {
     Reference *reference = &solver->reference;
-    const double tolerance = (double)(step->calm ? step->near : 0.25f * solver->near);
+    const double tolerance = 0.25 * (double)step->near;
     if (!reference_solve_to(reference, problem, tolerance, FEW_ITERATIONS, error)) return false;
     solver->left -= load_work + few_work * reference->factorizations;
     reference_round(reference, problem, solution);

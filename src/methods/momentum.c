@@ -169,6 +169,7 @@ static bool judge(MomentumIsland *course) {
     }
     course->left = course->best;
     course->longest = (course->sweeps < course->longest ? course->sweeps : course->longest) / 2;
+    if (course->longest < SLIDING_EVERY) course->longest = SLIDING_EVERY;
     course->sweeps = 0;
     return true;
 }
