@@ -16,6 +16,7 @@ void islands_free(Islands *islands) {
 /* What an answer does in an island. */
 struct Gain {
     double across, square; /* J: m v dv and m dv dv, of velocities v before and changes dv */
+    double mass;           /* kg, of bodies that move */
     float missed, bias;    /* m/s: the largest change of a contact's velocity by one more visit; the largest bias */
     float share;
 };
@@ -174,6 +175,7 @@ static void add_body(struct Gain *gain, const ProblemBody *body, const BodyVeloc
                  inertia = body->inv_inertia > 0 ? 1 / (double)body->inv_inertia : 0;
     gain->across += mass * (x * dx + y * dy) + inertia * (spin * turn);
     gain->square += mass * (dx * dx + dy * dy) + inertia * (turn * turn);
+    gain->mass += mass;
 }
 
 static bool gains(const struct Gain *gain) { return 2 * gain->across + gain->square > 0; }
@@ -194,6 +196,7 @@ static void add_contact(struct Gain *gain, const ContactPoint *contact, const Co
 
 bool islands_take_gain(Islands *s, const ContactProblem *problem, ContactSolution *solution) {
     bool any = false;
+    s->shortened = false;
     for (int i = 0; i < problem->body_count && !any; i++) {
         struct Gain alone = {0};
         add_body(&alone, &problem->bodies[i], &solution->velocities[i]);
@@ -211,8 +214,11 @@ bool islands_take_gain(Islands *s, const ContactProblem *problem, ContactSolutio
             add_contact(&s->gains[s->island[i]], &problem->contacts[i], solution, solution->impulses[i]);
     for (int k = 0; k < s->count; k++) {
         struct Gain *gain = &s->gains[k];
-        if (gains(gain) && gain->missed > gain->bias)
-            gain->share = gain->across < 0 ? (float)(-gain->across / gain->square) : 0;
+        if (!gains(gain)) continue;
+        const double least = gain->across < 0 ? -gain->across / gain->square : 0, bias = (double)gain->bias;
+        const double may = gain->missed > gain->bias ? 0 : 0.5 * gain->mass * bias * bias;
+        gain->share = (float)fmin(least + sqrt(2 * may / gain->square), 1);
+        s->shortened |= gain->share < 1;
     }
     for (int i = 0; i < problem->body_count; i++) {
         const int32_t k = island_of_body(s, i);

@@ -26,7 +26,8 @@ typedef struct Islands {
     int moving;                  /* bodies that move, in islands or alone */
     Island *islands;             /* [count], in the order of their first contacts */
     int32_t *island;             /* [contact_count] of each contact; -1: of bodies that do not move */
-    struct Gain *gains;          /* [count] see islands_take_gain() */
+    struct Gain *gains;          /* [count] see islands_take_gain(); */
+    bool shortened;              /* whether its last answer was */
     bool sorted;                 /* `members` and `contacts` are filled */
     int32_t *parent;             /* [body_count] another body of the island, or itself; -1: does not move */
     int32_t *number;             /* [body_count] of the island of which the body is the root */
@@ -55,9 +56,10 @@ ContactProblem islands_take(Islands *islands, const ContactProblem *problem, int
 void islands_put(const Islands *islands, int k, const ContactProblem *part, const ContactSolution *of_part,
                  ContactSolution *solution);
 
-/* No answer adds energy. Impulses that add kinetic energy to an island are right only where position correction asks
-   for it: where no contact misses its velocity by more than the largest bias, so that energy is that of motions which
-   correction makes. All others are shortened: impulses and changes of velocity times the share that leaves the least
-   energy, a square in the share. So is an answer between jammed bodies, whose impulses grow without an effect until
-   their rounding moves boxes. Finds the islands where a body gains. False when memory is short. */
+/* No answer adds more energy to an island than all of its bodies have at the speed of the largest bias, which is what
+   position correction asks for; none at all where a contact misses its velocity by more than that. An answer that does
+   is shortened: impulses and changes of velocity times the share that leaves the least energy, a square in the share,
+   and what correction may add. So are answers between jammed bodies, whose impulses grow without an effect until their
+   rounding moves boxes, and of boxes in a row between walls, which a little overlap would throw out as a lever does.
+   Finds the islands where a body gains. False when memory is short. */
 bool islands_take_gain(Islands *islands, const ContactProblem *problem, ContactSolution *solution);

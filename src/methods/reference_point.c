@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/block_lu.h"
+#include "methods/islands.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
 #include "methods/reference_parts.h"
@@ -279,17 +280,27 @@ SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *
 /* The reference (methods/reference.h) as a contact solver, for runs of converged steps. A step that does not
    converge ends with the answer that reference.h states, and is counted. */
 
+typedef struct State {
+    Reference reference;
+    Islands islands;
+} State;
+
 static void *create(const Settings *chosen, Error *error) {
     (void)chosen;
-    Reference *reference = calloc(1, sizeof *reference);
-    if (reference == NULL) error_memory(error, "reference");
-    return reference;
+    State *state = calloc(1, sizeof *state);
+    if (state == NULL) error_memory(error, "reference");
+    return state;
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    Reference *reference = state;
+    State *solver = state;
+    Reference *reference = &solver->reference;
     if (!reference_solve(reference, problem, NULL, error)) return false;
     reference_round(reference, problem, solution);
+    if (!islands_take_gain(&solver->islands, problem, solution)) return error_memory(error, "reference");
+    if (solver->islands.shortened &&
+        !reference_residual(reference, problem, solution->impulses, &reference->residual, error))
+        return false;
     solution->fallbacks = (Fallbacks){0};
     if (!reference_converged(reference))
         solution->fallbacks = (Fallbacks){.not_converged = 1, .residual = reference->residual};
@@ -297,10 +308,11 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
 }
 
 static void destroy(void *state) {
-    Reference *reference = state;
-    if (reference == NULL) return;
-    reference_free(reference);
-    free(reference);
+    State *solver = state;
+    if (solver == NULL) return;
+    reference_free(&solver->reference);
+    islands_free(&solver->islands);
+    free(solver);
 }
 
 static const SettingSpec settings[] = {KEEP_SETTING(SETTING_OWN), {0}};

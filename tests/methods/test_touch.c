@@ -50,11 +50,10 @@ TEST(a_box_slides_over_seams_of_boxes) {
         }
 }
 
-/* Nine boxes between fixed walls, 3% too wide for the gap: no impulses push all of them out. Steps that converge have solutions with
-   whatever energy: interior and reference are not judged. */
+/* Nine boxes between fixed walls, 3% too wide for the gap: no impulses push all of them out, but a row that buckles. */
 TEST(a_jam_gains_no_energy) {
     static const float masses[] = {0.19f, 0.73f, 0.7f, 1.2f, 1.2f, 0.31f, 1.1f, 0.69f, 0.22f};
-    for (int m = 2; m < KINDS; m++) {
+    for (int m = 0; m < KINDS; m++) {
         OWN(World) *world = make_world();
         OWN(ContactSolver) solver = make_solver(kinds[m], "");
         for (int i = -1; i <= 1; i += 2)
