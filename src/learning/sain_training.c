@@ -36,7 +36,7 @@ static bool keep_some(void *context, const LaunchStep *step, Error *error) {
     const bool wanted = step->phase == PHASE_IMPACT ||
                         (step->phase == PHASE_AFTER ? step->since % AFTER_STEP : step->frame % REST_EVERY) == 0;
     return !wanted || step->problem->contact_count == 0 ||
-           (reference_solve_to(step->reference, step->problem, converged, FACTORIZATIONS_MAX, error) &&
+           (reference_solve_to(step->reference, step->problem, converged, true, FACTORIZATIONS_MAX, error) &&
             launch_step_record(step, step->reference->residual <= converged, error));
 }
 

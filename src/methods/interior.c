@@ -83,8 +83,8 @@ static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, pa
    by gravity and the engine's slop. */
 
 /* More: an iteration takes as long as 10 sweeps or more. Few: the reference's own solver, with so many factorizations
-   at most. */
-enum { FEW_BODIES = 33, FEW_ITERATIONS = 100, MANY_BODIES = 128 };
+   at most, and so many more in a jam. */
+enum { FEW_BODIES = 33, FEW_ITERATIONS = 60, JAM_ITERATIONS = 35, MANY_BODIES = 128 };
 /* In sweeps, of a factorization with all that an iteration takes. */
 static const double few_work = 7.5;
 
@@ -362,12 +362,11 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
            error_memory(error, "interior");
 }
 
-/* An island of few bodies. False when memory is short. */
-static bool solve_as_reference(State *solver, const ContactProblem *problem, const Look *step,
-                               ContactSolution *solution, Error *error) {
+/* Sets `best`. Rounded impulses are put back into their cones. False when memory is short. */
+static bool ask_reference(State *solver, const ContactProblem *problem, const Look *step, bool push_out, int most,
+                          ContactSolution *solution, Error *error) {
     Reference *reference = &solver->reference;
-    const double tolerance = 0.25 * (double)step->near;
-    if (!reference_solve_to(reference, problem, tolerance, FEW_ITERATIONS, error)) return false;
+    if (!reference_solve_to(reference, problem, 0.25 * (double)step->near, push_out, most, error)) return false;
     solver->left -= load_work + few_work * reference->factorizations;
     reference_round(reference, problem, solution);
     bool finite = true;
@@ -381,9 +380,18 @@ static bool solve_as_reference(State *solver, const ContactProblem *problem, con
         impulse->tangent = contact_clamp(impulse->tangent, -limit, limit);
         finite &= isfinite(limit) && isfinite(impulse->tangent);
     }
-    /* What it did not solve may hold jammed bodies with impulses that grow for ever: sweeps begin from the warm start. */
     solver->best = finite && reference->residual <= (double)step->enough ? reference->residual : INFINITY;
     return true;
+}
+
+/* An island of few bodies: with position correction, or without it where jammed bodies leave no room for it. What
+   neither solves, sweeps get, from the warm start: such impulses grow for ever. */
+static bool solve_few(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
+                      Error *error) {
+    if (!ask_reference(solver, problem, step, true, FEW_ITERATIONS, solution, error)) return false;
+    return solver->best < INFINITY ||
+           (ask_reference(solver, problem, step, false, JAM_ITERATIONS, solution, error) &&
+            (solver->best < INFINITY || fall_back(solver, problem, step->enough, solution, error)));
 }
 
 /* A problem that is a single island. */
@@ -399,9 +407,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
         look_at_residuals(step, &solver->momentum.sweeps, NULL);
         if (is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
     }
-    if (step->bodies <= FEW_BODIES)
-        return solve_as_reference(solver, problem, step, solution, error) &&
-               (solver->best <= (double)step->enough || fall_back(solver, problem, step->enough, solution, error));
+    if (step->bodies <= FEW_BODIES) return solve_few(solver, problem, step, solution, error);
     if (step->calm) {
         const float limit = restless_from * solver->near;
         step->restless =

@@ -217,12 +217,13 @@ bool reference_solve(Reference *r, const ContactProblem *problem, const ContactI
     return r->residual <= near_solution || answer_unsolved(r, problem, start, error);
 }
 
-bool reference_solve_to(Reference *r, const ContactProblem *problem, double tolerance, int most, Error *error) {
+bool reference_solve_to(Reference *r, const ContactProblem *problem, double tolerance, bool push_out, int most,
+                        Error *error) {
     r->aim = r->enough = tolerance;
     r->calm = 20 * tolerance;
     r->most = most;
     r->persist = false;
-    r->push_out = true;
+    r->push_out = push_out;
     if (!solve_scaled(r, problem, NULL, error)) return false;
     r->residual = r->best;
     return true;
