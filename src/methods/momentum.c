@@ -163,6 +163,7 @@ static void measure(Momentum *momentum) {
    goes back to what was best, and takes another course from there. */
 static bool judge(MomentumIsland *course) {
     if (course->left <= risen * course->best) {
+        if (course->left > course->best) return false;
         const int longer = course->longest + course->longest / 4 + 1;
         course->longest = longer < SWEEPS_MAX ? longer : SWEEPS_MAX;
         return false;
