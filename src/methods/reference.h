@@ -49,7 +49,7 @@ typedef struct Reference {
         double target;
     } kept[2];          /* interior points to go back to */
     double aim, enough; /* m/s: residuals that end a solve: as soon as reached; once steps get short */
-    double calm;        /* m/s: how far inside the bounds interior points start if the residual is 0, doubled */
+    double calm;        /* m/s, the unit of speeds: interior points start half of it inside the bounds, if not more */
     int most;           /* factorizations that a solve may use */
     bool persist;       /* goes on, and tries again, where reference_solve_to() gives up */
     bool push_out;      /* contacts have their bias */

@@ -116,13 +116,14 @@ static void solve_changes(Reference *r) {
    Interior Point Method" (1992); Friedlander, Orban, "A Primal-Dual Regularized Interior-Point Method for Convex
    Quadratic Programs" (2012). */
 
-/* m/s: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would throw z, p, q about. */
-static const double rounding = 1e-12;
+/* Of `calm`, the unit of speeds: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would
+   throw z, p, q about. */
+static const double rounding = 1e-10;
 static const double inside = 0.5; /* of the start: offset from the bounds, share of the scale */
 static const double bound_share = 0.995;       /* of the way to the nearest bound that a step may go */
 static const double least_shrink = 1e-4;       /* of the target, in a step */
 
-static Vec4 beyond_rounding(Vec4 x) { return x - clamp_between(x, all4(rounding)); }
+static Vec4 beyond_rounding(Vec4 x, double calm) { return x - clamp_between(x, all4(rounding * calm)); }
 
 /* The masses m_n and m_t: each contact's own effective masses, or the mass of the heaviest body for all contacts. A
    light box between heavy ones passes on impulses that are many thousand times larger than those that move it. Measured
@@ -163,11 +164,11 @@ static void begin(Reference *r, double scale) {
 }
 
 /* Those of the matrix. */
-static inline void linearise(ReferenceGroup *g, Vec4 soft) {
+static inline void linearise(ReferenceGroup *g, Vec4 soft, double calm) {
     const ReferencePoint *now = &g->now;
     const Vec4 p = now->p / now->u, q = now->q / now->w;
-    g->missing_normal = beyond_rounding(g->gap - now->z);
-    g->missing_tangent = beyond_rounding(g->slip - (now->q - now->p));
+    g->missing_normal = beyond_rounding(g->gap - now->z, calm);
+    g->missing_tangent = beyond_rounding(g->slip - (now->q - now->p), calm);
     g->over_z = 1 / (now->z + now->l * soft * g->inverse_normal);
     g->dn = now->l * g->over_z;
     g->dt = 1 / (p + q + soft * g->inverse_tangent);
@@ -231,7 +232,7 @@ static void begin_step(Reference *r, double target) {
     const Vec4 soft = all4(1 / r->stiffest);
     momentum_left(r);
     for (int i = 0; i < r->group_count; i++) {
-        linearise(&r->groups[i], soft);
+        linearise(&r->groups[i], soft, r->calm);
         towards(&r->groups[i], target, 0);
         push_right_side(r, i);
     }
@@ -345,7 +346,7 @@ static const double arc_share = 0.9;                          /* of the way to t
 static const double near_path = 0.5, nearer = 0.25, lost = 3; /* distances from the path, in its length */
 static const double length_first = 0.5, length_most = 8, length_least = 1e-5;
 
-static const double target_end = 1e-10; /* (m/s)^2 */
+static const double target_end = 1e-6; /* of calm^2 */
 
 typedef struct Tracker {
     Reference *r;
@@ -448,7 +449,7 @@ static bool pass_fold(Reference *r, bool to_end) {
                        .near = to_end ? nearer : near_path,
                        .off_before = INFINITY};
     keep(r, KEPT_ON_PATH, tracker.target);
-    while (r->left > 0 && (to_end ? tracker.target > target_end : tracker.good < GOOD_STEPS)) {
+    while (r->left > 0 && (to_end ? tracker.target > target_end * r->calm * r->calm : tracker.good < GOOD_STEPS)) {
         track(&tracker);
         if (!(tracker.target > 0 && tracker.target < INFINITY) || tracker.length < length_least ||
             (!tracker.found && tracker.corrections == 0))
@@ -509,7 +510,6 @@ enum { PATIENCE = 40 };
 
 static bool follow(Reference *r, int most, bool carefully) {
     const double good = 0.8, short_step = 0.1;
-    const double near_end = 1e-4 > 25 * r->aim * r->aim ? 1e-4 : 25 * r->aim * r->aim; /* (m/s)^2 */
     int stuck = 0;
     bool begun = false;
     double mean = mean_product(r);
@@ -517,7 +517,7 @@ static bool follow(Reference *r, int most, bool carefully) {
         const double length = centre_step(r, mean);
         mean = mean_product(r);
         if (!(mean > 0) || isinf(mean)) break;
-        if (mean < near_end) answer(r);
+        if (mean < r->calm * r->calm) answer(r);
         if (r->best <= r->aim || (r->best <= r->enough && length < 0.5)) return true;
         const bool forward = goes_forward(r);
         if (length >= good && forward) {
@@ -651,7 +651,7 @@ static void take_best(Reference *r) {
     apply(r);
 }
 
-static bool is_rough(const Reference *r) { return r->best > r->enough && r->best < near_solution; }
+static bool is_rough(const Reference *r) { return r->best > r->enough && r->best < near_solution * r->calm; }
 
 /* Near the solution the states of most contacts are clear, and sweeps find those of the others. */
 static bool finish(Reference *r) {

@@ -36,9 +36,9 @@ struct ReferenceGroup {
 /* Points that a solve may go back to: before it got stuck; before a step along the path. */
 enum { KEPT_ON_WAY, KEPT_ON_PATH, KEPT };
 
-/* m/s: residuals from which a solve is finished with a few sweeps and steps; what such an answer misses does no
+/* Of `calm`: residuals from which a solve is finished with a few sweeps and steps; what such an answer misses does no
    harm. */
-static const double near_solution = 1e-5;
+static const double near_solution = 1e-3;
 
 static inline Vec4 clamp_between(Vec4 x, Vec4 limit) {
     const Vec4 low = larger4(x, -limit);

@@ -214,7 +214,7 @@ bool reference_solve(Reference *r, const ContactProblem *problem, const ContactI
     r->persist = r->push_out = true;
     if (!solve_scaled(r, problem, start, error)) return false;
     r->residual = kernels(r)->residual(r);
-    return r->residual <= near_solution || answer_unsolved(r, problem, start, error);
+    return r->residual <= near_solution * r->calm || answer_unsolved(r, problem, start, error);
 }
 
 bool reference_solve_to(Reference *r, const ContactProblem *problem, double tolerance, bool push_out, int most,
