@@ -6,7 +6,7 @@
        P = P0 + A (x - x0)     if (x - x0)^T M (x - x0) <= 1,
 
    clamped to the friction cones. Impulses act on both bodies alike, so momentum is conserved whatever is stored. All
-   other steps are those of `interior:near=0.001` (interior.c). The memory does not change while it answers: the same
+   other steps are solved by `interior:near=0.001` (interior.c). The memory does not change while it answers: the same
    file gives the same run. It grows between launches (learning/hybrid_training.c).
 
    Sources: Pope, "Computationally efficient implementation of combustion chemistry using in situ adaptive tabulation"

@@ -85,8 +85,8 @@ static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, pa
 /* More: an iteration takes as long as 10 sweeps or more. Few: the reference's own solver, with so many factorizations
    at most, and so many more in a jam. */
 enum { FEW_BODIES = 33, FEW_ITERATIONS = 60, JAM_ITERATIONS = 35, MANY_BODIES = 128 };
-/* In sweeps, of a factorization with all that an iteration takes. */
-static const double few_work = 7.5;
+/* In sweeps, of a factorization with all that an iteration takes; kept for an answer without position correction. */
+static const double few_work = 7.5, jam_work = 10 + JAM_ITERATIONS * 7.5;
 
 typedef struct Look {
     int bodies, loops; /* bodies: that move */
@@ -138,6 +138,8 @@ typedef struct State {
     ContactPoint *contacts; /* [contact_count] with the best answer as warm start */
     size_t contact_capacity;
     Reference reference; /* solves small islands */
+    ContactSolution other;
+    ArrayBlock other_block; /* of `other` */
     float start_factors[START_SWEEPS], fallback_factors[INTERIOR_MOST_WORK];
 } State;
 
@@ -215,6 +217,7 @@ static void destroy(void *state) {
     interior_free(&solver->interior);
     islands_free(&solver->islands);
     free(solver->look_block.memory);
+    free(solver->other_block.memory);
     momentum_free(&solver->momentum);
     reference_free(&solver->reference);
     free(solver->contacts);
@@ -384,14 +387,37 @@ static bool ask_reference(State *solver, const ContactProblem *problem, const Lo
     return true;
 }
 
-/* An island of few bodies: with position correction, or without it where jammed bodies leave no room for it. What
-   neither solves, sweeps get, from the warm start: such impulses grow for ever. */
+/* After sweeps: the answer without position correction instead, if its residual is smaller. In a jam no answer has what
+   correction asks for. False when memory is short. */
+static bool answer_jam(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
+                       Error *error) {
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    ContactSolution *other = &solver->other;
+    double swept, freed;
+    if (!reference_residual(&solver->reference, problem, solution->impulses, &swept, error)) return false;
+    if (swept <= (double)step->enough) return true;
+    if (!ARRAY_BLOCK_RESERVE(&solver->other_block, ARRAY_PART(other->velocities, bodies),
+                             ARRAY_PART(other->impulses, contacts)))
+        return error_memory(error, "interior");
+    if (!ask_reference(solver, problem, step, false, JAM_ITERATIONS, other, error)) return false;
+    if (solver->best == INFINITY) return true;
+    if (!reference_residual(&solver->reference, problem, other->impulses, &freed, error)) return false;
+    if (!(freed < swept)) return true;
+    memcpy(solution->velocities, other->velocities, bodies * sizeof *other->velocities);
+    memcpy(solution->impulses, other->impulses, contacts * sizeof *other->impulses);
+    return true;
+}
+
+/* An island of few bodies. What is not solved in FEW_ITERATIONS may hold jammed bodies with impulses that grow for ever:
+   sweeps begin from the warm start. False when memory is short. */
 static bool solve_few(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                       Error *error) {
     if (!ask_reference(solver, problem, step, true, FEW_ITERATIONS, solution, error)) return false;
-    return solver->best < INFINITY ||
-           (ask_reference(solver, problem, step, false, JAM_ITERATIONS, solution, error) &&
-            (solver->best < INFINITY || fall_back(solver, problem, step->enough, solution, error)));
+    if (solver->best < INFINITY) return true;
+    solver->left -= jam_work;
+    if (!fall_back(solver, problem, step->enough, solution, error)) return false;
+    solver->left += jam_work;
+    return answer_jam(solver, problem, step, solution, error);
 }
 
 /* A problem that is a single island. */

@@ -18,6 +18,7 @@ struct Gain {
     double across, square; /* J: m v dv and m dv dv, of velocities v before and changes dv */
     double mass;           /* kg, of bodies that move */
     float missed, bias;    /* m/s: the largest change of a contact's velocity by one more visit; the largest bias */
+    double biases;         /* m/s: the sum of biases */
     float share;
 };
 
@@ -192,6 +193,7 @@ static void add_contact(struct Gain *gain, const ContactPoint *contact, const Co
         fminf(vec2_dot(velocity, contact->normal) - contact->bias, impulse.normal / contact->mass_normal);
     gain->missed = fmaxf(gain->missed, fmaxf(fabsf(normal), fabsf(held - impulse.tangent) / contact->mass_tangent));
     gain->bias = fmaxf(gain->bias, contact->bias);
+    gain->biases += fmax((double)contact->bias, 0);
 }
 
 bool islands_take_gain(Islands *s, const ContactProblem *problem, ContactSolution *solution) {
@@ -215,8 +217,8 @@ bool islands_take_gain(Islands *s, const ContactProblem *problem, ContactSolutio
     for (int k = 0; k < s->count; k++) {
         struct Gain *gain = &s->gains[k];
         if (!gains(gain)) continue;
-        const double least = gain->across < 0 ? -gain->across / gain->square : 0, bias = (double)gain->bias;
-        const double may = gain->missed > gain->bias ? 0 : 0.5 * gain->mass * bias * bias;
+        const double least = gain->across < 0 ? -gain->across / gain->square : 0;
+        const double may = gain->missed > gain->bias ? 0 : 0.5 * gain->mass * gain->biases * gain->biases;
         gain->share = (float)fmin(least + sqrt(2 * may / gain->square), 1);
         s->shortened |= gain->share < 1;
     }

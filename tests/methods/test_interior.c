@@ -99,9 +99,12 @@ TEST(impacts_of_a_pyramid_are_solved_to_the_tolerance) {
     assert_true(fallbacks <= 4);
 }
 
-/* Random normals, arms and masses: effective masses that fit, as the residual is in their units. Where the friction is
-   low, the solution is unique. */
+/* Random normals, arms and masses: effective masses that fit, as the residual is in their units, and fixed bodies that
+   do not move, as they would add energy. Where the friction is low, the solution is unique. */
 static void fit_masses(RandomProblem *random) {
+    for (int i = 0; i < random->problem.body_count; i++)
+        if (random->bodies[i].inv_mass == 0)
+            random->bodies[i].velocity = vec2(0, random->bodies[i].angular_velocity = 0);
     for (int i = 0; i < random->problem.contact_count; i++) {
         ContactPoint *contact = &random->contacts[i];
         const ProblemBody *a = &random->bodies[contact->a], *b = &random->bodies[contact->b];
@@ -300,7 +303,7 @@ static World *make_boxes(int rows, bool stacks) {
 /* 820 boxes: in a pyramid they have 1,560 - 819 loops, in stacks none. The bits are those of sweeps with momentum. */
 TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
-        OWN(World) *world = make_boxes(40, stacks);
+        OWN(World) *world = make_boxes(stacks ? 40 : 72, stacks);
         const ContactProblem *problem = next_problem(world);
         OWN(ContactSolution) found = make_solution(problem), swept = make_solution(problem);
         solve_with(&solver_interior, "near=0.001", problem, &found);

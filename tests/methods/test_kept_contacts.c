@@ -198,8 +198,9 @@ TEST(solvers_let_a_gap_close_within_the_step) {
         solution->velocities[1].linear = vec2(0, -1);
         assert_ok(world_end_step_at(world, (const BodyPose[]){{{0, -10}, 0}, {{0, 0.505f}, 0}}, &error), error);
         OWN(ContactSolver) solver = make_solver(kinds[i], "");
-        run(world, &solver, 1);
-        assert_near(world_bodies(world)[1].velocity.y, -0.005 * 60, 3e-3);
+        assert_ok(world_step(world, solver.kind->solve, solver.state, world_dt, &error), error);
+        if (fabsf(world_bodies(world)[1].velocity.y + 0.005f * 60) > 3e-3f)
+            fail_msg("%s: %g m/s", kinds[i]->description.name, (double)world_bodies(world)[1].velocity.y);
     }
 }
 
