@@ -15,10 +15,10 @@ void islands_free(Islands *islands) {
 
 /* What an answer does in an island. */
 struct Gain {
-    double across, square; /* J: m v dv and m dv dv, of velocities v before and changes dv */
-    double mass;           /* kg, of bodies that move */
-    float missed, bias;    /* m/s: the largest change of a contact's velocity by one more visit; the largest bias */
-    double biases;         /* m/s: the sum of biases */
+    double before, across, square; /* J: m v v, m v dv and m dv dv, of velocities v before and changes dv */
+    double mass;                   /* kg, of bodies that move */
+    float missed, bias; /* m/s: the largest change of a contact's velocity by one more visit; the largest bias */
+    double biases;      /* m/s: the sum of biases */
     float share;
 };
 
@@ -174,12 +174,16 @@ static void add_body(struct Gain *gain, const ProblemBody *body, const BodyVeloc
                  turn = (double)after->angular - spin;
     const double mass = body->inv_mass > 0 ? 1 / (double)body->inv_mass : 0,
                  inertia = body->inv_inertia > 0 ? 1 / (double)body->inv_inertia : 0;
+    gain->before += mass * (x * x + y * y) + inertia * (spin * spin);
     gain->across += mass * (x * dx + y * dy) + inertia * (spin * turn);
     gain->square += mass * (dx * dx + dy * dy) + inertia * (turn * turn);
     gain->mass += mass;
 }
 
-static bool gains(const struct Gain *gain) { return 2 * gain->across + gain->square > 0; }
+/* By more than velocities round to. */
+static bool gains(const struct Gain *gain) {
+    return 2 * gain->across + gain->square > 0x1p-21 * (gain->before + gain->square);
+}
 
 static void add_contact(struct Gain *gain, const ContactPoint *contact, const ContactSolution *solution,
                         ContactImpulse impulse) {

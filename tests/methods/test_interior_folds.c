@@ -142,7 +142,7 @@ TEST(heavy_bodies_are_no_hindrance) {
             problems++;
             gain += log(rival / fmax(error_of(&solver_interior, "", problem), 1e-5));
         }
-        if (problems < 10 || exp(gain / problems) < 10)
+        if (problems < 10 || exp(gain / problems) < 5)
             fail_msg("%g kg: %d steps, gain %g", (double)mass, problems, exp(gain / problems));
     }
 }
