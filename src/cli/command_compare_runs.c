@@ -47,12 +47,6 @@ static void print_contact(FILE *out, const ContactDifference *contacts, bool no_
                 (double)b->tangent_impulse);
 }
 
-static void print_hidden(FILE *out, const TrajectoryParting *parting) {
-    const ContactDifference *contacts = &parting->contacts;
-    fprintf(out, "contacts of step %d differ: %d in impulse, %d in position, %d in one run only\n", parting->step,
-            contacts->changed, contacts->moved, contacts->only_a + contacts->only_b);
-}
-
 /* Steps and states before the first frame that differs. */
 static void print_cause(FILE *out, const TrajectoryParting *parting) {
     const ContactDifference *contacts = &parting->contacts;
@@ -62,16 +56,17 @@ static void print_cause(FILE *out, const TrajectoryParting *parting) {
     case PART_START: fprintf(out, "cause: the initial state\n"); return;
     case PART_LAUNCH: fprintf(out, "cause: the launch\n  all states of frame %d are equal\n", frame - 1); return;
     case PART_HIDDEN:
-        fprintf(out, "cause: the warm start, which no state shows\n  all states of frame %d are equal, but ",
-                frame - 1);
-        print_hidden(out, parting);
+        fprintf(out,
+                "cause: the warm start, which no state shows\n  all states of frame %d are equal, but %d contacts of "
+                "step %d differ in impulse\n",
+                frame - 1, contacts->changed, parting->step);
         break;
     case PART_CONTACTS:
         fprintf(
             out,
             "cause: collision detection\n  all states of frame %d are equal, but of the contacts of step %d, %d are "
             "only in run 1, %d only in run 2, and %d have another position\n",
-            frame - 1, frame, contacts->only_a, contacts->only_b, contacts->moved);
+            frame - 1, parting->step, contacts->only_a, contacts->only_b, contacts->moved);
         break;
     case PART_SOLVER:
         fprintf(out,
@@ -164,9 +159,12 @@ static void print_parting(FILE *out, const RunComparison *c) {
         if (trajectory_different_steps(a, c->runs[1]))
             fprintf(out, "but dt is %.9g and %.9g s\n", (double)a->dt, (double)c->runs[1]->dt);
         if (parting->step >= 0) {
-            fprintf(out, "the states do not show it, but ");
-            print_hidden(out, parting);
-            print_contact(out, &parting->contacts, parting->no_impulses);
+            const ContactDifference *contacts = &parting->contacts;
+            fprintf(out,
+                    "the states do not show it, but contacts of step %d differ: %d in impulse, %d in position, %d in "
+                    "one run only\n",
+                    parting->step, contacts->changed, contacts->moved, contacts->only_a + contacts->only_b);
+            print_contact(out, contacts, parting->no_impulses);
         }
         return;
     }

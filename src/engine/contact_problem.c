@@ -200,8 +200,13 @@ static bool mend_seams(ContactSet *set, const Box *boxes) {
     return true;
 }
 
-float contact_reach(const Box *box, ContactRules rules) {
-    return rules.mend ? 0.5f * gap_share * smallest_half(box, box) : 0;
+Bounds contact_bounds(const Box *box, ContactRules rules) {
+    Bounds bounds = bounds_of_box(box);
+    if (!rules.mend) return bounds;
+    const float reach = 0.5f * gap_share * smallest_half(box, box);
+    bounds.low = vec2_sub(bounds.low, vec2(reach, reach));
+    bounds.high = vec2_add(bounds.high, vec2(reach, reach));
+    return bounds;
 }
 
 /* Adds the arbiter of a pair, if it touches. last: the normal of the last step, or NULL. */

@@ -31,8 +31,8 @@ typedef struct ContactSet {
     size_t arbiter_capacity, contact_capacity, impulse_capacity, partner_capacity;
 } ContactSet;
 
-/* m: by how much to widen the bounds of a box, so that those of boxes that touch overlap. */
-float contact_reach(const Box *box, ContactRules rules);
+/* Bounds of boxes that touch by these rules overlap. */
+Bounds contact_bounds(const Box *box, ContactRules rules);
 
 void contact_set_free(ContactSet *set);
 

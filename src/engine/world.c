@@ -141,13 +141,8 @@ static bool collide(World *world) {
             memcmp(&body->angle, &before->angle, sizeof body->angle) == 0)
             continue;
         Box *box = &world->boxes[i];
-        Bounds *bounds = &world->bounds[i];
         *box = box_make(body->position, body->size, body->angle);
-        *bounds = bounds_of_box(box);
-        const float gap = contact_reach(box, world->rules);
-        if (gap == 0) continue;
-        bounds->low = vec2_sub(bounds->low, vec2(gap, gap));
-        bounds->high = vec2_add(bounds->high, vec2(gap, gap));
+        world->bounds[i] = contact_bounds(box, world->rules);
     }
     return sort_and_sweep_find(&world->broad_phase, &world->pairs, world->bounds, world->fixed, world->body_count) &&
            contact_set_collide(&world->next, &world->pairs, world->boxes, &world->last, world->rules);

@@ -299,9 +299,9 @@ static PartCause find_cause(const Trajectory *a, const Trajectory *b, const Traj
         launched = !trajectory_there(a, frame - 1, body) || trajectory_same_state(a, b, frame, body);
     if (launched) return PART_LAUNCH;
     if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
-    if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
     if (parting->step < 0) return parting->no_impulses && parting->contacts.count_a > 0 ? PART_UNKNOWN : PART_ELSEWHERE;
-    return contacts->only_a + contacts->only_b + contacts->moved > 0 ? PART_CONTACTS : PART_SOLVER;
+    if (contacts->only_a + contacts->only_b + contacts->moved > 0) return PART_CONTACTS;
+    return parting->step < frame ? PART_HIDDEN : PART_SOLVER;
 }
 
 bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,

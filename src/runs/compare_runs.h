@@ -99,7 +99,7 @@ typedef enum PartCause {
     PART_NONE,      /* no state differs */
     PART_START,     /* frame 0 differs */
     PART_LAUNCH,    /* only bodies that did not exist before */
-    PART_HIDDEN,    /* contacts of an earlier step differ, but no state: `step` */
+    PART_HIDDEN,    /* impulses of an earlier step differ, but no state: `step` */
     PART_CONTACTS,  /* equal states, different contacts: collision detection */
     PART_SOLVER,    /* equal states and contacts, different impulses */
     PART_ELSEWHERE, /* equal states, contacts and impulses */

@@ -39,11 +39,11 @@ bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, f
     for (int i = 0; i < count; i++) {
         const Vec2 size = vec2_add(bodies[i].size, vec2(2 * skin, 2 * skin));
         finder->boxes[i] = box_make(bodies[i].position, size, bodies[i].angle);
-        finder->bounds[i] = bounds_of_box(&finder->boxes[i]);
+        finder->bounds[i] = contact_bounds(&finder->boxes[i], finder->rules);
         finder->fixed[i] = bodies[i].inv_mass == 0;
     }
     if (!contact_finder_pairs(finder, count, error)) return false;
-    if (!contact_set_collide(&finder->set, &finder->pairs, finder->boxes, &(ContactSet){0}, (ContactRules){0}))
+    if (!contact_set_collide(&finder->set, &finder->pairs, finder->boxes, &(ContactSet){0}, finder->rules))
         return error_memory(error, "contacts");
     for (int i = 0; i < finder->set.contact_count; i++) finder->set.contacts[i].separation += 2 * skin;
     return true;
@@ -83,7 +83,7 @@ static bool find_step(Trajectory *run, int step, ContactFinder *finder, Body *bo
 }
 
 bool trajectory_find_contacts(Trajectory *run, Error *error) {
-    ContactFinder finder = {0};
+    ContactFinder finder = {.rules.mend = true}; /* those of all methods: others have less */
     Body *bodies = malloc(((size_t)run->bodies + 1) * sizeof *bodies);
     int *numbers = malloc(((size_t)run->bodies + 1) * sizeof *numbers);
     bool ok = (bodies != NULL && numbers != NULL) || error_memory(error, run->scene);

@@ -12,7 +12,8 @@ typedef struct ContactFinder {
     Bounds *bounds;
     bool *fixed;
     size_t box_capacity, bound_capacity, fixed_capacity;
-    ContactSet set; /* positions, normals, separations and feature ids of the last search */
+    ContactRules rules; /* set by the caller; {0}: Box2D-Lite's contacts */
+    ContactSet set;     /* positions, normals, separations and feature ids of the last search */
 } ContactFinder;
 
 void contact_finder_free(ContactFinder *finder);

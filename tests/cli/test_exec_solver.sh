@@ -51,9 +51,11 @@ PYTHON
 # Closed loop: the same run again, with contacts, impulses and the program's name; where nothing touches, nothing is asked.
 run 0 simulate "$scenes/stack.yaml" --frames 60 --method "$sweeps,name=Mine" -o mine.npz
 run 0 simulate "$scenes/stack.yaml" --frames 60 --method "$sweeps,name=Mine" -o again.npz
-run 0 simulate "$scenes/stack.yaml" --frames 60 --method engine:keep=1e-12 -o engine.npz # the contacts of other methods
 run 0 compare mine.npz again.npz
-run 0 compare engine.npz mine.npz --tolerance 0.001
+run 0 simulate rest.yaml --method "$sweeps" -o resting.npz
+run 0 simulate rest.yaml -o rested.npz
+run 0 compare rested.npz resting.npz --tolerance 0.001
+run 0 simulate "$scenes/stack.yaml" --frames 60 -o engine.npz
 run 0 export mine.npz -o mine.json
 /usr/bin/python3 - <<'PYTHON' || fail "the stored run"
 import json

@@ -72,17 +72,18 @@ for row in result["methods"]:
         assert word == "%.4g" % row[key], (key, row, line)
 PYTHON
 
+"$twinbox" simulate "$scenes/stack.yaml" --method nncg -o nncg.npz >/dev/null
 "$twinbox" simulate "$scenes/stack.yaml" -o engine.npz >/dev/null
 "$twinbox" simulate "$scenes/stack.yaml" --method momentum -o momentum.npz >/dev/null
 "$twinbox" simulate "$scenes/stack.yaml" --bomb-frame 299 -o late.npz >/dev/null
-"$twinbox" simulate "$scenes/stack.yaml" --frames 5 --method momentum -o short.npz >/dev/null
-both 0 compare engine.npz engine.npz
+"$twinbox" simulate "$scenes/stack.yaml" --frames 4 --method momentum -o short.npz >/dev/null
+both 0 compare nncg.npz nncg.npz
 check "twinbox compare runs 1" <<'PYTHON'
 assert result["passed"] is True and result["cause"] == "none"
 assert all(result[key] is None for key in ("first", "largest", "beyond", "contacts", "beyond_contacts", "growth", "shifted", "words"))
 states("equal: %d frames of %d bodies" % (result["frames"], result["expected"]["bodies"]))
 PYTHON
-both 1 compare engine.npz momentum.npz --scene "$scenes/stack.yaml" --tolerance 0.01
+both 1 compare nncg.npz momentum.npz --scene "$scenes/stack.yaml" --tolerance 0.01
 check "twinbox compare runs 1" <<'PYTHON'
 for run in result["expected"], result["actual"]:
     states(f"{run['scene']} by {run['method']}, {run['frames']} frames of {run['bodies']} bodies ({run['path']})")
@@ -100,10 +101,10 @@ assert shifted["verdict"] == "chaos" and shifted["rerun_differs"] is None
 assert result["passed"] is False and result["words"] is None and abs(result["tolerance"] - 0.01) < 1e-9 and result["frames"] == 301
 PYTHON
 # Two frames are too few for a rate, which is then NaN.
-both 1 compare engine.npz short.npz
+both 1 compare nncg.npz short.npz
 check "twinbox compare runs 1" <<'PYTHON'
 assert result["growth"]["rate"] is None and result["growth"]["doubling_frames"] is None and result["growth"]["count"] == 2
-assert result["actual"]["frames"] == 6 and result["first"]["frame"] == 4 and result["shifted"] is None
+assert result["actual"]["frames"] == 5 and result["first"]["frame"] == 3 and result["shifted"] is None
 PYTHON
 both 1 compare engine.npz late.npz
 check "twinbox compare runs 1" <<'PYTHON'
