@@ -37,11 +37,16 @@ bool contact_set_copy(ContactSet *to, const ContactSet *from) {
 
 /* Writes an arbiter and its points, from set->contacts[first] on. */
 static void write_arbiter(ContactSet *set, Arbiter *arbiter, BodyPair pair, int first, const Manifold *manifold,
-                          const Box *boxes) {
+                          float rest, const Box *boxes) {
     const Box *a = &boxes[pair.a], *b = &boxes[pair.b];
     *arbiter = (Arbiter){
-        pair.a,          pair.b, first,
-        manifold->count, false,  {vec2_sub(b->position, a->position), a->rotation.column1, b->rotation.column1, {0, 0}},
+        pair.a,
+        pair.b,
+        first,
+        manifold->count,
+        rest,
+        false,
+        {vec2_sub(b->position, a->position), a->rotation.column1, b->rotation.column1, {0, 0}},
     };
     for (int k = 0; k < manifold->count; k++) {
         const ManifoldPoint *point = &manifold->points[k];
@@ -75,6 +80,8 @@ static float radius(const Box *box) { return sqrtf(vec2_dot(box->half, box->half
 /* The gap at which boxes touch, and the step between two that is none, of half of the smallest side. At 1 m that is the
    overlap that contacts leave, CONTACT_SLOP, by which sweeps that end early let neighbours sink unequally. */
 static const float gap_share = 0.02f;
+
+static const float mended_slop = 0.005f; /* m, the least; that of Box2D v3. With none, what sweeps leave shakes stacks */
 
 static const float least_cosine = 0.98f; /* of the angle up to which directions count as one, as in Box2D */
 
@@ -195,7 +202,7 @@ static bool mend_seams(ContactSet *set, const Box *boxes) {
                 (size_t)(set->contact_count - end) * sizeof *set->contacts);
         for (int k = i + 1; k < set->arbiter_count; k++) set->arbiters[k].first += more;
         set->contact_count += more;
-        write_arbiter(set, arbiter, (BodyPair){arbiter->a, arbiter->b}, first, &side.across, boxes);
+        write_arbiter(set, arbiter, (BodyPair){arbiter->a, arbiter->b}, first, &side.across, arbiter->rest, boxes);
     }
     return true;
 }
@@ -209,18 +216,27 @@ Bounds contact_bounds(const Box *box, ContactRules rules) {
     return bounds;
 }
 
-/* Adds the arbiter of a pair, if it touches. last: the normal of the last step, or NULL. */
-static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool mend, const Vec2 *last) {
+/* Adds the arbiter of a pair, if it touches. old: that of the last step, or NULL.
+
+   Box2D-Lite's contacts are left with the slop, or they would be lost whenever boxes part a little. Mended ones are not
+   lost, and are left with the overlap with which the boxes met, if that is less. So boxes that are put on one another
+   stay where they are, and what leans is pushed back before it has sunk on one side by the slop. */
+static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool mend, const Arbiter *old,
+                         const ContactSet *last) {
     const Box *a = &boxes[pair.a], *b = &boxes[pair.b];
     const float least = smallest_half(a, b);
     Manifold manifold;
     if (mend)
-        manifold_compute_within(&manifold, a, b, gap_share * least, last);
+        manifold_compute_within(&manifold, a, b, gap_share * least,
+                                old != NULL ? &last->contacts[old->first].normal : NULL);
     else
         manifold_compute(&manifold, a, b);
     if (manifold.count == 0) return;
+    float rest = old != NULL ? old->rest : mended_slop;
+    for (int k = 0; k < manifold.count && old == NULL; k++) rest = fmaxf(rest, -manifold.points[k].separation);
+    if (!mend || rest > CONTACT_SLOP) rest = CONTACT_SLOP;
     Arbiter *arbiter = &set->arbiters[set->arbiter_count++];
-    write_arbiter(set, arbiter, pair, set->contact_count, &manifold, boxes);
+    write_arbiter(set, arbiter, pair, set->contact_count, &manifold, rest, boxes);
     /* Whether the way along which they touch is short beside their sides, as a covered side is touched. */
     arbiter->narrow = mend;
     if (manifold.count == 2) {
@@ -241,8 +257,7 @@ bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxe
         const bool is_old = old < end && (pair == pairs_end || !before(pair->a, pair->b, old->a, old->b));
         const bool may_touch = !is_old || (pair < pairs_end && pair->a == old->a && pair->b == old->b);
         if (!(is_old && rules.keep > 0 && keep_arbiter(set, last, old, boxes, rules.keep)) && may_touch)
-            find_arbiter(set, *pair, boxes, rules.mend,
-                         is_old && old->count > 0 ? &last->contacts[old->first].normal : NULL);
+            find_arbiter(set, *pair, boxes, rules.mend, is_old && old->count > 0 ? old : NULL, last);
         old += is_old;
         pair += may_touch;
     }
@@ -281,26 +296,28 @@ static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm
     return 1.0f / inverse;
 }
 
-float contact_bias(float separation, float inverse_dt) {
-    /* Correct only penetration beyond the slop; otherwise resting contacts jitter between touching and apart (Catto
-       2006). */
+/* Only overlap beyond `rest` is corrected; otherwise resting contacts jitter between touching and apart (Catto 2006). */
+static float correction(float separation, float rest, float inverse_dt) {
     const float bias_factor = 0.2f;
-    float depth = separation + CONTACT_SLOP;
+    float depth = separation + rest;
     return -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);
 }
 
 void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,
                          bool position_correction) {
     float inverse_dt = 1.0f / dt;
-    for (int i = 0; i < set->contact_count; i++) {
-        ContactPoint *contact = &set->contacts[i];
-        const ProblemBody *a = &bodies[contact->a], *b = &bodies[contact->b];
-        contact->mass_normal = effective_mass(a, b, contact->arm_a, contact->arm_b, contact->normal);
-        Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
-        contact->mass_tangent = effective_mass(a, b, contact->arm_a, contact->arm_b, tangent);
-        contact->bias = position_correction ? contact_bias(contact->separation, inverse_dt) : 0;
-        if (contact->separation > 0) contact->bias = -contact->separation * inverse_dt;
-        contact->friction = sqrtf(friction[contact->a] * friction[contact->b]);
+    for (int i = 0; i < set->arbiter_count; i++) {
+        const Arbiter *arbiter = &set->arbiters[i];
+        for (int k = arbiter->first; k < arbiter->first + arbiter->count; k++) {
+            ContactPoint *contact = &set->contacts[k];
+            const ProblemBody *a = &bodies[contact->a], *b = &bodies[contact->b];
+            contact->mass_normal = effective_mass(a, b, contact->arm_a, contact->arm_b, contact->normal);
+            Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
+            contact->mass_tangent = effective_mass(a, b, contact->arm_a, contact->arm_b, tangent);
+            contact->bias = position_correction ? correction(contact->separation, arbiter->rest, inverse_dt) : 0;
+            if (contact->separation > 0) contact->bias = -contact->separation * inverse_dt;
+            contact->friction = sqrtf(friction[contact->a] * friction[contact->b]);
+        }
     }
 }
 

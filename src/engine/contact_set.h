@@ -17,6 +17,7 @@ typedef struct FoundPair {
 typedef struct Arbiter {
     int a, b;         /* bodies, a < b */
     int first, count; /* its points in the contact set; count is 0 once forgotten */
+    float rest;       /* m, the overlap that position correction leaves */
     bool narrow;      /* of mended contacts: its points are nearer to each other than half of the smallest side */
     FoundPair found;
 } Arbiter;

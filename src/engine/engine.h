@@ -138,7 +138,7 @@ typedef bool ContactSolve(void *state, const ContactProblem *problem, ContactSol
    still let boxes sink. Source: Catto, Box2D's contact recycling (2026), whose tolerance is a length.
 
    mend: boxes touch from a gap of 1% of the smaller side on, which a step may close and no more, and keep the sides
-   with which they touch; and there are no ghosts at seams (contact_problem.c). As Box2D-Lite finds contacts, boxes that
+   with which they touch, and the overlap with which they met; and there are no ghosts at seams (contact_problem.c). As Box2D-Lite finds contacts, boxes that
    rounding or the end of sweeps sets apart fall until they overlap, each layer of a stack a step after the one below;
    and thin ones are pressed past one another, and then pushed out on the wrong side. Box2D v3, too, has contacts before
    boxes overlap: from four slops on. */
@@ -223,7 +223,3 @@ double world_energy(const World *world, Vec2 gravity);
 
 /* m: the deepest contact of the last step; 0 without contacts. */
 double world_penetration(const World *world);
-
-/* The target velocity of position correction along the normal, m/s (Baumgarte 1972, as in Box2D-Lite); inverse_dt in
-   1/s. */
-float contact_bias(float separation, float inverse_dt);
