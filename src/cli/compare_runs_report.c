@@ -180,7 +180,9 @@ static const char *cause_of(const RunComparison *c) {
 }
 
 /* Whether the tolerance is exceeded: there the page of both runs opens, else at the first difference. */
-static bool is_beyond(const RunComparison *c) { return (c->options->poses.given || c->options->chaos) && c->parting.beyond.frame >= 0; }
+static bool is_beyond(const RunComparison *c) {
+    return (c->options->poses.given || c->options->chaos) && c->parting.beyond.frame >= 0;
+}
 
 static void write_page(FILE *out, const void *context) {
     const RunComparison *c = context;

@@ -27,7 +27,7 @@ typedef struct CompareOptions {
     const char *limit; /* --tolerance, as given: of pictures in `tolerance`, of runs in `poses` */
     Tolerance tolerance;
     PoseTolerance poses;
-    bool chaos; /* --tolerance chaos */
+    bool chaos;              /* --tolerance chaos */
     const char *scene, *csv; /* of runs */
     const char *rules;       /* a file; NULL: not given */
     bool flat, strict, json;

@@ -81,7 +81,8 @@ static float radius(const Box *box) { return sqrtf(vec2_dot(box->half, box->half
    overlap that contacts leave, CONTACT_SLOP, by which sweeps that end early let neighbours sink unequally. */
 static const float gap_share = 0.02f;
 
-static const float mended_slop = 0.005f; /* m, the least; that of Box2D v3. With none, what sweeps leave shakes stacks */
+static const float mended_slop =
+    0.005f; /* m, the least; that of Box2D v3. With none, what sweeps leave shakes stacks */
 
 static const float least_cosine = 0.98f; /* of the angle up to which directions count as one, as in Box2D */
 

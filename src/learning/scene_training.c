@@ -182,8 +182,7 @@ static bool first_round(Trainer *trainer, Error *error) {
     network->gate = recording_gate;
     network->bomb_inv_mass = trainer->samples.items[0].step.problem.bodies[network->bomb].inv_mass;
     network->sweeps = training->sweeps;
-    for (int s = 0; s < training->sweeps && training->momentum; s++)
-        network->factors[s] = momentum_factor(s);
+    for (int s = 0; s < training->sweeps && training->momentum; s++) network->factors[s] = momentum_factor(s);
     return scene_net_samples_look(&trainer->held_out, 0, network, error);
 }
 

@@ -119,9 +119,9 @@ static void solve_changes(Reference *r) {
 /* Of `calm`, the unit of speeds: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would
    throw z, p, q about. */
 static const double rounding = 1e-10;
-static const double inside = 0.5; /* of the start: offset from the bounds, share of the scale */
-static const double bound_share = 0.995;       /* of the way to the nearest bound that a step may go */
-static const double least_shrink = 1e-4;       /* of the target, in a step */
+static const double inside = 0.5;        /* of the start: offset from the bounds, share of the scale */
+static const double bound_share = 0.995; /* of the way to the nearest bound that a step may go */
+static const double least_shrink = 1e-4; /* of the target, in a step */
 
 static Vec4 beyond_rounding(Vec4 x, double calm) { return x - clamp_between(x, all4(rounding * calm)); }
 

@@ -241,8 +241,8 @@ static SceneNetSolver *make_scene_net(const SceneNet *network, const SceneNetCho
     for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
     for (int s = 0; s < choice->after; s++)
         solver->after_factors[s] = choice->after == network->sweeps && choice->predicts ? network->factors[s]
-                                   : learned ? momentum_factor(s)
-                                             : 0;
+                                   : learned                                            ? momentum_factor(s)
+                                                                                        : 0;
     return solver;
 }
 

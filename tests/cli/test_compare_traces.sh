@@ -33,7 +33,7 @@ run 0 compare c.csv again.csv $others
 says "$(($(echo "$others" | wc -w) + 1)) of $(($(echo "$others" | wc -w) + 1)) equal"
 
 # Engines print themselves with the same five lines: twice the same, and another number of iterations parts in some frame.
-if [ -e /usr/include/box2d/box2d.h ]; then
+if [ -e /usr/include/box2d/box2d.h ] && command -v c++ >/dev/null; then
     sed -n '1,/^}/p' printer.cpp | cat - <(cat <<'CPP'
 #include <box2d/box2d.h>
 #include <cstdlib>

@@ -2,7 +2,7 @@
 #pragma once
 #include "testing.h"
 
-#define CHART_HEADER                                                                                         \
+#define CHART_HEADER                                                                            \
     "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step," \
     "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved"
 
