@@ -297,7 +297,8 @@ static float effective_mass(const ProblemBody *a, const ProblemBody *b, Vec2 arm
     return 1.0f / inverse;
 }
 
-/* Only overlap beyond `rest` is corrected; otherwise resting contacts jitter between touching and apart (Catto 2006). */
+/* Only overlap beyond `rest` is corrected; otherwise resting contacts jitter between touching and apart
+   (Catto 2006). */
 static float correction(float separation, float rest, float inverse_dt) {
     const float bias_factor = 0.2f;
     float depth = separation + rest;

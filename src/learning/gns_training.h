@@ -33,6 +33,6 @@ typedef struct GnsTraining {
 } GnsTraining;
 
 /* Makes the net, which the caller frees. False with error set if memory is short or a run fails. If progress requests a
-   stop, the net is that of the steps so far; ERROR_INTERRUPTED while launches are recorded. The same bits for any number
-   of threads. */
+   stop, the net is that of the steps so far; ERROR_INTERRUPTED while launches are recorded. The same bits for any
+   number of threads. */
 bool gns_training_run(const GnsTraining *training, GnsNet *net, const Progress *progress, Error *error);

@@ -21,8 +21,8 @@
    a block for each pair of touching bodies (block_lu.h), however many contacts they have. Same bits on every
    instruction set, as interior points (interior_point_internal.h).
 
-   Fails where it is stopped early: an iteration moves all boxes by little. Impacts take hundreds, each as long as one or two sweeps with momentum, which
-   need fewer. Stacks at rest take some ten, whatever their mass ratios. */
+   Fails where it is stopped early: an iteration moves all boxes by little. Impacts take hundreds, each as long as one
+   or two sweeps with momentum, which need fewer. Stacks at rest take some ten, whatever their mass ratios. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"

@@ -408,8 +408,8 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     return true;
 }
 
-/* An island of few bodies. What is not solved in FEW_ITERATIONS may hold jammed bodies with impulses that grow for ever:
-   sweeps begin from the warm start. False when memory is short. */
+/* An island of few bodies. What is not solved in FEW_ITERATIONS may hold jammed bodies with impulses that grow for
+   ever: sweeps begin from the warm start. False when memory is short. */
 static bool solve_few(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                       Error *error) {
     if (!ask_reference(solver, problem, step, true, FEW_ITERATIONS, solution, error)) return false;

@@ -58,8 +58,9 @@ void islands_put(const Islands *islands, int k, const ContactProblem *part, cons
 
 /* No answer adds more energy to an island than its bodies have at the sum of its biases, the speed at which the last of
    a row moves if position correction pushes all of its contacts apart; none at all where a contact misses its velocity
-   by more than the largest bias. An answer that does is shortened: impulses and changes of velocity times the share that
-   leaves the least energy, a square in the share, and what correction may add. So are answers between jammed bodies,
-   whose impulses grow without an effect until their rounding moves boxes, and of boxes in a row between walls, which a
-   little overlap would throw out as a lever does. Finds the islands where a body gains. False when memory is short. */
+   by more than the largest bias. An answer that does is shortened: impulses and changes of velocity times the share
+   that leaves the least energy, a square in the share, and what correction may add. So are answers between jammed
+   bodies, whose impulses grow without an effect until their rounding moves boxes, and of boxes in a row between walls,
+   which a little overlap would throw out as a lever does. Finds the islands where a body gains. False when memory is
+   short. */
 bool islands_take_gain(Islands *islands, const ContactProblem *problem, ContactSolution *solution);

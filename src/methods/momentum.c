@@ -18,10 +18,9 @@
    is measured after blocks of 16, or of 8 where contacts slide or a stopping rule reads it, and in the end; its
    velocities are first computed anew from the impulses. If the residual exceeds twice the least, the island goes back
    to the solution that was best, and momentum restarts (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient
-   Schemes", 2015), with a beta that rises half as long as before, or it would take the same course for ever; longer again
-   with each look that finds no rise. An island
-   whose residual is not its least in the end goes back, too. Nothing here depends on the number of sweeps that follow:
-   more sweeps continue fewer.
+   Schemes", 2015), with a beta that rises half as long as before, or it would take the same course for ever; longer
+   again with each look that finds no rise. An island whose residual is not its least in the end goes back, too. Nothing
+   here depends on the number of sweeps that follow: more sweeps continue fewer.
 
    Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the first sweeps of an
    impact gain little. */

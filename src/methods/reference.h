@@ -87,9 +87,9 @@ void reference_free(Reference *reference);
    least energy. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, const ContactImpulse *start, Error *error);
 
-/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations; without
-   position correction unless push_out. `residual` is then the largest change by one more visit of a contact while all
-   others stay. */
+/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations;
+   without position correction unless push_out. `residual` is then the largest change by one more visit of a contact
+   while all others stay. */
 bool reference_solve_to(Reference *reference, const ContactProblem *problem, double tolerance, bool push_out, int most,
                         Error *error);
 

@@ -116,8 +116,8 @@ static void solve_changes(Reference *r) {
    Interior Point Method" (1992); Friedlander, Orban, "A Primal-Dual Regularized Interior-Point Method for Convex
    Quadratic Programs" (2012). */
 
-/* Of `calm`, the unit of speeds: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would
-   throw z, p, q about. */
+/* Of `calm`, the unit of speeds: gaps between the velocities and z, p, q that are rounding errors. Corrected, they
+   would throw z, p, q about. */
 static const double rounding = 1e-10;
 static const double inside = 0.5;        /* of the start: offset from the bounds, share of the scale */
 static const double bound_share = 0.995; /* of the way to the nearest bound that a step may go */

@@ -11,8 +11,8 @@
    w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close,
    no more. The arms of impulses stay those of the collision pass; s follows the poses.
 
-   With `keep` contacts stay, as in Box2D since March 2026. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It visits one contact after the other, not
-   four at a time.
+   With `keep` contacts stay, as in Box2D since March 2026. Left out are Box2D's bounds on speed, its continuous
+   collision, sleep and restitution. It visits one contact after the other, not four at a time.
 
    Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. Without
    `keep`, a stack of more than cbrt(7.84 c / (m g h)) boxes buckles as Euler's column does, whatever the substeps; a

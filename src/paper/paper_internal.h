@@ -262,8 +262,8 @@ typedef struct RowErrors {
 } RowErrors;
 
 /* network: NULL: none, the mean in its place. ranged: each output in its range over the training rows, as in
-   networks.csv. The paper does not define the accuracy of its gate (section 3: 90%): here all outputs of a right row are
-   within 5% of their range. False with error set when memory is short. */
+   networks.csv. The paper does not define the accuracy of its gate (section 3: 90%): here all outputs of a right row
+   are within 5% of their range. False with error set when memory is short. */
 bool row_errors_find(RowErrors *errors, const Network *network, const Dataset *dataset, int outputs, bool ranged,
                      Error *error);
 

@@ -194,8 +194,8 @@ static bool are_mixtures(const uint8_t *const *colours, int count, double roundi
     return true;
 }
 
-/* 4. The colour and the part that its widest channel tells are off by a level each at most; what both pictures show lies
-   between ends that each has rounded: half a level more. */
+/* 4. The colour and the part that its widest channel tells are off by a level each at most; what both pictures show
+   lies between ends that each has rounded: half a level more. */
 static bool keeps_colours(const EdgeRows *a, const EdgeRows *b, int x) {
     enum { WINDOW = 9 };
     const uint8_t *both[2 * WINDOW];

@@ -27,8 +27,8 @@
    4. If the colours of each window are mixtures of two, so are those of both together: a line of another colour has not
       moved.
 
-   Values within 2 + c / 16 of each other count as equal, in 4 within 2, of both windows together within 2.5. Exchanging the
-   pictures changes nothing.
+   Values within 2 + c / 16 of each other count as equal, in 4 within 2, of both windows together within 2.5. Exchanging
+   the pictures changes nothing.
 
    Fails: a line of less than two pixels that fades by less than 15% towards the colour around it looks like a line that
    became narrower, and passes; so does a faint mark along an edge of higher contrast. Where lines cross at less than 20

@@ -34,9 +34,9 @@ typedef struct ApprovalRequest {
    expected files whose actual file is missing, if the request says so: ERROR_INPUT, and nothing is changed, if it says
    nothing.
 
-   Everything is checked before anything is written: names must be plain names of .png, .npz and .csv files, and both files
-   must be regular files with the hashes in the report; otherwise ERROR_INPUT. Files are written atomically, in folders
-   that stay open; no link below the expected folder is followed. */
+   Everything is checked before anything is written: names must be plain names of .png, .npz and .csv files, and both
+   files must be regular files with the hashes in the report; otherwise ERROR_INPUT. Files are written atomically, in
+   folders that stay open; no link below the expected folder is followed. */
 bool approve(const ApprovalRequest *request, Approval *approval, Error *error);
 
 /* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere:

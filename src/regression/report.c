@@ -130,8 +130,8 @@ static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, 
         }
 }
 
-/* What traces do not state, but a picture needs: a step, and sizes. Bodies become squares, as many of which would fill a
-   quarter of a square as wide as what they span in all frames of the first run. */
+/* What traces do not state, but a picture needs: a step, and sizes. Bodies become squares, as many of which would fill
+   a quarter of a square as wide as what they span in all frames of the first run. */
 static void show_traces(Trajectory *const runs[SIDES]) {
     const Trajectory *first = runs[EXPECTED];
     Vec2 low = vec2(INFINITY, INFINITY), high = vec2(-INFINITY, -INFINITY);

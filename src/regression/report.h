@@ -61,9 +61,10 @@ typedef struct ReportLink {
     char text[REPORT_RUN_SIZE + PLAYER_LINK_SIZE];
 } ReportLink;
 
-/* Writes the page `name` into the folder: all frames of both runs, or of long ones those around `frame`. The link leads
-   to that frame and body. *bytes: of the page. There is no page of runs without a common moment, as their steps differ,
-   nor of hashes or of traces of other numbers of bodies. What a trace does not state is drawn as 1/60 s and as squares. */
+/* Writes the page `name` into the folder: all frames of both runs, or of long ones those around `frame`. The link
+   leads to that frame and body. *bytes: of the page. There is no page of runs without a common moment, as their steps
+   differ, nor of hashes or of traces of other numbers of bodies. What a trace does not state is drawn as 1/60 s and
+   as squares. */
 bool report_write_run(Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
                       ReportLink *link, size_t *bytes, Error *error);
 

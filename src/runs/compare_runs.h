@@ -51,8 +51,8 @@ typedef struct ComparedText {
 } ComparedText;
 ComparedText trajectory_compared(const Trajectory *a, const Trajectory *b);
 
-/* Equal bit by bit. 0 and -0 differ: the runs have computed differently. A body that exists in neither is equal. NaN is equal
-   to NaN. */
+/* Equal bit by bit. 0 and -0 differ: the runs have computed differently. A body that exists in neither is equal. NaN is
+   equal to NaN. */
 bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body);
 
 /* The same of two frames. */
@@ -138,9 +138,9 @@ typedef struct PoseTolerance {
 bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
                      TrajectoryParting *parting, Error *error);
 
-/* What kind of difference it is, in words that begin with one of: "frames" (an offset), "a body", "a hash", "not finite",
-   "x", "y", "angle" (mirrored, or in other units), "a mass", "whole turns", "what numbers do not show", "an order", "roundings",
-   "a step", "motion". Empty if no state differs. */
+/* What kind of difference it is, in words that begin with one of: "frames" (an offset), "a body", "a hash", "not
+   finite", "x", "y", "angle" (mirrored, or in other units), "a mass", "whole turns", "what numbers do not show", "an
+   order", "roundings", "a step", "motion". Empty if no state differs. */
 typedef struct PartingKind {
     char text[160];
 } PartingKind;

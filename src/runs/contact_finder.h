@@ -18,8 +18,8 @@ typedef struct ContactFinder {
 
 void contact_finder_free(ContactFinder *finder);
 
-/* Makes room in bounds and fixed, from which contact_finder_pairs() finds the pairs whose bounds overlap. ERROR_INPUT: too
-   many. */
+/* Makes room in bounds and fixed, from which contact_finder_pairs() finds the pairs whose bounds overlap. ERROR_INPUT:
+   too many. */
 bool contact_finder_reserve(ContactFinder *finder, int count, Error *error);
 bool contact_finder_pairs(ContactFinder *finder, int count, Error *error);
 

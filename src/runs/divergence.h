@@ -62,16 +62,16 @@ typedef struct Chaos {
 int chaos_body(const Trajectory *run, int diverged, int frame);
 
 /* Two runs are as near to each other as roundings keep them if in each frame they are no farther apart than the sum of
-   what CHAOS_ROUNDINGS roundings of each step before have grown to: each grows as the shift of all bodies by one rounding
-   did in as many steps. */
+   what CHAOS_ROUNDINGS roundings of each step before have grown to: each grows as the shift of all bodies by one
+   rounding did in as many steps. */
 #define CHAOS_ROUNDINGS 8.0 /* of a coordinate in a step */
 
 /* The first frame in which they are not, of as many as both have; -1: none. distance: m, NaN: farther than any. */
 int chaos_exceeded(const Chaos *chaos, const double *distance, int frames);
 
 /* Reads the scene at `path`, checks its hash against the run's, and runs `frames` frames with the run's method. `body`
-   must be dynamic; -1: each dynamic body is shifted by one
-   rounding in x, in turns to the right and to the left (in y, it would open and close contacts). ERROR_INPUT for another scene or an unavailable method. */
+   must be dynamic; -1: each dynamic body is shifted by one rounding in x, in turns to the right and to the left (in y,
+   it would open and close contacts). ERROR_INPUT for another scene or an unavailable method. */
 bool chaos_run(Chaos *chaos, const char *path, const Trajectory *run, int body, int frames, const Progress *progress,
                Error *error);
 void chaos_free(Chaos *chaos);

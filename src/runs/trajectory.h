@@ -69,11 +69,10 @@ typedef struct Trajectory {
 } Trajectory;
 
 /* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], mass[N],
-   body_name[N,32], position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N] (these four in float64 if the run
-   has it), contact_start[T+1],
-   contact_bodies[C,2], contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program,
-   verdict, verdict_frame, verdict_body. Without the masses, the names, the velocities, the contacts, the program or the
-   verdict where they are unknown. */
+   body_name[N,32], position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N] (these four in float64 if the
+   run has it), contact_start[T+1], contact_bodies[C,2], contact_feature[C], contact_point[C,2], contact_normal[C,2],
+   contact_impulse[C,2], program, verdict, verdict_frame, verdict_body. Without the masses, the names, the velocities,
+   the contacts, the program or the verdict where they are unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the

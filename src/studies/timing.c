@@ -57,8 +57,8 @@ static bool metered_step(Stepper *stepper, World *world, Step step, int64_t over
     return true;
 }
 
-/* From a step on to the last one, or to the end of the phase after the impact; ends early, too, if the state becomes NaN
-   or infinite, or a program fails: *ended. */
+/* From a step on to the last one, or to the end of the phase after the impact; ends early, too, if the state becomes
+   NaN or infinite, or a program fails: *ended. */
 static bool run_closed(Stepper *stepper, const Scene *launched, World *world, int first, int last, int64_t overhead,
                        StepLog *log, bool *ended, Error *error) {
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};

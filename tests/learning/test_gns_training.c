@@ -71,8 +71,8 @@ TEST(noise_is_trained_on) {
     assert_memory_not_equal(some.parameters, none.parameters, (size_t)some.layout.parameters * sizeof(float));
 }
 
-/* As many batches are scored as are trained on here, by weights that do not move: of the same examples both errors would
-   be one. */
+/* As many batches are scored as are trained on here, by weights that do not move: of the same examples both errors
+   would be one. */
 TEST(held_out_examples_are_others) {
     OWN(GnsNet) net;
     GnsTraining training = small();

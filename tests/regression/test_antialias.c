@@ -351,8 +351,8 @@ TEST(which_picture_is_expected_does_not_matter) {
     }
 }
 
-/* Of an edge in a browser that moved by a part of a pixel, around a pixel with 1% of the other colour: (38, 64, 215) was
-   (38, 65, 217). */
+/* Of an edge in a browser that moved by a part of a pixel, around a pixel with 1% of the other colour: (38, 64, 215)
+   was (38, 65, 217). */
 TEST(faint_ends_of_edges_may_change) {
     enum { WIDTH = 7 };
     static const uint32_t pictures[2][WIDTH * WIDTH] = {

@@ -243,7 +243,8 @@ TEST(a_rest_is_twice_as_long_as_the_stays_before) {
     }
 }
 
-/* Whether a box that turns after a while had a carrier: one below the gap. It goes sideways at some m/s at the start. */
+/* Whether a box that turns after a while had a carrier: one below the gap. It goes sideways at some m/s at the
+   start. */
 static bool is_carried(float gap, float speed) {
     Trial trial = trial_on_ground();
     Body *box = add_box(&trial, 0, 0.5f + gap);

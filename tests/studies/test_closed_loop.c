@@ -60,8 +60,8 @@ TEST(the_deepest_contact_is_that_of_any_launch) {
     for (int i = 0; i < 2; i++) run_log_free(&converged[i]);
 }
 
-/* The energy that a late bomb brings is not counted as created by the method. A light one brings nothing, and comes after
-   the heavy box has lost its height of 3.5 m. */
+/* The energy that a late bomb brings is not counted as created by the method. A light one brings nothing, and comes
+   after the heavy box has lost its height of 3.5 m. */
 TEST(energy_counts_from_the_bomb_on) {
     for (int light = 0; light < 2; light++) {
         OWN(Scene) *scene = scene_named("single");
