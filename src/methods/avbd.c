@@ -381,7 +381,7 @@ const SteppingKind stepping_avbd = {
                     .settings = settings,
                     .own_settings = "k=10",
                     .no_push_out = true,
-                    .chart = METHOD_RUNS("k=2,beta=1e9", "k=2,beta=1e7", "k=10", "k=20", "k=50"),
+                    .chart = METHOD_RUNS("k=2", "k=2,beta=1e9", "k=2,beta=1e6,gamma=0.95", "k=10", "k=50,gamma=0.95"),
                     .chart_quick = METHOD_RUNS("k=10"),
                     .stability = METHOD_NO_RUNS},
     .create = create,

@@ -73,8 +73,9 @@ const ContactSolverKind solver_closed_form = {
                     .summary = "complementarity-free contact: each contact answers once, as a damped spring",
                     .caption = "complementarity-free contact",
                     .settings = settings,
-                    .chart = METHOD_RUNS("", "damping=0.6", "stiffness=0,damping=1", "stiffness=0.5,damping=0.02",
-                                         "stiffness=1,damping=0.5", "stiffness=1,damping=1")},
+                    .chart = METHOD_RUNS("", "stiffness=0,damping=2", "stiffness=0.5,damping=0.02",
+                                         "stiffness=0.5,damping=0.2", "stiffness=0.25,damping=0.5",
+                                         "stiffness=0.25,damping=2")},
     .create = create,
     .solve = solve,
     .destroy = free};

@@ -316,7 +316,7 @@ const ContactSolverKind solver_engine = {
                     .converges = "k=20000,warm=off",
                     .lite_contacts = true,
                     .chart =
-                        METHOD_RUNS("k=5", "", "k=50", "k=100", "k=2,near=0.1,more=400", "k=2,near=0.001,more=10000"),
+                        METHOD_RUNS("k=5", "", "k=50", "k=100", "k=1,near=0.1,more=10000", "k=1,near=0.001,more=10000"),
                     .chart_quick = METHOD_RUNS("k=4", "", "k=50"),
                     .stability = METHOD_RUNS("k=4", "", "k=50"),
                     .stability_place = 1},
