@@ -143,6 +143,12 @@ const float *live_velocities(const LiveRun *run) { return &run->trajectory->velo
 const float *live_spins(const LiveRun *run) { return run->trajectory->angular_velocity; }
 const void *live_contacts(const LiveRun *run) { return run->trajectory->contacts; }
 
+int live_contact_mode(const LiveRun *run, int contact) {
+    int step = run->frame;
+    while (live_contact_start(run, step) > contact) step--;
+    return (int)trajectory_mode(run->trajectory, step, contact);
+}
+
 /* contact_start is filled up to the last step that had contacts. */
 int live_contact_start(const LiveRun *run, int frame) {
     const int last = run->trajectory->last_step + 1;

@@ -106,6 +106,9 @@ LIVE_EXPORT(live_spins) const float *live_spins(const LiveRun *run);
 LIVE_EXPORT(live_contact_start) int live_contact_start(const LiveRun *run, int frame);
 LIVE_EXPORT(live_contacts) const void *live_contacts(const LiveRun *run);
 
+/* What a contact of the array does in its step: 0 open, 1 sticks, 2 slips (ContactMode). */
+LIVE_EXPORT(live_contact_mode) int live_contact_mode(const LiveRun *run, int contact);
+
 /* The hash of a frame that `twinbox simulate` prints of the last one, and writes with --hash. */
 LIVE_EXPORT(live_hash) uint64_t live_hash(const LiveRun *run, int frame);
 

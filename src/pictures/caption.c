@@ -8,6 +8,7 @@
 #include "pictures/picture.h"
 #include "pixels/gl.h"
 #include "pixels/type.h"
+#include "runs/compare_runs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -280,6 +281,23 @@ static bool distances_below(const Picture *picture) {
     return false;
 }
 
+/* Whether captions have a line with the number of contacts that are as the reference's. */
+static bool counts_modes(const Picture *picture) {
+    return picture->mode_base >= 0 && picture->look.compare != LOOK_OVERLAY;
+}
+
+static void draw_count(const Picture *picture, int run, Moment moment, int x, int right, int baseline,
+                       Drawing *drawing) {
+    const Trajectory *own = picture->runs[run], *base = picture->runs[picture->mode_base];
+    const Font *font = &picture->layout.method;
+    char text[96];
+    if (run == picture->mode_base) return;
+    const ModeCount count = trajectory_same_modes(own, pose_step(own, moment), base, pose_step(base, moment));
+    snprintf(text, sizeof text, "%d of %d contacts as the reference", count.same, count.of);
+    if (font_width(font, text) > right - x) font = &picture->layout.axis;
+    font_add_fitting(drawing, font, text, x, baseline, right - x, picture->theme->ink_soft);
+}
+
 static int distance_beside(const Picture *picture, int run) {
     return distances_below(picture) ? 0 : distance_width(picture, run);
 }
@@ -389,7 +407,7 @@ int caption_lines(const Picture *picture) {
         const int names = lay_out_name(picture, picture_run(picture, panel)).text.count;
         if (names > most) most = names < TEXT_LINES_MAX ? names : TEXT_LINES_MAX;
     }
-    return most + (notes.font != NULL && !notes.beside) + distances_below(picture);
+    return most + (notes.font != NULL && !notes.beside) + distances_below(picture) + counts_modes(picture);
 }
 
 bool captions_fit(const Picture *picture, Error *error) {
@@ -488,6 +506,10 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
     const bool below = distances_below(picture);
     Line beside = {rect->left + name_width(picture, run, &name), rect->right, baseline},
          lowest = {below ? x : rect->right, rect->right, rect->top - layout->title_rise};
+    if (counts_modes(picture)) {
+        draw_count(picture, run, moment, x, rect->right, lowest.baseline, drawing);
+        lowest.baseline -= layout->caption_pitch;
+    }
     if (notes.font != NULL) {
         char text[4 * CAPTION_TEXT_SIZE];
         notes_of(picture, run, text);

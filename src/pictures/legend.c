@@ -49,7 +49,8 @@ typedef enum Entry {
     ENTRY_CONTACT,
     ENTRY_IMPULSE,
     ENTRY_VELOCITY,
-    ENTRY_HEADS
+    ENTRY_HEADS,
+    ENTRY_MODES
 } Entry;
 
 /* A sample, unless the entry is text alone, and what it means. */
@@ -128,6 +129,24 @@ static void add(Row *row, Entry entry) {
         add_arrow(row, scales->legend_velocity * scales->velocity, theme->velocity, scales->legend_velocity, "m/s");
         break;
     case ENTRY_HEADS: end_entry(row, ARROW_NOTE); break;
+    case ENTRY_MODES: {
+        static const char *const words[CONTACT_MODES + 1] = {"open", "sticks", "slips", "not as the reference"};
+        const double radius = fmax(marks_dot_radius(picture), LEGEND_DOT * em);
+        for (int i = 0; i < CONTACT_MODES + (picture->mode_base >= 0); i++) {
+            const double room = radius * (i == CONTACT_MODES ? MODE_WRONG : MODE_SIDE * MODE_BAR) + MODE_HALO;
+            const ModeMark mark = {.at = {row->x + room, row->middle},
+                                   .cosine = 1,
+                                   .radius = radius,
+                                   .mode = i < CONTACT_MODES ? (ContactMode)i : CONTACT_STICKS,
+                                   .wrong = i == CONTACT_MODES};
+            marks_draw_mode(picture, &mark, &row->clip, drawing);
+            row->x += (int)ceil(2 * room) + em / 2;
+            add_text(row, words[i]);
+            row->x += em;
+        }
+        end_entry(row, "");
+        break;
+    }
     }
 }
 
@@ -169,6 +188,7 @@ static int place_entries(const Picture *picture, Drawing *drawing) {
     if (look->show & SHOW_IMPULSES) place(&row, ENTRY_IMPULSE);
     if (look->show & SHOW_VELOCITIES) place(&row, ENTRY_VELOCITY);
     if (look->show & (SHOW_IMPULSES | SHOW_VELOCITIES)) place(&row, ENTRY_HEADS);
+    if (look->show & SHOW_MODES) place(&row, ENTRY_MODES);
     return row.rows;
 }
 

@@ -31,10 +31,12 @@ static bool check_known(const RenderLook *look, const Trajectory *run, int numbe
     for (int i = 0; i < SHOW_COUNT; i++) {
         if ((look->show >> i & 1) == 0) continue;
         const ShowMark *mark = &show_marks[i];
-        if ((strcmp(mark->needs, "velocities") == 0 && run->no_velocities) ||
-            (strcmp(mark->needs, "contacts") == 0 && run->no_contacts))
+        const char *lacks = strstr(mark->needs, "contacts") != NULL && run->no_contacts       ? "contacts"
+                            : strstr(mark->needs, "velocities") != NULL && run->no_velocities ? "velocities"
+                                                                                              : NULL;
+        if (lacks != NULL)
             return error_input(error, "render", "'%s' cannot be shown: run %d (%s) has no %s", mark->name, number,
-                               run->method, mark->needs);
+                               run->method, lacks);
     }
     return true;
 }
@@ -76,6 +78,7 @@ static const Theme light = {
     .ground_line = GROUND_LINE,
     .impulse = 0x10161F,
     .velocity = 0xA3005C,
+    .slips = 0xE8590C,
     .event = 0x8A94A3,
     .ghost_is_band = false,
     .bomb = BOMB_COLORS,
@@ -95,6 +98,7 @@ static const Theme dark = {
     .ground_line = 0x93A0B1,
     .impulse = 0xF7F9FB,
     .velocity = 0xFF8AC4,
+    .slips = 0xFF8A1F,
     .event = 0x77849A,
     .ghost_is_band = true,
     .bomb = {0xCC3620, 0x3D0D03, 0xFFF1EA},

@@ -7,6 +7,7 @@
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <math.h>
@@ -177,13 +178,49 @@ static void draw_velocities(const Picture *picture, int panel, int run, Moment m
     }
 }
 
-/* The contacts of the next step, which result from these poses; in the last frame, those of the last step. An impulse
-   is that on body b at the contact point; body a receives the opposite. */
+/* A ring is open, a square sticks, a bar along the surface slips; around what the reference's contact does not do, a
+   circle. The same in player/marks.js. */
+void marks_draw_mode(const Picture *picture, const ModeMark *mark, const Rect *clip, Drawing *drawing) {
+    const Theme *theme = picture->theme;
+    const double side = MODE_SIDE * mark->radius, bar = mark->mode == CONTACT_SLIPS ? MODE_BAR : 1;
+    Shape shape = {.x = mark->at.x,
+                   .y = mark->at.y,
+                   .half_width = bar * side + MODE_HALO,
+                   .half_height = side / bar + MODE_HALO,
+                   .cosine = mark->cosine,
+                   .sine = mark->sine,
+                   .outline = MODE_HALO,
+                   .fill = mark->mode == CONTACT_SLIPS ? theme->slips : theme->impulse,
+                   .line = theme->panel};
+    if (mark->wrong) stroke_dot(drawing, mark->at, MODE_WRONG * mark->radius, theme->panel, theme->impulse, clip);
+    if (mark->mode == CONTACT_OPEN)
+        stroke_dot(drawing, mark->at, mark->radius, theme->panel, theme->impulse, clip);
+    else
+        drawing_add_shape(drawing, &shape, clip);
+}
+
+static void draw_modes(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
+    const Trajectory *trajectory = picture->runs[run];
+    const Trajectory *base = picture->mode_base >= 0 ? picture->runs[picture->mode_base] : NULL;
+    const int step = pose_step(trajectory, moment);
+    for (int64_t i = trajectory->contact_start[step]; i < trajectory->contact_start[step + 1]; i++) {
+        const TrajectoryContact *contact = &trajectory->contacts[i];
+        const ModeMark mark = {.at = panel_point(picture, panel, (double)contact->point.x, (double)contact->point.y),
+                               .cosine = (double)contact->normal.y,
+                               .sine = -(double)contact->normal.x,
+                               .radius = marks_dot_radius(picture),
+                               .mode = trajectory_mode(trajectory, step, i),
+                               .wrong = base != NULL &&
+                                        !trajectory_same_mode(trajectory, step, i, base, pose_step(base, moment))};
+        marks_draw_mode(picture, &mark, &picture->layout.panels[panel], drawing);
+    }
+}
+
+/* An impulse is that on body b at the contact point; body a receives the opposite. */
 static void draw_contacts(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
     const Trajectory *trajectory = picture->runs[run];
     const Theme *theme = picture->theme;
-    moment = pose_moment(trajectory, moment);
-    int step = moment.frame + 1 < trajectory->frames ? moment.frame + 1 : moment.frame;
+    const int step = pose_step(trajectory, moment);
     int64_t first = trajectory->contact_start[step], end = trajectory->contact_start[step + 1];
     for (int64_t i = first; i < end && (picture->look.show & SHOW_IMPULSES) != 0; i++) {
         const TrajectoryContact *contact = &trajectory->contacts[i];
@@ -250,5 +287,6 @@ void marks_draw_above(const Picture *picture, int panel, Moment moment, Drawing 
     for (int run = first; run < runs_end(picture, first); run++) {
         if (picture->look.show & SHOW_VELOCITIES) draw_velocities(picture, panel, run, moment, drawing);
         if (picture->look.show & (SHOW_CONTACTS | SHOW_IMPULSES)) draw_contacts(picture, panel, run, moment, drawing);
+        if (picture->look.show & SHOW_MODES) draw_modes(picture, panel, run, moment, drawing);
     }
 }

@@ -245,7 +245,7 @@ bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, in
                            RENDER_SIDE_MIN, RENDER_SIDE_MAX, width, height);
     if (count < 1 || count > RENDER_PANELS_MAX)
         return error_input(error, "render", "the number of panels must be 1 to %d (got %d)", RENDER_PANELS_MAX, count);
-    *picture = (Picture){.count = count, .theme = theme_get(LOOK_LIGHT)};
+    *picture = (Picture){.count = count, .theme = theme_get(LOOK_LIGHT), .mode_base = -1};
     for (int i = 0; i < count; i++) {
         if (runs[i]->dt != runs[0]->dt)
             return error_input(error, "render",
@@ -296,6 +296,7 @@ bool picture_apply_options(Picture *picture, const RenderOptions *options, Error
     }
     if (!look_check(&picture->look, picture->runs, picture->count, error)) return false;
     picture->events = events_find(picture->runs, picture->count);
+    if (picture->look.show & SHOW_MODES) picture->mode_base = trajectory_reference(picture->runs, picture->count);
 
     /* The entries of the legend depend on the scales, and the scales on the room that its rows leave. So more rows may
        need fewer: then the scales stay. */

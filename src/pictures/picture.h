@@ -49,17 +49,18 @@ typedef enum LookTheme { LOOK_LIGHT, LOOK_DARK } LookTheme;
 typedef enum LookLabels { LOOK_NO_LABELS, LOOK_NUMBERS, LOOK_MASSES, LOOK_NAMES } LookLabels;
 
 /* What --show and the check boxes of a page add to the bodies, a line each: name, what --help says after it, what it
-   needs ("others": a second run; "contacts", "velocities": runs that have them), and the script in src/pictures/player
-   that draws it in a page; NULL: a page has no such box. A new one has its line at the end, its entry in legend.c and
+   needs ("others": a second run; else runs that have "contacts", "velocities" or both), and the script in
+   src/pictures/player that draws it in a page; NULL: a page has no such box. A new one has its line at the end, its entry in legend.c and
    player/legend.js, and is drawn where the others are: in marks.c, below or above the bodies, and in its script. */
-#define SHOW_MARKS(MARK)                                                          \
-    MARK(GHOSTS, "ghosts", " (outlines of the first run)", "others", "layout.js") \
-    MARK(DISTANCE, "distance", " (colours)", "others", "boxes.js")                \
-    MARK(TRAILS, "trails", "", "", "picture.js")                                  \
-    MARK(CONTACTS, "contacts", "", "contacts", "marks.js")                        \
-    MARK(IMPULSES, "impulses", "", "contacts", "marks.js")                        \
-    MARK(VELOCITIES, "velocities", " (arrows)", "velocities", "marks.js")         \
-    MARK(TIMELINE, "timeline", " (distance from the first run over time)", "others", NULL)
+#define SHOW_MARKS(MARK)                                                                   \
+    MARK(GHOSTS, "ghosts", " (outlines of the first run)", "others", "layout.js")          \
+    MARK(DISTANCE, "distance", " (colours)", "others", "boxes.js")                         \
+    MARK(TRAILS, "trails", "", "", "picture.js")                                           \
+    MARK(CONTACTS, "contacts", "", "contacts", "marks.js")                                 \
+    MARK(IMPULSES, "impulses", "", "contacts", "marks.js")                                 \
+    MARK(VELOCITIES, "velocities", " (arrows)", "velocities", "marks.js")                  \
+    MARK(TIMELINE, "timeline", " (distance from the first run over time)", "others", NULL) \
+    MARK(MODES, "modes", " (of contacts)", "contacts and velocities", "marks.js")
 
 /* SHOW_GHOSTS, ...: the bits of `show`, each at the place of its line. */
 #define SHOW_PLACE(NAME, ...) SHOW_PLACE_##NAME,
@@ -107,6 +108,7 @@ static const BodyColors BOMB = BOMB_COLORS;
 typedef struct Theme {
     uint32_t page, panel, frame, grid, grid_strong, ink, ink_soft, ground, ground_line;
     uint32_t impulse, velocity; /* arrows */
+    uint32_t slips;             /* contacts that slide */
     uint32_t event;             /* event lines in the timeline */
     BodyColors bomb;
     bool ghost_is_band;         /* outlines of a run over others have the colour of its bands, else of its boxes */
@@ -304,6 +306,7 @@ typedef struct Picture {
     float *curves; /* [count][curve_points], m: the largest distance from the first run in each interval; NaN after
                       the run's end. NULL without a timeline. */
     int curve_points;
+    int mode_base; /* the run with which modes of contacts are compared; -1: none */
     int card_base; /* the run that the end card compares with */
     CardRow card_rows[RENDER_PANELS_MAX];
 } Picture;

@@ -39,6 +39,13 @@ static inline Pose pose_at(const Trajectory *run, Moment moment, int body) {
                   pose.angle + fraction * (next.angle - pose.angle)};
 }
 
+/* The step whose contacts a picture shows: they result from the poses shown; in the last frame, those of the last
+   step. */
+static inline int pose_step(const Trajectory *run, Moment moment) {
+    moment = pose_moment(run, moment);
+    return moment.frame + 1 < run->frames ? moment.frame + 1 : moment.frame;
+}
+
 /* m. sqrt is correctly rounded on every machine; hypot is not. */
 static inline double pose_distance(Pose a, Pose b) {
     double x = a.x - b.x, y = a.y - b.y;
@@ -137,6 +144,16 @@ DashedLine approach_line(const Picture *picture);
 double marks_dot_radius(const Picture *picture);
 double marks_line_thickness(const Picture *picture);
 ArrowStyle marks_arrow_style(const Picture *picture, uint32_t color);
+
+/* The mark of a contact that does this; its tangent has this cosine and sine. `wrong`: the reference's does
+   something else. */
+typedef struct ModeMark {
+    Point at;
+    double cosine, sine, radius; /* pixels: of a contact's dot */
+    ContactMode mode;
+    bool wrong;
+} ModeMark;
+void marks_draw_mode(const Picture *picture, const ModeMark *mark, const Rect *clip, Drawing *drawing);
 
 /* The grid of panels in which the scene is largest, and their camera. */
 

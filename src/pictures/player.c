@@ -86,6 +86,7 @@ static void put_theme(JsonWriter *json, const char *key, const Theme *theme) {
     colour_put(json, "ground_line", theme->ground_line);
     colour_put(json, "impulse", theme->impulse);
     colour_put(json, "velocity", theme->velocity);
+    colour_put(json, "slips", theme->slips);
     colour_put(json, "event", theme->event);
     colour_put(json, "label_dark", INK);
     colour_put(json, "label_light", PANEL);

@@ -82,7 +82,7 @@ static bool state_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrames 
 
 enum {
     KEYS = 3,          /* a, b, feature */
-    VALUES = 6,        /* point, normal, impulses */
+    VALUES = 7,        /* point, normal, impulses, mode */
     SEARCH = 16,       /* contacts of the frame before that may be the same one, after the last that was */
     FRACTION_BITS = 5, /* of a logarithm: 32 steps per octave */
     MANTISSA_BITS = 23,
@@ -111,7 +111,8 @@ static int32_t round_impulse(float impulse, float unit) {
     return impulse < 0 ? -steps : steps;
 }
 
-static Rounded round_contact(const TrajectoryContact *contact, Vec2 center, const ContactUnits *units) {
+static Rounded round_contact(const TrajectoryContact *contact, ContactMode mode, Vec2 center,
+                             const ContactUnits *units) {
     Rounded rounded = {.keys = {(uint32_t)contact->a, (uint32_t)contact->b, contact->feature}};
     const double unit = (double)units->length;
     if (!isfinite(center.x) || !isfinite(center.y)) center = vec2(0, 0);
@@ -122,6 +123,7 @@ static Rounded round_contact(const TrajectoryContact *contact, Vec2 center, cons
     rounded.values[4] = round_impulse(contact->normal_impulse, units->impulse);
     rounded.values[5] = round_to(SHARE * (double)contact->tangent_impulse /
                                  (fabs((double)contact->normal_impulse) + (double)units->impulse));
+    rounded.values[6] = (int32_t)mode;
     return rounded;
 }
 
@@ -176,7 +178,8 @@ static bool contact_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrame
         const Vec2 *centers = run->position + (size_t)player_frame(frames, stored) * (size_t)run->bodies;
         for (size_t i = 0; i < count; i++) {
             const TrajectoryContact *contact = &run->contacts[first + i];
-            now[i] = round_contact(contact, centers[contact->b], units);
+            const ContactMode mode = trajectory_mode(run, step, (int64_t)(first + i));
+            now[i] = round_contact(contact, mode, centers[contact->b], units);
         }
         bytes_put(planes, length, k, (uint32_t)count);
         put_frame(planes + 4 * length, total, at, now, count, before, before_count);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where two trajectories differ, and why they part. */
 #include "base/base.h"
+#include "methods/methods.h"
 #include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
@@ -253,6 +254,45 @@ static bool contact_difference(const Trajectory *a, const Trajectory *b, int ste
     free(of_a.items);
     free(of_b.items);
     return ok;
+}
+
+int trajectory_reference(const Trajectory *const *runs, int count) {
+    int reference = -1;
+    char what[256];
+    for (int i = count - 1; i >= 0; i--) {
+        const MethodDescription *method = method_describe(runs[i]->method);
+        if (method != NULL && method->role == METHOD_REFERENCE) reference = i;
+    }
+    for (int i = 0; i < count && reference >= 0; i++)
+        if (trajectory_different_worlds(runs[reference], runs[i], what, sizeof what)) return -1;
+    return count > 1 ? reference : -1;
+}
+
+/* The place of a contact in a step of another run, -1: nowhere. The order of contacts changes little. */
+static int64_t find_contact(const Trajectory *run, int step, const TrajectoryContact *like, int64_t from) {
+    const int64_t first = run->contact_start[step], count = run->contact_start[step + 1] - first;
+    for (int64_t k = 0; k < count; k++) {
+        const int64_t at = first + (from + k) % count;
+        if (order_keys(&run->contacts[at], like) == 0) return at;
+    }
+    return -1;
+}
+
+bool trajectory_same_mode(const Trajectory *a, int step_a, int64_t contact, const Trajectory *b, int step_b) {
+    const int64_t other = find_contact(b, step_b, &a->contacts[contact], contact - a->contact_start[step_a]);
+    return trajectory_mode(a, step_a, contact) == (other < 0 ? CONTACT_OPEN : trajectory_mode(b, step_b, other));
+}
+
+ModeCount trajectory_same_modes(const Trajectory *a, int step_a, const Trajectory *b, int step_b) {
+    ModeCount count = {0, 0};
+    for (int64_t i = a->contact_start[step_a]; i < a->contact_start[step_a + 1]; i++, count.of++)
+        count.same += trajectory_same_mode(a, step_a, i, b, step_b);
+    for (int64_t i = b->contact_start[step_b]; i < b->contact_start[step_b + 1]; i++) {
+        if (find_contact(a, step_a, &b->contacts[i], i - b->contact_start[step_b]) >= 0) continue;
+        count.of++;
+        count.same += trajectory_mode(b, step_b, i) == CONTACT_OPEN;
+    }
+    return count;
 }
 
 /* NaN is within no tolerance, nor is a hash. */

@@ -76,6 +76,21 @@ bool trajectory_different_worlds(const Trajectory *a, const Trajectory *b, char 
 bool trajectory_different_bodies(const Trajectory *a, const Trajectory *b, char *what, size_t size);
 bool trajectory_different_steps(const Trajectory *a, const Trajectory *b);
 
+/* Modes of contacts (trajectory.h) in two runs of one world. A contact is known by its bodies and feature, and where a
+   run does not have it, it is open. */
+
+/* The first run of the converged method, if all are runs of its world; -1: none, or nothing to compare it with. */
+int trajectory_reference(const Trajectory *const *runs, int count);
+
+/* Whether a contact of the step of `a`, by its index, has the same mode in the step of `b`. */
+bool trajectory_same_mode(const Trajectory *a, int step_a, int64_t contact, const Trajectory *b, int step_b);
+
+/* Of the contacts that either run has. */
+typedef struct ModeCount {
+    int same, of;
+} ModeCount;
+ModeCount trajectory_same_modes(const Trajectory *a, int step_a, const Trajectory *b, int step_b);
+
 /* Why two trajectories diverge: the first frame in which any bit differs, and the step that leads to it.
 
    Contacts of step k follow from the poses of frame k - 1. If all states of frame k - 1 are equal, so are the contacts,

@@ -163,6 +163,21 @@ int trajectory_impact(const Trajectory *trajectory) {
     return -1;
 }
 
+/* The velocity after a step of the body's point that was at `point` before it. */
+static Vec2 velocity_at(const Trajectory *trajectory, int step, int body, Vec2 point) {
+    const size_t before = trajectory_at(trajectory, step - 1, body), after = trajectory_at(trajectory, step, body);
+    const Vec2 arm = vec2_sub(point, trajectory->position[before]);
+    return vec2_add(trajectory->velocity[after], scalar_cross_vec2(trajectory->angular_velocity[after], arm));
+}
+
+ContactMode trajectory_mode(const Trajectory *trajectory, int step, int64_t contact) {
+    const TrajectoryContact *touched = &trajectory->contacts[contact];
+    if (!(touched->normal_impulse > 0)) return CONTACT_OPEN;
+    const Vec2 sliding = vec2_sub(velocity_at(trajectory, step, touched->b, touched->point),
+                                  velocity_at(trajectory, step, touched->a, touched->point));
+    return fabs((double)vec2_cross(sliding, touched->normal)) > CONTACT_SLIDING ? CONTACT_SLIPS : CONTACT_STICKS;
+}
+
 enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
 
 /* Without the folders of networks and programs, so that runs of two machines have the same names. */

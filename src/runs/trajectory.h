@@ -108,6 +108,17 @@ bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 /* The first step in which the bomb touches a dynamic body; -1: none. */
 int trajectory_impact(const Trajectory *trajectory);
 
+/* What a contact does in a step: it does not push; or it pushes, and its bodies do not slide along it; or they slide. Its
+   normal impulse and the velocities after the step decide, alike for every method. Runs have no friction, and none is
+   needed: what slides is at the cone's bound, and what does not slide sticks, also at the bound. */
+typedef enum ContactMode { CONTACT_OPEN, CONTACT_STICKS, CONTACT_SLIPS, CONTACT_MODES } ContactMode;
+
+/* m/s: slower is creep, which methods leave that do not converge. */
+#define CONTACT_SLIDING 0.01
+
+/* The mode of a contact of the step, by its index in `contacts`. */
+ContactMode trajectory_mode(const Trajectory *trajectory, int step, int64_t contact);
+
 /* True if the run states the body in this frame: of a trace, also as NaN; false beyond its frames and bodies. */
 bool trajectory_there(const Trajectory *trajectory, int frame, int body);
 

@@ -64,7 +64,8 @@ function lay_captions(width) {
     const beside = fonts.find(font => every(each => caption_width(each, font, apart) + gap + out <= width));
     const below = !beside && fonts.find(font =>
       every(each => swatch_side(title) + gap + ceil(runs[each].note_ems * font.em) <= width));
-    return {beside, below, apart, lines: 1 + (below ? 1 : 0) + (apart ? 1 : 0), at: [{x: 0, line: 0}]};
+    const counts = mode_base() >= 0 ? 1 : 0;
+    return {beside, below, apart, counts, lines: 1 + (below ? 1 : 0) + (apart ? 1 : 0) + counts, at: [{x: 0, line: 0}]};
   }
   const flow = beside => {
     let x = 0, line = 0;
@@ -103,11 +104,13 @@ function draw_caption(run, i) {
   const most = overlay ? min(planned, room_of_name) : room_of_name; /* in an overlay the next caption is beside it */
   const font = min(planned, text_width(title, name)) <= most ? title : axis;
   let next = start + min(most, text_width(font, name)) + gap, right = end, free = start;
+  const low = here.top - lay.rise - (captions.counts ? lay.line : 0), count = captions.counts && run !== mode_base();
   draw_swatch(run, i > 0, left, baseline, swatch_side(title));
+  if (count) write(method, fitting(method, mode_count(run), end - start), start, here.top - lay.rise);
   write(font, fitting(font, name, most / LEAST_WIDTH), start, baseline, look.ink, most);
   if (distance_width(run) > 0) {
     const {width, draw} = distance_item(method, "distance ", largest(run, now));
-    if (captions.apart) draw(start, here.top - lay.rise);
+    if (captions.apart) draw(start, low);
     else draw(overlay ? next : end - width, baseline);
     if (overlay) next += distance_width(run);
     else if (captions.apart) free = start + distance_width(run);
@@ -120,7 +123,7 @@ function draw_caption(run, i) {
   } else if (captions.below) write(captions.below, note, start, baseline + lay.line, look.ink_soft, end - start);
   const state = overlay ? "" : state_of(run), room = text_width(method, state);
   if (state && room <= right - next) write(method, state, right - room, baseline);
-  else if (state && captions.apart && room <= right - free) write(method, state, right - room, here.top - lay.rise);
+  else if (state && captions.apart && room <= right - free) write(method, state, right - room, low);
   else if (state) { /* in the panel, on its colour: what cannot be seen must be stated */
     const wide = text_width(axis, state), x = end - gap - wide, y = here.top + gap;
     bar(x - 2, y, wide + 4, axis.em + 4, look.panel);

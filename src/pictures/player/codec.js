@@ -2,7 +2,7 @@
    of src/CMakeLists.txt. */
 const data = JSON.parse(document.getElementById("data").textContent);
 const COMPONENTS = ["vx", "vy", "omega", "x", "y", "angle"], POSES = 3;
-const CONTACT_KEYS = 3, CONTACT_VALUES = 6, SEARCH = 16, SHARE = 64;
+const CONTACT_KEYS = 3, CONTACT_VALUES = 7, SEARCH = 16, SHARE = 64;
 const stored_dt = data.dt; /* that of live runs may change */
 const HASH_START = [0x14650FB0, 0x739D0383]; /* FNV-1a 64: high and low half; the prime is 2^40 + 0x1B3 */
 
@@ -14,7 +14,7 @@ function make_states(run, frames, bodies) {
     bits[name] = new Uint32Array(run[name].buffer); /* a float that is copied as a number may lose the bits of a NaN */
   }
   run.x.fill(NaN); /* a body that is not decoded yet is not there */
-  return Object.assign(run, {bits, frames, bodies, lists: [], loads: [], list_loads: [], done: []});
+  return Object.assign(run, {bits, frames, bodies, lists: [], modes: [], loads: [], list_loads: [], done: []});
 }
 
 const pairs = numbers => Array.from({length: numbers.length / 2}, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
@@ -103,10 +103,10 @@ function decode_contacts(run, bytes, begin, length) {
   }
 }
 
-function contact_of(run, [a, b, , x, y, nx, ny, steps, share], center) {
+function contact_of(run, [a, b, feature, x, y, nx, ny, steps, share, mode], center) {
   const normal = impulse_of(steps), tangent = share / SHARE * (Math.abs(normal) + data.units.impulse);
   const unit = data.units.length, cx = run.x[center + b], cy = run.y[center + b], length = Math.hypot(nx, ny) || 1;
-  return {a, b, x: x * unit + (Number.isFinite(cx) ? cx : 0), y: y * unit + (Number.isFinite(cy) ? cy : 0),
+  return {a, b, feature, mode, x: x * unit + (Number.isFinite(cx) ? cx : 0), y: y * unit + (Number.isFinite(cy) ? cy : 0),
     nx: nx / length, ny: ny / length, normal, tangent};
 }
 
@@ -126,7 +126,8 @@ function chunks_of(run, frame) {
 }
 
 /* Contacts are several times as large as states: those of all runs are decoded where they are drawn or measured only. */
-const lists_wanted = run => run.contacts && !run.live && (view.body >= 0 || shows("contacts") || shows("impulses"));
+const draws_contacts = () => [...view.show].some(name => data.shows[name].includes("contacts"));
+const lists_wanted = run => run.contacts && !run.live && (view.body >= 0 || draws_contacts());
 const list_place = (run, frame) => Math.min(Math.floor(own_frame(run, frame)), run.frames - 1);
 
 /* Whether a run has what is shown of a frame; one that has failed shows what it has. */

@@ -36,6 +36,12 @@ function entries() {
   if (shows("impulses")) arrow("impulse", "N s");
   if (shows("velocities")) arrow("velocity", "m/s");
   if (shows("impulses") || shows("velocities")) found.push([data.arrow_note]);
+  if (shows("modes")) {
+    const sample = i => dot * (i === 3 ? MODE_WRONG : MODE_SIDE * MODE_BAR) + MODE_HALO;
+    const words = ["open", "sticks", "slips", ...mode_base() >= 0 ? ["not as the reference"] : []];
+    found.push(words.flatMap((text, i) => [{width: ceil(2 * sample(i)),
+      draw: (x, y) => draw_mode({x: x + sample(i), y}, i === 3 ? 1 : i, i === 3, dot)}, {width: em >> 1}, text, {width: em}]));
+  }
   return found;
 }
 

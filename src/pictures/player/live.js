@@ -55,7 +55,7 @@ function launch() {
 }
 
 /* Floats of the columns of a part go to their places in the arrays of a run. */
-function copy_part(run, {first, bodies, positions, velocities, angles, spins, starts, contacts, last: end}) {
+function copy_part(run, {first, bodies, positions, velocities, angles, spins, starts, contacts, modes, last: end}) {
   const at = first * bodies;
   for (let i = 0; i < angles.length; i++) {
     run.x[at + i] = positions[2 * i];
@@ -68,17 +68,19 @@ function copy_part(run, {first, bodies, positions, velocities, angles, spins, st
   for (let frame = first; frame <= end; frame++) {
     const from = starts[frame - first] - starts[0], to = starts[frame - first + 1] - starts[0];
     run.lists[frame] = contacts.subarray(WORDS * from, WORDS * to);
+    run.modes[frame] = modes.subarray(from, to);
   }
   run.reached = end;
 }
 
 /* The contacts of the step that follows from a frame; of the last one, of its own step. */
 function live_contacts(run, frame) {
-  const words = run.lists[min(frame + 1, run.frames - 1)] ?? [], all = [];
+  const step = min(frame + 1, run.frames - 1), words = run.lists[step] ?? [], all = [];
   const number = words.length > 0 && new Float32Array(words.buffer, words.byteOffset, words.length);
   for (let i = 0; i < words.length; i += WORDS) {
     const [x, y, nx, ny, normal, tangent] = number.subarray(i + 3, i + WORDS);
-    all.push({a: words[i], b: words[i + 1], x, y, nx, ny, normal, tangent});
+    const mode = run.modes[step][i / WORDS];
+    all.push({a: words[i], b: words[i + 1], feature: words[i + 2], mode, x, y, nx, ny, normal, tangent});
   }
   return all;
 }

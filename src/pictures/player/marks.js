@@ -58,6 +58,45 @@ function draw_dots(radius, points) {
   draw_discs(max(0, radius - max(1, radius / 3)), look.panel, points);
 }
 
+/* What a contact does, its tangent turned by `turn`: a ring is open (0), a square sticks (1), a bar along the surface slips (2);
+   around what the reference's contact does not do, a circle. */
+function draw_mode({x, y}, mode, wrong, radius, turn = 0) {
+  const long = mode === 2 ? MODE_BAR : 1, [w, h] = [long * MODE_SIDE * radius, MODE_SIDE * radius / long];
+  if (wrong) draw_dots(MODE_WRONG * radius, [{x, y}]);
+  if (mode === 0) return draw_dots(radius, [{x, y}]);
+  pen.save();
+  pen.translate(x, y);
+  pen.rotate(turn);
+  for (const [halo, colour] of [[MODE_HALO, look.panel], [0, mode === 2 ? look.slips : look.impulse]]) {
+    pen.fillStyle = colour;
+    pen.fillRect(-w - halo, -h - halo, 2 * (w + halo), 2 * (h + halo));
+  }
+  pen.restore();
+}
+
+/* The run whose modes others are compared with, if all are of its world; -1: none. */
+function mode_base() {
+  const compared = runs.length > 1 && others.length === runs.length - 1;
+  return compared && shows("modes") ? runs.findIndex(({method}) => method.split(":")[0] === "reference") : -1;
+}
+
+/* By what contacts are known by; one that is not there is open. */
+const contact_key = ({a, b, feature}) => [a, b, feature].join();
+const modes_of = run => new Map((run < 0 ? [] : contacts_at(run, floor(now))).map(each => [contact_key(each), each.mode]));
+const same_mode = (key, own, base) => (own.get(key) ?? 0) === (base.get(key) ?? 0);
+
+function mode_count(run) {
+  const own = modes_of(run), base = modes_of(mode_base()), all = [...new Set([...own.keys(), ...base.keys()])];
+  return `${all.filter(key => same_mode(key, own, base)).length} of ${all.length} contacts as the reference`;
+}
+
+function draw_modes(run) {
+  const own = modes_of(run), compared = mode_base(), base = modes_of(compared);
+  for (const each of contacts_at(run, floor(now)))
+    draw_mode(place(each), each.mode, compared >= 0 && !same_mode(contact_key(each), own, base), sizes.dot,
+      Math.atan2(each.nx, each.ny));
+}
+
 /* Where a segment of a trail that begins at a frame ends: `at` tells where the body is. Fewer segments are faster to draw. */
 function segment_end(at, first, last) {
   let end = first + TRAIL_EVERY;
@@ -154,4 +193,5 @@ function draw_marks(run) {
     for (const {x, y, nx, ny, normal, tangent} of all)
       draw_vector("impulse", {x, y}, normal * nx + tangent * ny, normal * ny - tangent * nx);
   if (shows("contacts")) draw_dots(sizes.dot, all.map(place));
+  if (shows("modes")) draw_modes(run);
 }

@@ -73,8 +73,9 @@ function apply_theme() {
 /* Why a look cannot be had; "" if it can. */
 function refused(look) {
   const needs = {...data.shows, overlay: "others", difference: "others", mass: "masses", name: "names"};
-  const need = needs[look], lacking = runs.findIndex(run => run[need] === false);
-  if (lacking >= 0) return `${names[lacking]} has no ${need}`;
+  const need = needs[look], lacks = run => need?.split(" and ").find(each => run[each] === false);
+  const lacking = runs.findIndex(lacks);
+  if (lacking >= 0) return `${names[lacking]} has no ${lacks(runs[lacking])}`;
   return need === "others" && others.length === 0 ? "no run compares with the first" : "";
 }
 

@@ -55,6 +55,7 @@ function panel_worker() {
     };
     const words = 9, from = part.starts[0];
     part.contacts = copy(Int32Array, live.live_contacts(run), words * from, words * (part.starts.at(-1) - from));
+    part.modes = Uint8Array.from({length: part.starts.at(-1) - from}, (_, i) => live.live_contact_mode(run, from + i));
     if (ended || first === 0) part.framing = json("live_framing", run);
     if (ended) {
       const verdict = live.live_verdict(run);
