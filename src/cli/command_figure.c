@@ -45,6 +45,8 @@ static const Option option_table[] = {
      OPTION_READ(read_bodies, Options, figure)},
     {"--labels", 0, "KIND", "strip: in boxes that are large enough: mass (kg), number, name, or none (default)",
      OPTION_ENUM(Options, figure.labels, look_labels_names)},
+    {"--show", 0, "modes", "strip: what contacts do: open, sticks or slips; and how many do it as in the reference",
+     OPTION_FLAGS(Options, figure.show, look_show_names)},
     {"--width", 0, "column|page|MM", "Width: 85 mm, 174 mm (default) or 40 to 400 mm",
      OPTION_READ(read_width, Options, figure.width), .least = FIGURE_WIDTH_MIN, .most = FIGURE_WIDTH_MAX, .group = 1},
     {"--height", 0, "MM", "strip: height of the page, 20 to 240 mm (default: as high as its cells)",
@@ -170,6 +172,8 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
         return error_input(error, "--bodies", "cannot be combined with --camera");
     if (figure->body_count > 0 && !kind->takes_bodies) return figure_refuse("--bodies", kind, error);
     if (figure->labels != LOOK_NO_LABELS && !kind->takes_labels) return figure_refuse("--labels", kind, error);
+    if (figure->show != 0 && !kind->takes_show) return figure_refuse("--show", kind, error);
+    if (figure->show & ~(unsigned)SHOW_MODES) return error_input(error, "--show", "a figure shows 'modes' only");
     if (figure->view.width > 0 && !kind->takes_view) return figure_refuse("--camera", kind, error);
     if (options->view_from != NULL && !kind->takes_view) return figure_refuse("--view-from", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||

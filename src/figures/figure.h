@@ -41,6 +41,7 @@ typedef struct FigureSpec {
     int body_count;                   /* 0: the kind chooses */
     int bodies[FIGURE_BODIES_MAX];    /* strip: those that must be in view */
     LookLabels labels;                /* strip: in boxes that are large enough */
+    unsigned show;                    /* strip: SHOW_MODES or nothing */
     const Progress *progress;         /* of simulations run for the figure, or NULL */
 } FigureSpec;
 
@@ -48,7 +49,7 @@ typedef struct FigureKind {
     const char *name, *summary;
     const char *example; /* arguments after `twinbox figure` */
     int min_runs, max_runs;
-    bool takes_times, takes_moments, takes_scene, takes_height, takes_view, takes_bodies, takes_labels;
+    bool takes_times, takes_moments, takes_scene, takes_height, takes_view, takes_bodies, takes_labels, takes_show;
     bool needs_contacts; /* runs without are refused; trajectory_find_contacts() finds them again */
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */

@@ -10,8 +10,10 @@
 #include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
+#include "pictures/style.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
+#include "runs/compare_runs.h"
 #include "runs/trajectory.h"
 
 #include <math.h>
@@ -185,7 +187,8 @@ const FigureKind figure_strobe = {
 
 /* Moments of runs: a row per run, a column per moment, all with one camera. */
 
-static const double strip_gap = 1.2; /* mm: between cells */
+static const double strip_gap = 1.2;                    /* mm: between cells */
+static const double least_mark = 0.22, most_mark = 0.5; /* mm: radius of a contact's mark */
 
 enum { STRIP_MOMENTS = 5 }; /* by default */
 
@@ -199,6 +202,8 @@ typedef struct Strip {
     bool above;                      /* names stand above their rows, not beside them */
     int name_lines;                  /* of the longest name */
     int note_lines[FIGURE_RUNS_MAX]; /* below each row of cells */
+    int reference;                   /* row with whose contacts those of the others are compared; -1: none */
+    double box;                      /* m, shorter side of the median box */
 } Strip;
 
 /* mm: from a row to the next, without notes */
@@ -237,16 +242,82 @@ static WorldWindow window_of_bodies(const Strip *strip) {
                          all.top - all.bottom + 2 * margin};
 }
 
-/* "2 out of view", in lines as wide as a cell; empty if all are there. Of the bodies in question, if some are: that
-   others are cut off is meant. */
+/* The step whose contacts a cell shows: they result from its poses. */
+static int step_of(const Strip *strip, int row, int column) {
+    const int next = strip->frames[column] + 1, frames = strip->spec->runs[row]->frames;
+    return next < frames ? next : frames - 1;
+}
+
+/* "2 out of view; 41 of 66 contacts as the reference", in lines as wide as a cell; empty if all are there. Of the bodies
+   in question, if some are: that others are cut off is meant. */
 static WrappedText note_of(const Strip *strip, int row, int column) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
     const int outside =
         run_count_outside(spec->runs[row], strip->frames[column], &cells->window, spec->bodies, spec->body_count);
-    if (outside == 0) return (WrappedText){.lines = 0};
-    return wrap_text(text_points("of view", SMALL_TYPE * spec->points, cells->width), cells->width, "%d out of view",
-                     outside);
+    const char *longest = outside > 0 ? "of view" : "reference";
+    char text[128] = "";
+    if (outside > 0) text_join(text, sizeof text, "; ", "%d out of view", outside);
+    if (strip->reference >= 0 && row != strip->reference) {
+        const ModeCount count =
+            trajectory_same_modes(spec->runs[row], step_of(strip, row, column), spec->runs[strip->reference],
+                                  step_of(strip, strip->reference, column));
+        text_join(text, sizeof text, "; ", "%d of %d contacts as the reference", count.same, count.of);
+    }
+    if (text[0] == '\0') return (WrappedText){.lines = 0};
+    return wrap_text(text_points(longest, SMALL_TYPE * spec->points, cells->width), cells->width, "%s", text);
+}
+
+/* The marks of films (pictures/marks.c) as vectors. */
+static void draw_mode(Sketch *sketch, Point at, Vec2 normal, double radius, ContactMode mode, bool wrong) {
+    const Pen ring = {0xFFFFFF, 1, ACCENT, 1.4, NULL};
+    const Pen filled = {mode == CONTACT_SLIPS ? theme_get(LOOK_LIGHT)->slips : ACCENT, 1, 0xFFFFFF, 1.2, NULL};
+    const double bar = mode == CONTACT_SLIPS ? MODE_BAR : 1, wide = bar * MODE_SIDE * radius,
+                 high = MODE_SIDE * radius / bar, x = (double)normal.x, y = (double)normal.y;
+    Point corners[4];
+    for (int i = 0; i < 4; i++) {
+        const double along = (i == 1 || i == 2 ? 1 : -1) * wide, up = (i > 1 ? 1 : -1) * high;
+        corners[i] = (Point){at.x + along * y + up * x, at.y - along * x + up * y};
+    }
+    if (wrong) sketch_dot(sketch, at, MODE_WRONG * radius, &ring);
+    if (mode == CONTACT_OPEN)
+        sketch_dot(sketch, at, radius, &ring);
+    else
+        sketch_shape(sketch, corners, 4, &filled);
+}
+
+/* What contacts do in a cell. */
+static void draw_modes(const Strip *strip, Sketch *sketch, int row, int column, Point low) {
+    const Trajectory *run = strip->spec->runs[row];
+    const View view = run_cells_view(&strip->cells, low);
+    const int step = step_of(strip, row, column);
+    const double radius = fmin(fmax(DOT_BOX * strip->box * strip->cells.scale, least_mark), most_mark);
+    for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
+        const Point at = view_place(&view, run->contacts[i].point);
+        const bool inside = at.x > view.low.x && at.x < view.high.x && at.y > view.low.y && at.y < view.high.y;
+        const bool wrong =
+            strip->reference >= 0 && !trajectory_same_mode(run, step, i, strip->spec->runs[strip->reference],
+                                                           step_of(strip, strip->reference, column));
+        if (inside) draw_mode(sketch, at, run->contacts[i].normal, radius, trajectory_mode(run, step, i), wrong);
+    }
+}
+
+/* What the marks mean, below the scale. Returns the rows; without a sketch, it only counts them. */
+static int draw_mode_legend(const Strip *strip, Sketch *sketch, Point first) {
+    const FigureSpec *spec = strip->spec;
+    Flow flow = {.first = first, .width = spec->width - 2 * PAGE_EDGE, .points = spec->points};
+    if ((spec->show & SHOW_MODES) == 0) return 0;
+    for (int i = 0; i <= CONTACT_MODES - (strip->reference < 0); i++) {
+        const double room = most_mark * (i == CONTACT_MODES ? MODE_WRONG : MODE_SIDE * MODE_BAR),
+                     gap = gap_to_text(spec->points);
+        const Point at = flow_place(&flow, 2 * room + gap + type_width(mode_words[i], spec->points), 1);
+        if (sketch == NULL) continue;
+        draw_mode(sketch, (Point){at.x + room, at.y}, vec2(0, 1), most_mark,
+                  i < CONTACT_MODES ? (ContactMode)i : CONTACT_STICKS, i == CONTACT_MODES);
+        sketch_text(sketch, (Point){at.x + 2 * room + gap, at.y},
+                    &(TextStyle){spec->points, TEXT_LEFT, INK_SOFT, 0, false}, "%s", mode_words[i]);
+    }
+    return flow.row + 1;
 }
 
 /* The name of a row's run: beside the row in lines as long as its cells are high, or above it. */
@@ -274,7 +345,8 @@ static bool lay_out_cells(Strip *strip, Error *error) {
     const FigureSpec *spec = strip->spec;
     const double line = line_height(spec->points), runs = spec->run_count;
     const double names = strip->name_lines * line;
-    strip->left = strip->above ? PAGE_EDGE : names + 0.1 * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
+    strip->left = strip->above ? PAGE_EDGE : names + 0.1 * line, strip->top = 1.15 * line;
+    strip->foot = (1 + draw_mode_legend(strip, NULL, (Point){0, 0})) * line + 0.6;
     const double width = (spec->width - PAGE_EDGE - strip->left - (strip->count - 1) * strip_gap) / strip->count;
     const double high = (spec->height > 0 ? spec->height : FIGURE_HEIGHT_MAX) - strip->top - strip->foot;
     const double texts = room_of_notes(strip, 0, spec->run_count) + (strip->above ? runs * names : 0);
@@ -357,20 +429,25 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
                     &(TextStyle){time_points, TEXT_CENTER, INK, 0, false}, "%.2f s",
                     strip->frames[column] * (double)spec->runs[0]->dt);
     }
-    Flow foot = {.first = {strip->start, strip->foot / 2 - 0.3}, .width = spec->width, .points = spec->points};
+    Flow foot = {.first = {strip->start, strip->foot - 0.6 - line / 2}, .width = spec->width, .points = spec->points};
     run_cells_scale_bar(cells, sketch, &foot);
+    draw_mode_legend(strip, sketch, (Point){foot.first.x, foot.first.y - line});
 }
 
 static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
-    Strip strip = {.spec = spec};
+    Strip strip = {.spec = spec, .reference = -1};
+    ScaleMeasures measures;
     if (!run_colours(spec, strip.colours, error) || !run_check_worlds(spec, error) ||
-        !look_check(&(RenderLook){.labels = spec->labels}, spec->runs, spec->run_count, error))
+        !look_check(&(RenderLook){.labels = spec->labels, .show = spec->show}, spec->runs, spec->run_count, error) ||
+        !scales_measure(spec->runs[0], &measures, error))
         return false;
+    if (spec->show & SHOW_MODES) strip.reference = trajectory_reference(spec->runs, spec->run_count);
     for (int i = 0; i < spec->body_count; i++)
         if (spec->bodies[i] >= spec->runs[0]->bodies)
             return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
                                spec->runs[0]->bodies);
     if (!run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error)) return false;
+    strip.box = measures.box;
     /* Names stand beside their rows if all have room there. */
     bool done = lay_out_lines(&strip, error);
     if (!done && error->kind == ERROR_INPUT) {
@@ -391,6 +468,8 @@ static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
             sketch_image(sketch, image, low, strip.cells.width);
             image_destroy(image);
             run_cells_frame(&strip.cells, sketch, low);
+            run_cells_label(&strip.cells, sketch, spec->runs[row], strip.frames[column], &strip.colours[row], low);
+            if (spec->show & SHOW_MODES) draw_modes(&strip, sketch, row, column, low);
             if (note.lines > 0)
                 draw_wrapped(sketch, (Point){low.x, low.y - 0.6 * line_height(note.points)}, INK_SOFT, &note);
         }
@@ -411,5 +490,6 @@ const FigureKind figure_strip = {
     .takes_height = true,
     .takes_bodies = true,
     .takes_labels = true,
+    .takes_show = true,
     .draw = strip_draw,
 };

@@ -64,6 +64,10 @@ void run_cells_free(RunCells *cells);
 Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, const RunColours *colours, StillParts parts,
                         Error *error);
 
+/* Writes what the boxes of such a picture are labelled with, into a cell. */
+void run_cells_label(const RunCells *cells, Sketch *sketch, const Trajectory *run, int frame, const RunColours *colours,
+                     Point low);
+
 /* The mapping from metres to the page in a cell. */
 View run_cells_view(const RunCells *cells, Point low);
 

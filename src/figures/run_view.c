@@ -108,13 +108,30 @@ void run_cells_free(RunCells *cells) {
     cells->still = NULL;
 }
 
+static StillShot shot_of(const RunCells *cells, const Trajectory *run, int frame, const RunColours *colours,
+                         StillParts parts) {
+    return (StillShot){run, frame, colours->light, parts, cells->camera, cells->labels, cells->label_least};
+}
+
 Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, const RunColours *colours, StillParts parts,
                         Error *error) {
-    const StillShot shot = {run, frame, colours->light, parts, cells->camera, cells->labels, cells->label_least};
+    const StillShot shot = shot_of(cells, run, frame, colours, parts);
     Image *image = image_create(cells->columns, cells->rows, error);
     if (image == NULL || still_draw(cells->still, &shot, image, error)) return image;
     image_destroy(image);
     return NULL;
+}
+
+void run_cells_label(const RunCells *cells, Sketch *sketch, const Trajectory *run, int frame, const RunColours *colours,
+                     Point low) {
+    const StillShot shot = shot_of(cells, run, frame, colours, STILL_ALL);
+    const double pixel = cells->width / cells->columns; /* mm */
+    StillLabel label;
+    for (int body = 0; body < run->bodies; body++)
+        if (still_label(cells->still, &shot, body, &label))
+            sketch_text(sketch, (Point){low.x + label.at.x * pixel, low.y + (cells->rows - label.at.y) * pixel},
+                        &(TextStyle){label.size * pixel / MM_PER_POINT, TEXT_CENTER, label.ink, 0, false}, "%s",
+                        label.text);
 }
 
 View run_cells_view(const RunCells *cells, Point low) {

@@ -82,11 +82,10 @@ static bool is_light(uint32_t color) {
     return RED_LIGHT * red * red + GREEN_LIGHT * green * green + BLUE_LIGHT * blue * blue > LABEL_DARK_FROM;
 }
 
-/* Whether the label of a box of this shape is drawn: if it is large enough to be read, and inside the panel. */
-static bool draw_label(const Picture *picture, int panel, int run, int body, const Shape *shape, Drawing *drawing) {
-    char text[64];
+bool body_label(const Picture *picture, int panel, int run, int body, const Shape *shape, BodyLabel *label) {
+    char *text = label->text;
     if (picture->runs[run]->fixed[body]) return false;
-    label_text(picture, run, body, text, sizeof text);
+    label_text(picture, run, body, text, sizeof label->text);
     if (text[0] == '\0') return false;
     /* Width / size of the letters: digits take the same room whatever they are, letters of a name what they need. */
     double ems = LABEL_EMS * fmax((double)strlen(text), LABEL_DIGITS);
@@ -106,7 +105,8 @@ static bool draw_label(const Picture *picture, int panel, int run, int body, con
     const int left = (int)rint(shape->x - width / 2.0), baseline = (int)rint(shape->y + height / 2.0);
     if (left < rect->left || left + width > rect->right || baseline - height < rect->top || baseline > rect->bottom)
         return false;
-    font_add(drawing, &font, text, left, baseline, is_light(shape->fill) ? INK : PANEL);
+    label->font = font, label->left = left, label->baseline = baseline;
+    label->ink = is_light(shape->fill) ? INK : PANEL;
     return true;
 }
 
@@ -140,7 +140,10 @@ void body_draw(const Picture *picture, int panel, int run, Moment moment, int bo
     if (fixed) shape.radius = 0;
     if (fixed || bomb) shape.band = 0;
     drawing_add_shape(drawing, &shape, clip);
-    const bool labelled = draw_label(picture, panel, run, body, &shape, drawing);
+    BodyLabel label;
+    const bool labelled = body_label(picture, panel, run, body, &shape, &label);
+    if (labelled && !picture->labels_apart)
+        font_add(drawing, &label.font, label.text, label.left, label.baseline, label.ink);
     if (bomb && !labelled) draw_target(&shape, colors.band, clip, drawing);
 }
 

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
+const char *const mode_words[] = {"open", "sticks", "slips", "not as the reference"};
+
 /* The room of a legend: where the next entry stands, in the row that was begun last. */
 typedef struct Row {
     const Picture *picture;
@@ -130,7 +132,6 @@ static void add(Row *row, Entry entry) {
         break;
     case ENTRY_HEADS: end_entry(row, ARROW_NOTE); break;
     case ENTRY_MODES: {
-        static const char *const words[CONTACT_MODES + 1] = {"open", "sticks", "slips", "not as the reference"};
         const double radius = fmax(marks_dot_radius(picture), LEGEND_DOT * em);
         for (int i = 0; i < CONTACT_MODES + (picture->mode_base >= 0); i++) {
             const double room = radius * (i == CONTACT_MODES ? MODE_WRONG : MODE_SIDE * MODE_BAR) + MODE_HALO;
@@ -141,7 +142,7 @@ static void add(Row *row, Entry entry) {
                                    .wrong = i == CONTACT_MODES};
             marks_draw_mode(picture, &mark, &row->clip, drawing);
             row->x += (int)ceil(2 * room) + em / 2;
-            add_text(row, words[i]);
+            add_text(row, mode_words[i]);
             row->x += em;
         }
         end_entry(row, "");

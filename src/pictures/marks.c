@@ -192,7 +192,19 @@ void marks_draw_mode(const Picture *picture, const ModeMark *mark, const Rect *c
                    .outline = MODE_HALO,
                    .fill = mark->mode == CONTACT_SLIPS ? theme->slips : theme->impulse,
                    .line = theme->panel};
-    if (mark->wrong) stroke_dot(drawing, mark->at, MODE_WRONG * mark->radius, theme->panel, theme->impulse, clip);
+    const double ring = MODE_WRONG * mark->radius;
+    if (mark->wrong)
+        drawing_add_shape(drawing,
+                          &(Shape){.x = mark->at.x,
+                                   .y = mark->at.y,
+                                   .half_width = ring,
+                                   .half_height = ring,
+                                   .cosine = 1,
+                                   .radius = ring,
+                                   .outline = fmax(1, mark->radius / 3),
+                                   .fill = theme->panel,
+                                   .line = theme->impulse},
+                          clip);
     if (mark->mode == CONTACT_OPEN)
         stroke_dot(drawing, mark->at, mark->radius, theme->panel, theme->impulse, clip);
     else

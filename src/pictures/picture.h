@@ -75,6 +75,9 @@ typedef struct ShowMark {
 
 extern const ShowMark show_marks[SHOW_COUNT];
 
+/* Of modes of contacts, and last of those that the reference's contact does not have. */
+extern const char *const mode_words[CONTACT_MODES + 1];
+
 typedef struct RenderLook {
     LookCompare compare;
     LookCamera camera;
@@ -290,6 +293,7 @@ typedef struct Picture {
     Layout layout;
     Camera camera;           /* for a panel whose upper left corner is (0, 0) */
     double label_least;      /* pixels: letters of labels that are smaller are not drawn; 0: LABEL_LEAST */
+    bool labels_apart;       /* boxes are drawn without them */
     double grid_scale;       /* pixels per metre used to choose the grid; constant while the camera moves */
     double largest_distance; /* m, over the whole run */
     const char *title;       /* as in RenderOptions; must outlive the picture */

@@ -243,6 +243,15 @@ Shape body_shape(const Picture *picture, int panel, int run, Moment moment, int 
 /* Draws a body of a run; the bomb with its target. */
 void body_draw(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing);
 
+/* The label of a body's box of this shape. False: none, or not large enough to be read, or not inside the panel. */
+typedef struct BodyLabel {
+    char text[64];
+    Font font;
+    int left, baseline;
+    uint32_t ink;
+} BodyLabel;
+bool body_label(const Picture *picture, int panel, int run, int body, const Shape *shape, BodyLabel *label);
+
 /* Draws all static bodies of a run (`fixed`), or all dynamic bodies except the bomb. */
 void body_draw_all(const Picture *picture, int panel, int run, Moment moment, bool fixed, Drawing *drawing);
 

@@ -107,7 +107,8 @@ int moments_last(const MomentPlan *plan);
 /* The moment of picture `index`, plan->first <= index <= moments_last(). */
 Moment moments_at(const MomentPlan *plan, int index);
 
-/* The bodies of one frame on a transparent background, without grid, axes or text: for figures. */
+/* The bodies of one frame on a transparent background, without grid, axes or text: for figures. What their boxes are
+   labelled with is text of the figure. */
 
 /* The bodies to draw. */
 typedef enum StillParts { STILL_FIXED = 1, STILL_MOVING = 2, STILL_ALL = 3 } StillParts;
@@ -130,6 +131,17 @@ void still_destroy(Still *still);
 
 /* Draws into an image of that size, with straight alpha. */
 bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error);
+
+/* A label in the picture of that size: its middle and the size of its letters in pixels. */
+typedef struct StillLabel {
+    char text[64];
+    Point at;
+    double size;
+    uint32_t ink;
+} StillLabel;
+
+/* The label of a body; false: it has none. */
+bool still_label(const Still *still, const StillShot *shot, int body, StillLabel *label);
 
 /* Output of finished frames. */
 

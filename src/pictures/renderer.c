@@ -182,18 +182,35 @@ void still_destroy(Still *still) {
     free(still);
 }
 
-bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error) {
-    /* A picture of one panel without margins, in the requested colours. */
+/* A picture of one panel without margins, in the requested colours. */
+static Picture picture_of(const Still *still, const StillShot *shot) {
     Picture picture = {.count = 1,
                        .frames = shot->run->frames,
                        .camera = shot->camera,
                        .theme = theme_get(LOOK_LIGHT),
                        .look.labels = shot->labels,
+                       .labels_apart = true,
                        .label_least = shot->label_least};
     picture.layout.panels[0] = (Rect){0, 0, still->on_white->width, still->on_white->height};
     picture.runs[0] = shot->run;
     picture.colours[0].light = shot->colours;
+    return picture;
+}
 
+bool still_label(const Still *still, const StillShot *shot, int body, StillLabel *label) {
+    const Picture picture = picture_of(still, shot);
+    const BodyColors *colours = body == shot->run->bomb ? &picture.theme->bomb : &shot->colours;
+    const Shape shape = body_shape(&picture, 0, 0, moment_stored(shot->frame), body, colours);
+    BodyLabel found;
+    if (!trajectory_has(shot->run, shot->frame, body) || !body_label(&picture, 0, 0, body, &shape, &found))
+        return false;
+    *label = (StillLabel){.at = {shape.x, shape.y}, .size = found.font.pixels, .ink = found.ink};
+    snprintf(label->text, sizeof label->text, "%s", found.text);
+    return true;
+}
+
+bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error) {
+    const Picture picture = picture_of(still, shot);
     const Moment moment = moment_stored(shot->frame);
     Drawing *drawing = &still->drawing;
     drawing_clear(drawing);

@@ -51,7 +51,7 @@ static const double MARK_DOT = 0.0052, MARK_LINE = 0.0034;
 static const double MIN_DOT = 2.2, MIN_LINE = 1.4;    /* smaller where boxes are so small that these would cover them */
 static const double DOT_BOX = 0.13, LINE_BOX = 0.085; /* at most */
 static const double FINEST = 0.6;                     /* pixels; the smallest dot and the thinnest line */
-static const double MODE_SIDE = 1.1, MODE_BAR = 1.7, MODE_WRONG = 2.6; /* radius of a dot: half a square's side, ... */
+static const double MODE_SIDE = 1.1, MODE_BAR = 1.7, MODE_WRONG = 2.5; /* radius of a dot: half a square's side, ... */
 static const double MODE_HALO = 1;                                     /* pixels */
 static const double POINTER = 0.055, POINTER_LINE = 0.0075;            /* to a bomb outside: length, thickness */
 static const double MIN_POINTER = 14, MIN_POINTER_LINE = 2;

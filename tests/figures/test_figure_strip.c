@@ -37,19 +37,48 @@ static int count_changed(const Sketch *plain, const Sketch *labelled) {
     return count;
 }
 
+/* As text, which can be searched: the picture is the one without. */
 TEST(boxes_have_labels) {
     Trajectory *run = run_make("engine", 31);
+    run->bomb = -1; /* its target is not drawn where it has a label */
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 1;
     Sketch plain, labelled;
     draw_kind(&plain, "strip", &spec);
     spec.labels = LOOK_NUMBERS;
     draw_kind(&labelled, "strip", &spec);
-    assert_true(count_changed(&plain, &labelled) > 100);
+    assert_int_equal(count_changed(&plain, &labelled), 0);
+    assert_texts(&labelled, "1", "2");
     sketch_free(&labelled);
     spec.labels = LOOK_NAMES;
     expect_kind_refused("strip", &spec, "no body of run 1 (engine) has one");
     free_drawn(&plain, &run, 1);
+}
+
+/* A contact that sticks in the reference's run and slips in the other, and one that both have open. */
+TEST(modes_of_contacts_are_marked_counted_and_named) {
+    Trajectory *runs[] = {run_make("engine", 3), run_make("reference", 3)};
+    for (int i = 0; i < 2; i++) {
+        TrajectoryContact contact = {.a = GROUND_BODY, .b = FIRST_BOX, .point = {-2, 0}, .normal = {0, 1}};
+        assert_ok(trajectory_add_contact(runs[i], 1, &contact, &error), error);
+        contact.feature = 1, contact.normal_impulse = 1;
+        assert_ok(trajectory_add_contact(runs[i], 1, &contact, &error), error);
+        trajectory_end_contacts(runs[i]);
+    }
+    runs[0]->velocity[RUN_BODIES + FIRST_BOX].x = 0.02F;
+    FigureSpec spec = spec_of(runs, 2);
+    spec.time_count = 1, spec.times[0] = 0;
+    Sketch plain, marked;
+    draw_kind(&plain, "strip", &spec);
+    spec.show = SHOW_MODES;
+    draw_kind(&marked, "strip", &spec);
+    assert_texts(&marked, "1 of 2 contacts as the reference", "open", "sticks", "slips", "not as the reference");
+    /* Two contacts and a circle, and two; four samples and a circle. */
+    assert_int_equal(count_marks(&marked, MARK_PATH) - count_marks(&plain, MARK_PATH), 3 + 2 + 5);
+    sketch_free(&marked);
+    runs[1]->no_velocities = true;
+    expect_kind_refused("strip", &spec, "'modes' cannot be shown: run 2 (reference) has no velocities");
+    free_drawn(&plain, runs, 2);
 }
 
 TEST(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run) {

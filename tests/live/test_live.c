@@ -47,6 +47,9 @@ static void check_contacts(const LiveRun *live, const Trajectory *run) {
     for (int frame = 0; frame <= run->frames; frame++)
         assert_int_equal(live_contact_start(live, frame), run->contact_start[frame]);
     assert_memory_equal(contacts, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *contacts);
+    for (int step = 1; step < run->frames; step++)
+        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++)
+            assert_int_equal(live_contact_mode(live, (int)i), trajectory_mode(run, step, i));
 }
 
 static void check_run(const char *name, const char *settings, const char *method) {

@@ -37,6 +37,7 @@ CASES = [
     ("pyramid", 30, "split", "", "light", ""),
     ("pyramid", 60, "difference", "velocities", "dark", ""),
     ("pyramid", 60, "split", "ghosts,contacts,impulses", "light", "0,1.5,6,4"),
+    ("pyramid", 60, "split", "modes", "dark", "0,1.5,6,4"),
     ("pyramid_settled", 200, "split", "distance", "light", ""),
     ("pyramid_settled", 180, "split", "distance", "dark", "0,3,12,8"),
 ]
@@ -138,6 +139,42 @@ def check_scale(checks, browser):
         checks.true(f"colours of the scale, {theme}", len(colours) > COLUMNS * ROWS, len(colours))
 
 
+def modes(run, step):
+    """The contacts of a step by bodies and feature: 0 open, 1 sticks, 2 slips."""
+    found = {}
+    for i in range(*run["contact_start"][step:step + 2]):
+        a, b = run["contact_bodies"][i]
+        point, (nx, ny), (normal, _) = (run[name][i].astype(float) for name in ("contact_point", "contact_normal", "contact_impulse"))
+        speeds = []
+        for body in a, b:
+            x, y = point - run["position"][step - 1, body]
+            w = float(run["angular_velocity"][step, body])
+            speeds.append(run["velocity"][step, body].astype(float) + (-w * y, w * x))
+        x, y = speeds[1] - speeds[0]
+        found[int(a), int(b), int(run["contact_feature"][i])] = 0 if not normal > 0 else 2 if abs(x * ny - y * nx) > 0.01 else 1
+    return found
+
+
+def check_modes(checks, browser):
+    """The page counts as NumPy does the contacts that do the same in the run of the reference; and those of its pictures are alike."""
+    files = [f"golden/{name}.npz" for name in ("trajectories/stack-engine", "gallery/stack-interior", "gallery/stack-reference")]
+    loaded = [numpy.load(file) for file in files]
+    checks.twinbox("page", *files, "-o", "page.html")
+    page, counts = browser.open("page.html"), set()
+    for frame in 20, 33, 34, 36, 40, 75:
+        page.run("player.change({frame: $0, show: new Set(['modes'])})", frame)
+        page.wait(f"player.ready({frame})")
+        page.settle()
+        *others, reference = (modes(run, min(frame + 1, len(run["angle"]) - 1)) for run in loaded)
+        for i, own in enumerate(others):
+            keys = {*own, *reference}
+            wanted = f"{sum(own.get(key, 0) == reference.get(key, 0) for key in keys)} of {len(keys)} contacts as the reference"
+            checks.equal(f"frame {frame}, run {i}", page.run(f"player.mode_count({i})"), wanted)
+            counts.add(wanted)
+    checks.true("counts differ", len(counts) > 6, counts)
+    check(checks, page, files, 36, "split", "modes", "light", "0,5,8,11")
+
+
 def check_sight(checks, rendered, drawn, panels):
     """Pictures that are not alike: a box's band that is three pixels lower, by moving a row of pixels of the whole panel."""
     x, y, width, height = panels[0]
@@ -155,6 +192,7 @@ def main():
                 rendered, drawn, panels, _ = check(checks, page, files, *case)
         check_sight(checks, rendered, drawn, panels)
         check_scale(checks, browser)
+        check_modes(checks, browser)
 
 
 main()

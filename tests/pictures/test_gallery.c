@@ -56,6 +56,7 @@ static const struct {
     {"trails", near_pair, STORED(52), {.show = SHOW_TRAILS}, true},
     {"contacts", one, STORED(40), {.show = SHOW_CONTACTS}, false},
     {"impulses", near_pair, STORED(35), {.camera = LOOK_BOMB, .show = SHOW_CONTACTS | SHOW_IMPULSES}, true},
+    {"modes", three, STORED(36), {.show = SHOW_MODES, .view = {0, 5, 8, 11}}, true},
     {"velocities", near_pair, STORED(36), {.show = SHOW_VELOCITIES}, true},
     {"timeline", three, STORED(44), {.show = SHOW_TIMELINE | SHOW_GHOSTS}, true},
     {"timeline_six", six, STORED(44), {.show = SHOW_TIMELINE}, false},

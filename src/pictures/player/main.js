@@ -85,5 +85,5 @@ onhashchange();
 load(view.frame).then(check_all).catch(undecoded);
 window.player = {
   view, change, plan, camera, corners, body_at, to_pixel, state_hash: (index, frame) => hash_of(runs[index], frame), load, ready, checked, runs, data, draw, choose, set_text,
-  setup, add_panel, set_method, launched: () => launched,
+  mode_count, setup, add_panel, set_method, launched: () => launched,
 };

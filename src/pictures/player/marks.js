@@ -53,16 +53,16 @@ function draw_discs(radius, colour, points) {
 }
 
 /* With a rim. */
-function draw_dots(radius, points) {
+function draw_dots(radius, points, rim = max(1, radius / 3)) {
   draw_discs(radius, look.impulse, points);
-  draw_discs(max(0, radius - max(1, radius / 3)), look.panel, points);
+  draw_discs(max(0, radius - rim), look.panel, points);
 }
 
 /* What a contact does, its tangent turned by `turn`: a ring is open (0), a square sticks (1), a bar along the surface slips (2);
    around what the reference's contact does not do, a circle. */
 function draw_mode({x, y}, mode, wrong, radius, turn = 0) {
   const long = mode === 2 ? MODE_BAR : 1, [w, h] = [long * MODE_SIDE * radius, MODE_SIDE * radius / long];
-  if (wrong) draw_dots(MODE_WRONG * radius, [{x, y}]);
+  if (wrong) draw_dots(MODE_WRONG * radius, [{x, y}], max(1, radius / 3));
   if (mode === 0) return draw_dots(radius, [{x, y}]);
   pen.save();
   pen.translate(x, y);
