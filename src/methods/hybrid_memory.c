@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The memory of hybrid: sets of contacts, their entries, and the search among them. */
+/* The memory of hybrid: sets of contacts, their entries, the search among them, and files of kind "hybrid". */
 #include "methods/hybrid_memory.h"
 
 #include "base/base.h"
+#include "base/npz.h"
 #include "engine/engine.h"
+#include "nets/nets.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,22 +14,8 @@
 
 enum { LEAST_TABLE = 64 };
 
-static void put(HybridMemory *memory, int set) {
-    size_t at = (size_t)memory->set_hash[set] & (memory->table_size - 1);
-    while (memory->table[at] >= 0) at = (at + 1) & (memory->table_size - 1);
-    memory->table[at] = set;
-}
-
-/* Gives an array that keeps its items room for `count` of `size` bytes. False when memory is short; the array stays
-   valid. */
-static bool resize(void **items, size_t count, size_t size) {
-    void *grown = realloc(*items, count * size);
-    if (grown == NULL) return false;
-    *items = grown;
-    return true;
-}
-
-int hybrid_memory_set(const HybridMemory *memory, uint64_t hash, int contacts) {
+/* The set with this hash and number of contacts, or -1. */
+static int find_set(const HybridMemory *memory, uint64_t hash, int contacts) {
     if (memory->table_size == 0) return -1;
     size_t at = (size_t)hash & (memory->table_size - 1);
     for (int set; (set = memory->table[at]) >= 0; at = (at + 1) & (memory->table_size - 1))
@@ -35,32 +23,28 @@ int hybrid_memory_set(const HybridMemory *memory, uint64_t hash, int contacts) {
     return -1;
 }
 
-int hybrid_memory_add_set(HybridMemory *memory, uint64_t hash, int contacts) {
-    if ((size_t)memory->set_count >= memory->set_capacity) {
-        const size_t count = 2 * memory->set_capacity + 16;
-        if (!resize((void **)&memory->set_hash, count, sizeof *memory->set_hash) ||
-            !resize((void **)&memory->set_contacts, count, sizeof *memory->set_contacts) ||
-            !resize((void **)&memory->set_lists, count, sizeof *memory->set_lists))
-            return -1;
-        memory->set_capacity = count;
-    }
+static void put_into_table(HybridMemory *memory, int set) {
+    size_t at = (size_t)memory->set_hash[set] & (memory->table_size - 1);
+    while (memory->table[at] >= 0) at = (at + 1) & (memory->table_size - 1);
+    memory->table[at] = set;
+}
+
+/* Takes in the next set, whose hash and number of contacts are in their arrays. False when memory is short. */
+static bool take_set(HybridMemory *memory) {
     /* The table stays at most half full, so that searches are short. */
     if (2 * ((size_t)memory->set_count + 1) > memory->table_size) {
         const size_t size = memory->table_size > 0 ? 2 * memory->table_size : LEAST_TABLE;
         int32_t *table = malloc(size * sizeof *table);
-        if (table == NULL) return -1;
+        if (table == NULL) return false;
         free(memory->table);
         memory->table = table;
         memory->table_size = size;
         for (size_t i = 0; i < size; i++) table[i] = -1;
-        for (int known = 0; known < memory->set_count; known++) put(memory, known);
+        for (int known = 0; known < memory->set_count; known++) put_into_table(memory, known);
     }
-    const int set = memory->set_count++;
-    memory->set_hash[set] = hash;
-    memory->set_contacts[set] = contacts;
-    memory->set_lists[set] = (HybridList){0};
-    put(memory, set);
-    return set;
+    memory->set_lists[memory->set_count] = (HybridList){0};
+    put_into_table(memory, memory->set_count++);
+    return true;
 }
 
 static float first_number(const HybridMemory *memory, int entry) {
@@ -80,8 +64,25 @@ static int place_of(const HybridMemory *memory, const HybridList *list, float x)
     return low;
 }
 
+/* Takes in the next entry, whose numbers are in their arrays: its impulses are those behind the last entry's, and it has
+   its place in the list of its set by its first number. False when memory is short. */
+static bool take_entry(HybridMemory *memory) {
+    const int e = memory->entry_count, set = memory->entry_set[e];
+    HybridList *list = &memory->set_lists[set];
+    if (!array_reserve((void **)&list->entries, &list->capacity, (size_t)list->count + 1, sizeof *list->entries))
+        return false;
+    memory->entry_begin[e] = memory->impulse_count;
+    memory->impulse_count += (size_t)memory->set_contacts[set];
+    memory->entry_count++;
+    const int place = place_of(memory, list, first_number(memory, e));
+    for (int i = list->count++; i > place; i--) list->entries[i] = list->entries[i - 1];
+    list->entries[place] = e;
+    if (memory->reach[e] > list->reach) list->reach = memory->reach[e];
+    return true;
+}
+
 const int32_t *hybrid_memory_about(const HybridMemory *memory, const HybridQuery *query, float radius, int *count) {
-    const int set = hybrid_memory_set(memory, query->hash, query->contacts);
+    const int set = find_set(memory, query->hash, query->contacts);
     *count = 0;
     if (set < 0) return NULL;
     const HybridList *list = &memory->set_lists[set];
@@ -174,7 +175,7 @@ static int search(const HybridMemory *memory, const HybridQuery *query, float ra
 }
 
 int hybrid_memory_find(const HybridMemory *memory, const HybridQuery *query) {
-    const int set = hybrid_memory_set(memory, query->hash, query->contacts);
+    const int set = find_set(memory, query->hash, query->contacts);
     return set < 0 ? -1 : search(memory, query, sqrtf(memory->set_lists[set].reach), 1);
 }
 
@@ -280,52 +281,194 @@ size_t hybrid_memory_entry_bytes(const HybridMemory *memory, int contacts) {
     return entry_size(memory) + sizeof *memory->impulses * (size_t)contacts;
 }
 
-static bool reserve_entry(HybridMemory *memory, int contacts) {
-    const size_t key = (size_t)memory->key_size, impulses = memory->impulse_count + (size_t)contacts;
-    if (impulses > memory->impulse_capacity) {
-        if (!resize((void **)&memory->impulses, 2 * impulses, sizeof *memory->impulses)) return false;
-        memory->impulse_capacity = 2 * impulses;
-    }
-    if ((size_t)memory->entry_count < memory->entry_capacity) return true;
-    const size_t count = 2 * memory->entry_capacity + 16;
-    if (!resize((void **)&memory->entry_set, count, sizeof *memory->entry_set) ||
-        !resize((void **)&memory->entry_begin, count, sizeof *memory->entry_begin) ||
-        !resize((void **)&memory->keys, count * key, sizeof *memory->keys) ||
-        !resize((void **)&memory->metrics, count * (size_t)memory->metric_size, sizeof *memory->metrics) ||
-        !resize((void **)&memory->reach, count, sizeof *memory->reach) ||
-        !resize((void **)&memory->near, count * HYBRID_NEAR, sizeof *memory->near) ||
-        !resize((void **)&memory->weights, count * HYBRID_NEAR * key, sizeof *memory->weights))
+/* Gives an array that keeps its items room for `count` of `size` bytes. False when memory is short; the array stays
+   valid. */
+static bool resize(void **items, size_t count, size_t size) {
+    void *grown = realloc(*items, count * size);
+    if (grown == NULL) return false;
+    *items = grown;
+    return true;
+}
+
+/* At least doubled, so that adding costs O(1). */
+static size_t room_for(size_t capacity, size_t wanted) {
+    return wanted <= capacity ? capacity : wanted > 2 * capacity + 16 ? wanted : 2 * capacity + 16;
+}
+
+/* Room for so many. False when memory is short; the arrays stay valid. */
+static bool reserve(HybridMemory *memory, size_t set_count, size_t entry_count, size_t impulse_count) {
+    const size_t key = (size_t)memory->key_size, metric = (size_t)memory->metric_size,
+                 sets = room_for(memory->set_capacity, set_count),
+                 entries = room_for(memory->entry_capacity, entry_count),
+                 impulses = room_for(memory->impulse_capacity, impulse_count);
+    if (sets > memory->set_capacity && (!resize((void **)&memory->set_hash, sets, sizeof *memory->set_hash) ||
+                                        !resize((void **)&memory->set_contacts, sets, sizeof *memory->set_contacts) ||
+                                        !resize((void **)&memory->set_lists, sets, sizeof *memory->set_lists)))
         return false;
-    memory->entry_capacity = count;
+    memory->set_capacity = sets;
+    if (entries > memory->entry_capacity &&
+        (!resize((void **)&memory->entry_set, entries, sizeof *memory->entry_set) ||
+         !resize((void **)&memory->entry_begin, entries, sizeof *memory->entry_begin) ||
+         !resize((void **)&memory->keys, entries * key, sizeof *memory->keys) ||
+         !resize((void **)&memory->metrics, entries * metric, sizeof *memory->metrics) ||
+         !resize((void **)&memory->reach, entries, sizeof *memory->reach) ||
+         !resize((void **)&memory->near, entries * HYBRID_NEAR, sizeof *memory->near) ||
+         !resize((void **)&memory->weights, entries * HYBRID_NEAR * key, sizeof *memory->weights)))
+        return false;
+    memory->entry_capacity = entries;
+    if (impulses > memory->impulse_capacity && !resize((void **)&memory->impulses, impulses, sizeof *memory->impulses))
+        return false;
+    memory->impulse_capacity = impulses;
     return true;
 }
 
 bool hybrid_memory_add(HybridMemory *memory, const HybridQuery *query, const HybridEntry *entry, Error *error) {
-    const size_t key = (size_t)memory->key_size, metric = (size_t)memory->metric_size, e = (size_t)memory->entry_count;
-    if (memory->entry_count >= HYBRID_ENTRIES_MAX || !reserve_entry(memory, query->contacts))
+    const size_t key = (size_t)memory->key_size, metric = (size_t)memory->metric_size, e = (size_t)memory->entry_count,
+                 contacts = (size_t)query->contacts;
+    if (memory->entry_count >= HYBRID_ENTRIES_MAX ||
+        !reserve(memory, (size_t)memory->set_count + 1, e + 1, memory->impulse_count + contacts))
         return error_memory(error, "hybrid");
-    int set = hybrid_memory_set(memory, query->hash, query->contacts);
-    if (set < 0) set = hybrid_memory_add_set(memory, query->hash, query->contacts);
-    HybridList *list = set < 0 ? NULL : &memory->set_lists[set];
-    if (list == NULL ||
-        !array_reserve((void **)&list->entries, &list->capacity, (size_t)list->count + 1, sizeof *list->entries))
-        return error_memory(error, "hybrid");
+    int set = find_set(memory, query->hash, query->contacts);
+    if (set < 0) {
+        set = memory->set_count;
+        memory->set_hash[set] = query->hash;
+        memory->set_contacts[set] = query->contacts;
+        if (!take_set(memory)) return error_memory(error, "hybrid");
+    }
     memory->entry_set[e] = set;
-    memory->entry_begin[e] = memory->impulse_count;
     memory->reach[e] = entry->reach;
     memcpy(memory->keys + e * key, query->key, key * sizeof *query->key);
     memcpy(memory->metrics + e * metric, entry->metric, metric * sizeof *entry->metric);
     memcpy(memory->near + e * HYBRID_NEAR, entry->near, HYBRID_NEAR * sizeof *entry->near);
     memcpy(memory->weights + e * HYBRID_NEAR * key, entry->weights, HYBRID_NEAR * key * sizeof(float));
-    if (query->contacts > 0)
-        memcpy(memory->impulses + memory->impulse_count, entry->impulses,
-               (size_t)query->contacts * sizeof *entry->impulses);
-    memory->impulse_count += (size_t)query->contacts;
-    memory->entry_count++;
-    /* To its place in the list, by its first number. */
-    const int place = place_of(memory, list, first_number(memory, (int)e));
-    for (int i = list->count++; i > place; i--) list->entries[i] = list->entries[i - 1];
-    list->entries[place] = (int32_t)e;
-    if (memory->reach[e] > list->reach) list->reach = memory->reach[e];
+    if (contacts > 0)
+        memcpy(memory->impulses + memory->impulse_count, entry->impulses, contacts * sizeof *entry->impulses);
+    return take_entry(memory) || error_memory(error, "hybrid");
+}
+
+/* Files of memories: kind "hybrid". The impulses are those of all contacts, entry after entry. */
+
+/* How many the file has; the memory's arrays have them before it takes them in. */
+typedef struct Contents {
+    HybridMemory *memory;
+    int64_t sets, entries, impulses;
+} Contents;
+
+static int list_fields(void *of, NetField *fields) {
+    const Contents *contents = of;
+    HybridMemory *memory = contents->memory;
+    const int64_t key = memory->key_size, entries = contents->entries;
+    const NetField all[] = {
+        {"scene", NPZ_TEXT, 0, {sizeof memory->scene}, .data = memory->scene, .shown = true},
+        {"command", NPZ_TEXT, 0, {sizeof memory->command}, .data = memory->command},
+        {"body_count", NPZ_INT32, 0, {0}, .data = &memory->body_count, .known = true},
+        {"bomb", NPZ_INT32, 0, {0}, .data = &memory->bomb, .known = true},
+        {"launches", NPZ_INT32, 0, {0}, .data = &memory->launches},
+        {"set_hash", NPZ_UINT64, 1, {contents->sets}, .data = memory->set_hash},
+        {"set_contacts", NPZ_INT32, 1, {contents->sets}, .data = memory->set_contacts},
+        {"entry_set", NPZ_INT32, 1, {entries}, .data = memory->entry_set},
+        {"near", NPZ_INT32, 2, {entries, HYBRID_NEAR}, .data = memory->near},
+        {"gate", NPZ_FLOAT32, 0, {0}, .data = &memory->gate, .range = &float_not_negative},
+        {"tolerance", NPZ_FLOAT32, 0, {0}, .data = &memory->tolerance, .range = &float_positive},
+        {"centre", NPZ_FLOAT32, 1, {memory->numbers}, .data = memory->centre, .range = &float_any},
+        {"rows", NPZ_FLOAT32, 2, {memory->numbers, memory->components}, .data = memory->rows, .range = &float_any},
+        {"keys", NPZ_FLOAT32, 2, {entries, key}, .data = memory->keys, .range = &float_any},
+        {"metrics", NPZ_FLOAT32, 2, {entries, memory->metric_size}, .data = memory->metrics, .range = &float_any},
+        {"reach", NPZ_FLOAT32, 1, {entries}, .data = memory->reach, .range = &float_not_negative},
+        {"weights", NPZ_FLOAT32, 2, {entries, HYBRID_NEAR * key}, .data = memory->weights, .range = &float_any},
+        {"impulses", NPZ_FLOAT32, 2, {contents->impulses, 2}, .data = memory->impulses, .range = &float_any}};
+    memcpy(fields, all, sizeof all);
+    return sizeof all / sizeof *all;
+}
+
+static bool check_count(const NpzFile *file, const char *what, int64_t count, int64_t most, Error *error) {
+    return (count >= 1 && count <= most) ||
+           error_input(error, npz_path(file), "%lld %s; expected 1 to %lld", (long long)count, what, (long long)most);
+}
+
+static bool read_sizes(void *of, NpzFile *file, Error *error) {
+    Contents *contents = of;
+    int bodies, bomb;
+    int64_t rows[2], pushes[2];
+    if (!net_file_integer(file, "body_count", &bodies, error) || !net_file_integer(file, "bomb", &bomb, error) ||
+        !npz_shape(file, "rows", NPZ_FLOAT32, 2, rows, error) ||
+        !npz_shape(file, "set_hash", NPZ_UINT64, 1, &contents->sets, error) ||
+        !npz_shape(file, "entry_set", NPZ_INT32, 1, &contents->entries, error) ||
+        !npz_shape(file, "impulses", NPZ_FLOAT32, 2, pushes, error) ||
+        !check_count(file, "components", rows[1], HYBRID_COMPONENTS_MAX, error) ||
+        !check_count(file, "entries", contents->entries, HYBRID_ENTRIES_MAX, error) ||
+        !check_count(file, "sets of contacts", contents->sets, contents->entries, error) ||
+        !check_count(file, "impulses", pushes[0], contents->entries * HYBRID_CONTACTS_MAX, error))
+        return false;
+    contents->impulses = pushes[0];
+    if (bodies < 2 || bodies > HYBRID_BODIES_MAX || rows[0] != HYBRID_NUMBERS * ((int64_t)bodies - 1))
+        return error_input(error, npz_path(file),
+                           "body_count is %d and rows has %lld rows; expected 2 to %d bodies and %d rows "
+                           "for each body but the bomb",
+                           bodies, (long long)rows[0], HYBRID_BODIES_MAX, HYBRID_NUMBERS);
+    if (bomb < 0 || bomb >= bodies)
+        return error_input(error, npz_path(file), "bomb is %d; expected 0 to %d", bomb, bodies - 1);
+    contents->memory = hybrid_memory_create(bodies, bomb, (int)rows[1], error);
+    return contents->memory != NULL;
+}
+
+static bool make_arrays(void *of, Error *error) {
+    const Contents *contents = of;
+    return reserve(contents->memory, (size_t)contents->sets, (size_t)contents->entries, (size_t)contents->impulses) ||
+           error_memory(error, "hybrid");
+}
+
+/* Sets first; then the entries, whose neighbours are of their own sets, and whose contacts are as many as the
+   impulses. */
+static bool take_all(void *of, const char *path, Error *error) {
+    const Contents *contents = of;
+    HybridMemory *memory = contents->memory;
+    int64_t impulses = 0;
+    if (memory->launches < 0) return error_input(error, path, "launches is %d; expected at least 0", memory->launches);
+    for (int64_t i = 0; i < contents->sets; i++) {
+        const int contacts = memory->set_contacts[i];
+        if (contacts < 0 || contacts > HYBRID_CONTACTS_MAX)
+            return error_input(error, path, "set_contacts: number %lld is %d; expected 0 to %d", (long long)i, contacts,
+                               HYBRID_CONTACTS_MAX);
+        if (find_set(memory, memory->set_hash[i], contacts) >= 0)
+            return error_input(error, path, "set_hash: number %lld is there twice", (long long)i);
+        if (!take_set(memory)) return error_memory(error, path);
+    }
+    for (int64_t i = 0; i < contents->entries; i++) {
+        const int32_t set = memory->entry_set[i];
+        if (set < 0 || set >= contents->sets)
+            return error_input(error, path, "entry_set: number %lld is %d; expected 0 to %lld", (long long)i, (int)set,
+                               (long long)contents->sets - 1);
+        impulses += memory->set_contacts[set];
+    }
+    if (impulses != contents->impulses)
+        return error_input(error, path, "%lld impulses; the entries have %lld contacts", (long long)contents->impulses,
+                           (long long)impulses);
+    for (int64_t i = 0; i < contents->entries * HYBRID_NEAR; i++) {
+        const int32_t near = memory->near[i];
+        if (near < -1 || near >= contents->entries ||
+            (near >= 0 && memory->entry_set[near] != memory->entry_set[i / HYBRID_NEAR]))
+            return error_input(error, path, "near: number %lld is %d, which is no entry of the same contacts",
+                               (long long)i, (int)near);
+    }
+    for (int64_t i = 0; i < contents->entries; i++)
+        if (!take_entry(memory)) return error_memory(error, path);
     return true;
+}
+
+static const NetFileKind kind = {"hybrid", HYBRID_VERSION, list_fields, read_sizes, make_arrays, take_all};
+
+bool hybrid_memory_write(const HybridMemory *memory, const char *path, Error *error) {
+    if (memory->entry_count == 0) return error_input(error, path, "the memory is empty: there is nothing to write");
+    const Contents contents = {(HybridMemory *)memory, memory->set_count, memory->entry_count,
+                               (int64_t)memory->impulse_count};
+    return net_file_write(&kind, &contents, path, error);
+}
+
+HybridMemory *hybrid_memory_read(const char *path, Error *error) {
+    Contents contents = {.memory = NULL};
+    const bool ok = net_file_read(&kind, &contents, path, error);
+    if (ok) return contents.memory;
+    hybrid_memory_destroy(contents.memory);
+    return NULL;
 }

@@ -130,11 +130,3 @@ bool hybrid_memory_write(const HybridMemory *memory, const char *path, Error *er
 /* ERROR_INPUT, naming the file, if it is damaged, of another version or kind, has inconsistent shapes, a NaN or
    infinite number, a set that is there twice or an entry of an unknown set. */
 HybridMemory *hybrid_memory_read(const char *path, Error *error);
-
-/* The sets of contacts of a memory (hybrid_memory.h), found by their hashes. */
-
-/* The set with this hash and number of contacts, or -1. */
-int hybrid_memory_set(const HybridMemory *memory, uint64_t hash, int contacts);
-
-/* A new set without entries; -1 when memory is short. */
-int hybrid_memory_add_set(HybridMemory *memory, uint64_t hash, int contacts);

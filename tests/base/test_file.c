@@ -8,8 +8,6 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <pthread.h>
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 
@@ -145,24 +143,6 @@ TEST(failed_writes_leave_nothing) {
     expect_write_error(joined, strerror(ENAMETOOLONG));
     free(joined);
     assert_int_equal(count_files(folder, ""), 0);
-}
-
-/* A file that may not grow stands for a full disk. */
-TEST(a_full_disk_keeps_the_old_file) {
-    const char *folder = fresh_folder("quota"), *path = temporary_path("quota/file");
-    write_file(path, "old");
-    struct rlimit previous, small;
-    assert_int_equal(getrlimit(RLIMIT_FSIZE, &previous), 0);
-    small = (struct rlimit){1000, previous.rlim_max};
-    signal(SIGXFSZ, SIG_IGN);
-    static char large[5000];
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-    bool done = file_write(path, large, sizeof large, &error);
-    setrlimit(RLIMIT_FSIZE, &previous);
-    assert_false(done);
-    assert_error(error, ERROR_SYSTEM, strerror(EFBIG));
-    assert_file(path, "old");
-    assert_int_equal(count_files(folder, ""), 1);
 }
 
 static void expect_read_error(const char *path, size_t limit, const char *reason) {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a list of files holds, what it refuses, and that no failed system call shortens it. */
-#include "folder_faults.h"
+/* What a list of files holds, and what it refuses. (That no failed system call shortens it: tests/faults.) */
 #include "testing.h"
 
 #include "base/file.h"
@@ -31,7 +30,6 @@ FIXTURE(make_tree) {
     static int made;
     snprintf(root, sizeof root, "%s", temporary_path(printed("tree-%d", made++)));
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) make_file(names[i]);
-    failing_opendir = failing_readdir = failing_stat = 0;
 }
 
 static bool is_x(const char *name) { return strstr(name, ".x") != NULL; }
@@ -87,28 +85,6 @@ TEST_WITH(links_out_of_the_folder_are_refused, make_tree, NULL) {
 TEST_WITH(a_folder_that_does_not_exist_is_the_users_mistake, make_tree, NULL) {
     refuse("nowhere", true, ERROR_INPUT, "nowhere/: error: cannot be read");
     refuse("tree/a.x", true, ERROR_INPUT, "tree/a.x/: error: cannot be read");
-}
-
-/* Each call fails in turn. When none fails any more, the list is whole. */
-TEST_WITH(no_failed_call_shortens_the_list, make_tree, NULL) {
-    int *const countdowns[] = {&failing_opendir, &failing_readdir, &failing_stat};
-    const int calls[] = {3, 16, 7}; /* at least: folders; their entries with . and .., and ends; entries not hidden */
-    make_link("a.x", "tree/link.x");
-    for (int kind = 0; kind < 3; kind++) {
-        int call = 0;
-        for (bool failed = true; failed;) {
-            error = (Error){0};
-            FolderList list;
-            *countdowns[kind] = ++call;
-            failed = !folder_list(&list, below("tree"), is_x, true, &error);
-            *countdowns[kind] = 0;
-            if (failed)
-                assert_error(error, ERROR_SYSTEM, "cannot be read: ");
-            else
-                assert_int_equal(list.count, 4), folder_list_free(&list);
-        }
-        assert_true(call > calls[kind]);
-    }
 }
 
 RUN_TESTS(NULL, NULL)

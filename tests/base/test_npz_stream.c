@@ -5,8 +5,6 @@
 
 #include "files.h"
 
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 enum { ROWS = 1500000, SMALL = 1000 };
@@ -108,22 +106,6 @@ TEST(an_unfinished_stream_leaves_nothing) {
     assert_int_equal(count_files(folder, ""), 0);
     assert_null(npz_stream_create(temporary_path("nowhere/run.npz"), 1, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/run.npz: error: cannot write: ");
-}
-
-/* A full disk, as the limit of a file's size shows it. */
-TEST(a_full_disk_is_told) {
-    struct rlimit limit;
-    signal(SIGXFSZ, SIG_IGN);
-    assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
-    const char *path = temporary_path("full.npz");
-    NpzStream *stream = npz_stream_create(path, 1, &error);
-    const int array = npz_stream_add(stream, &(NpzArray){"noise", NPZ_UINT32, 1, {0}, NULL}, &error);
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1 << 20, limit.rlim_max}), 0);
-    assert_false(npz_stream_append(stream, array, noise, 2 * ROWS, &error));
-    assert_error(error, ERROR_SYSTEM, "full.npz: error: cannot write: ");
-    npz_stream_destroy(stream);
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    assert_int_not_equal(access(path, F_OK), 0);
 }
 
 RUN_TESTS(make_numbers, free_numbers)

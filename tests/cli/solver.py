@@ -29,14 +29,10 @@ for count, line in enumerate(sys.stdin):
     if count == 2:
         if kind == "few":
             impulses.pop()
-        if kind == "many":
-            impulses += [0, 0]
         if kind == "none":
             del answer["impulses"]
         if kind == "nan":
             impulses[3] = float("nan")
-        if kind == "infinite":
-            impulses[2] = float("inf")
         if kind == "huge":
             impulses[2] = 1e300
         if kind == "fast":
@@ -45,10 +41,6 @@ for count, line in enumerate(sys.stdin):
             impulses[0] = "much"
         if kind == "former":
             answer["problem"] -= 1
-        if kind == "unnumbered":
-            del answer["problem"]
-        if kind == "nothing":
-            answer = {}
         if kind == "silent":
             time.sleep(1000)
         if kind == "die":

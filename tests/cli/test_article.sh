@@ -148,12 +148,6 @@ mv site.studies/paper/figures/factors.svg kept.svg
 complains "paper/figures/factors.svg is missing"
 ! brief || finish
 
-if command -v chromium >/dev/null; then
-    PYTHONPATH=$sources/tests/browser /usr/bin/python3 "$sources/tests/cli/article.py" site || fail "the article in Chromium"
-else
-    echo "skipped: the article in Chromium, which tests/setup --all installs"
-fi
-
 # The command under each live figure makes its page. Those of the studies make, in a short form, the files that the article takes from
 # them; of the paper and the league, which take long in any form, one piece shows that the command is valid.
 mkdir -p typed/bin typed/league

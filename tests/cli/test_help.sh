@@ -72,7 +72,4 @@ says "contact-net"
 says "k:"
 says "network:"
 says "Without its learned part: scene-net:net=off, with the same settings otherwise."
-
-"$twinbox" methods >/dev/full 2>err
-equal "status where standard output is full" $? 3
 finish

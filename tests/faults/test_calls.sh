@@ -13,4 +13,5 @@ some() {
 }
 some 8 malloc new simulate-net export-csv import compare-json approve page solve
 some 4 system simulate import compare-report approve
+some 1 system compare-equal
 some 50 libmalloc export-json import compare-report approve dataset train-from simulate-csv solve-step

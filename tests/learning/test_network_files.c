@@ -94,7 +94,8 @@ TEST(every_array_is_needed_and_checked) {
     }
 }
 
-/* Of one array: number `index` is `number`; or its text is `word`; or its shape is `shape`, all zeros. */
+/* Of one array: number `index` is `number`; or its text is `word`; or its shape is `shape`, where that
+   is not 0, all zeros. */
 typedef struct Change {
     Kind kind;
     const char *array;
@@ -114,8 +115,9 @@ static void refuse(const Change *change) {
         void *zeros = NULL;
         if (change->word != NULL) {
             array.data = change->word;
-        } else if (change->shape[0] > 0) {
-            memcpy(array.shape, change->shape, sizeof array.shape);
+        } else if (change->shape[0] > 0 || change->shape[1] > 0) {
+            for (int axis = 0; axis < 2; axis++)
+                if (change->shape[axis] > 0) array.shape[axis] = change->shape[axis];
             array.data = zeros = calloc(items_of(&array) + 1, 8);
         } else if (array.type == NPZ_FLOAT32) {
             ((float *)array.data)[change->index] = (float)change->number;
@@ -134,57 +136,35 @@ static void refuse(const Change *change) {
 TEST(what_no_network_has_is_refused) {
     static const Change changes[] = {
         {NETWORK, "weights_1", 0, INFINITY, .text = "weights_1: number 0 is inf; it must be finite"},
-        {NETWORK, "biases_1", 1, -INFINITY, .text = "biases_1: number 1 is -inf"},
         {NETWORK, "input_scale", 1, 0, .text = "input_scale: number 1 is 0; it must be finite and greater than 0"},
-        {NETWORK, "output_scale", 0, -1, .text = "output_scale: number 0 is -1"},
         {NETWORK, "widths", 1, -1, .text = "widths[1] is -1"},
-        {NETWORK, "widths", 0, 0, .text = "widths[0] is 0"},
-        {NETWORK, "widths", 1, INT32_MAX, .text = "widths[1] is 2147483647"},
-        {NETWORK, "widths", .shape = {1}, .text = "widths has 1 numbers"},
         {NETWORK, "widths", .shape = {10}, .text = "widths has 10 numbers"},
         {NETWORK, "activations", .word = "softmax", .text = "activation 0"},
-        {NETWORK, "activations", .word = "", .text = "0 activations for 2 layers"},
         {NETWORK, "activations", .word = "linear linear linear", .text = "more activations"},
-        {SCENE_NET, "state_rows", 0, -INFINITY, .text = "state_rows: number 0 is -inf"},
         {SCENE_NET, "scale", 0, -1e-30, .text = "scale: number 0 is -1e-30; it must be finite and not negative"},
-        {SCENE_NET, "cap", 5, -1, .text = "cap: number 5 is -1"},
-        {SCENE_NET, "gate", 0, -0.5, .text = "gate: number 0 is -0.5"},
-        {SCENE_NET, "bomb_inv_mass", 0, -1, .text = "bomb_inv_mass: number 0 is -1"},
         {SCENE_NET, "factors", 1, -0.1, .text = "factors: number 1 is -0.1; it must be from 0 to 2"},
         {SCENE_NET, "bomb", 0, -1, .text = "of which -1 is the bomb"},
-        {SCENE_NET, "bomb", 0, 12, .text = "12 bodies, of which 12 is the bomb"},
         {SCENE_NET, "body_count", 0, 3, .text = "array 'state_rows' has shape (66, 16); expected (12, up to 1024)"},
-        {SCENE_NET, "body_count", 0, INT32_MIN, .text = "state_rows"},
         {SCENE_NET, "sweeps", 0, 65, .text = "sweeps is 65; expected 0 to 64"},
         {SCENE_NET, "sweeps", 0, 2, .text = "array 'factors' has shape (14); expected (2)"},
         {SCENE_NET, "slot_a", 1, -1, .text = "slot 1"},
-        {SCENE_NET, "slot_b", 1, 12, .text = "slot 1"},
         {SCENE_NET, "slot_a", .shape = {SLOTS_MAX + 1}, .text = "20001 slots"},
-        {SCENE_NET, "state_rows", .shape = {66, 1040}, .text = "array 'state_rows' has shape (66, 1040)"},
-        {SCENE_NET, "warm_rows", .shape = {630, 24}, .text = "a width"},
+        {SCENE_NET, "warm_rows", .shape = {0, 24}, .text = "a width"},
         {SCENE_NET, "scene", .word = "\33[2J", .text = "control character U+001B"},
-        {SAIN, "on_pair_weights", 5, NAN, .text = "on_pair_weights"},
         {SAIN, "shuffled_body_scale", 1, 0, .text = "shuffled_body_scale"},
         {SAIN, "off_limit", 0, -1, .text = "off_limit"},
-        {SAIN, "off_pair_high", 0, INFINITY, .text = "off_pair_high"},
-        {HYBRID, "metrics", 7, NAN, .text = "metrics: number 7 is nan"},
         {HYBRID, "tolerance", 0, 0, .text = "tolerance"},
         {HYBRID, "reach", 1, -1, .text = "reach: number 1 is -1"},
         {HYBRID, "launches", 0, -1, .text = "launches is -1; expected at least 0"},
         {HYBRID, "entry_set", 1, 1e6, .text = "entry_set: number 1 is 1000000; expected 0 to "},
-        {HYBRID, "set_contacts", 1, -4, .text = "set_contacts: number 1 is -4"},
         {HYBRID, "set_contacts", 0, 19999, .text = "impulses; the entries have "},
         {HYBRID, "near", 6, -2, .text = "near: number 6 is -2, which is no entry of the same contacts"},
-        {HYBRID, "near", 6, INT32_MAX, .text = "near: number 6 is 2147483647"},
         {HYBRID, "bomb", 0, 1000, .text = "bomb is 1000; expected 0 to "},
         {HYBRID, "body_count", 0, 4, .text = "body_count is 4"},
         {GNS, "shape", 0, 20, .text = "the width is 20"},
-        {GNS, "shape", 0, -16, .text = "the width is -16"},
         {GNS, "shape", 1, 11, .text = "11 rounds"},
-        {GNS, "shape", 1, 0, .text = "0 rounds"},
         {GNS, "shape", 1, 2, .text = "parameters"},
         {GNS, "scales", 0, 0, .text = "greater than 0"},
-        {GNS, "parameters", 7, INFINITY, .text = "number 7"},
         {SUBSPACE, "low", 3, 5000, .text = "low: number 3 is 5000, above its high"},
         {SUBSPACE, "first_rows_0", 1, INFINITY, .text = "first_rows_0: number 1 is inf; it must be finite"}};
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) refuse(&changes[i]);

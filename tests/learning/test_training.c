@@ -300,28 +300,6 @@ TEST(stopped_training_returns_the_best_so_far) {
     }
 }
 
-/* Adam overshoots with a wide network; the returned network never gets worse with more iterations. */
-TEST(training_returns_the_best_and_not_the_last) {
-    OWN(Dataset) *dataset = make_taught_dataset(500);
-    double best = INFINITY;
-    int overshot = 0;
-    for (int stop = 0; stop < 12; stop++) {
-        Scores scores = {0};
-        const Progress progress = {stop_at, &stop};
-        TrainingOptions options = small("adam", 1000);
-        options.widths[1] = 40;
-        options.on_score = keep_score;
-        options.context = &scores;
-        OWN(Network) *network = training_run(dataset, &options, &progress, &error);
-        assert_ok(network != NULL, error);
-        double found = error_of(network, dataset, false);
-        assert_true(found <= 1.0001 * best);
-        best = fmin(best, found);
-        overshot += last_score(&scores)->train > 1.01 * found;
-    }
-    assert_true(overshot > 0);
-}
-
 TEST(training_continues_from_a_start_network) {
     OWN(Dataset) *dataset = make_taught_dataset(500), *wider = make_taught_dataset(500);
     for (int i = 0; i < 500 * PAIR_INPUTS; i++) wider->inputs[i] *= 2;

@@ -199,37 +199,6 @@ TEST(derivatives_match_differences_on_random_problems) {
     }
 }
 
-/* Impulses change velocities by W J^T, so the derivative is J W by_velocity; computed here from the problem itself. */
-TEST(without_sweeps_the_derivative_is_that_of_an_impulse) {
-    uint32_t seed = 9;
-    RandomProblem random;
-    make_random(&random, &seed, 10, 0.2f, 1);
-    OWN(Case) given = make_case(&random.problem, 0, &seed);
-    for (int i = 0; i < random.problem.contact_count; i++) {
-        given.start[2 * i] = 1;
-        given.start[2 * i + 1] = (random.contacts[i].friction = 0.5f) * 0.9;
-    }
-    unrolled_problem_free(&given.rows);
-    assert_true(unrolled_problem_make(&given.rows, &random.problem));
-    run_case(&given);
-    double by_start[NUMBERS_MAX];
-    unrolled_back(&given.unrolled, &given.rows, given.weights, by_start, NULL);
-    for (int i = 0; i < 2 * random.problem.contact_count; i++) {
-        const ContactPoint *contact = &random.contacts[i / 2];
-        const Vec2 along = i % 2 == 0 ? contact->normal : vec2(contact->normal.y, -contact->normal.x);
-        double sum = 0;
-        for (int side = -1; side <= 1; side += 2) {
-            const int body = side < 0 ? contact->a : contact->b;
-            const Vec2 arm = side < 0 ? contact->arm_a : contact->arm_b;
-            const double *by = given.weights + 3 * body, inv_mass = (double)random.bodies[body].inv_mass;
-            const double turn = (double)arm.x * (double)along.y - (double)arm.y * (double)along.x;
-            sum += side * inv_mass * ((double)along.x * by[0] + (double)along.y * by[1]);
-            sum += side * (double)random.bodies[body].inv_inertia * turn * by[2];
-        }
-        assert_near(by_start[i], sum, 1e-12);
-    }
-}
-
 /* Impulses are equal and opposite: without static bodies, no start and no factor changes the sum of m v. */
 TEST(total_momentum_is_conserved) {
     uint32_t seed = 11;

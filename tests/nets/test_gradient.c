@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Blocks of rows: forward, backward and their bits. (That slopes are finite differences is a law of every loss:
+   learning/derivatives, sain_loss, window_fit.) */
 #include "networks.h"
 #include "owned.h"
 
@@ -62,84 +64,6 @@ static void add_gradient(Case *made, double *gradient) {
     network_add_gradient(made->block, gradient);
 }
 
-/* How many values of rectified layers are above 0. */
-static int count_active(const Case *made) {
-    int count = 0;
-    for (int l = 0; l < made->network->layers; l++) {
-        if (made->network->activations[l] != ACTIVATION_RELU) continue;
-        for (int j = 0; j < made->network->widths[l + 1]; j++)
-            for (int r = 0; r < USED_ROWS; r++) count += made->block->values[l + 1][j * BLOCK_ROWS + r] > 0;
-    }
-    return count;
-}
-
-/* Central differences: their error is of the order of step^2, below 1e-8 here. Across the kink of a rectifier they
-   would be wrong: as many values are active on both sides of each step. Slopes that are not 0 are counted, or a lost
-   term would go unseen; below its kink a rectifier has none. */
-static void check_gradient(int layers, const int *widths, const Activation *activations) {
-    OWN(Case) made = make_case(layers, widths, activations);
-    FREED double *gradient = calloc((size_t)made.count, sizeof *gradient);
-    assert_non_null(gradient);
-    add_gradient(&made, gradient);
-    const double step = 1e-5;
-    const int active = count_active(&made);
-    int slopes = 0;
-    for (int p = 0; p < made.count; p++) {
-        double kept = made.parameters[p];
-        made.parameters[p] = kept + step;
-        double above = loss(&made);
-        assert_int_equal(count_active(&made), active);
-        made.parameters[p] = kept - step;
-        double slope = (above - loss(&made)) / (2 * step);
-        assert_int_equal(count_active(&made), active);
-        made.parameters[p] = kept;
-        assert_near(gradient[p], slope, 1e-8);
-        slopes += fabs(slope) > 1e-6;
-    }
-    assert_true(active > 0 ? slopes > made.count / 2 : slopes == made.count);
-}
-
-/* Each input is shifted in one row. */
-TEST(slopes_of_the_inputs_are_the_finite_difference) {
-    const int widths[] = {3, 5, 2};
-    const Activation activations[] = {ACTIVATION_TANH, ACTIVATION_LINEAR};
-    const double step = 1e-5;
-    OWN(Case) made = make_case(2, widths, activations);
-    FREED double *gradient = calloc((size_t)made.count, sizeof *gradient);
-    static double slopes[3 * BLOCK_ROWS];
-    assert_non_null(gradient);
-    add_gradient(&made, gradient);
-    network_backward_to_inputs(made.block, made.parameters, slopes);
-    for (int i = 0; i < 3; i++)
-        for (int r = 0; r < BLOCK_ROWS; r += 7) {
-            double *input = &made.block->values[0][i * BLOCK_ROWS + r];
-            const double kept = *input;
-            *input = kept + step;
-            const double above = loss(&made);
-            *input = kept - step;
-            const double slope = (above - loss(&made)) / (2 * step);
-            *input = kept;
-            assert_near(slopes[i * BLOCK_ROWS + r], slope, 1e-8);
-            assert_true((fabs(slope) > 1e-6) == (r < USED_ROWS));
-        }
-}
-
-TEST(backward_is_the_finite_difference) {
-    const Activation linear = ACTIVATION_LINEAR, sigmoid = ACTIVATION_SIGMOID, tangent = ACTIVATION_TANH,
-                     relu = ACTIVATION_RELU;
-    check_gradient(1, (const int[]){3, 2}, (const Activation[]){linear});
-    check_gradient(1, (const int[]){3, 2}, (const Activation[]){sigmoid});
-    check_gradient(1, (const int[]){3, 2}, (const Activation[]){tangent});
-    check_gradient(2, (const int[]){10, 10, 2}, (const Activation[]){sigmoid, sigmoid});
-    check_gradient(2, (const int[]){4, 5, 3}, (const Activation[]){tangent, linear});
-    check_gradient(3, (const int[]){10, 8, 8, 6}, (const Activation[]){sigmoid, sigmoid, linear});
-    check_gradient(4, (const int[]){2, 3, 4, 1, 2}, (const Activation[]){tangent, linear, sigmoid, tangent});
-    check_gradient(1, (const int[]){3, 2}, (const Activation[]){relu});
-    check_gradient(2, (const int[]){10, 10, 2}, (const Activation[]){relu, sigmoid});
-    check_gradient(2, (const int[]){4, 5, 3}, (const Activation[]){relu, linear});
-    check_gradient(3, (const int[]){10, 8, 8, 6}, (const Activation[]){relu, relu, linear});
-}
-
 /* Where a sum is exactly 0, the slope taken is 0. */
 TEST(the_rectifiers_slope_at_its_kink_is_zero) {
     OWN(Case) made = make_case(2, (const int[]){2, 2, 1}, (const Activation[]){ACTIVATION_RELU, ACTIVATION_LINEAR});
@@ -148,16 +72,6 @@ TEST(the_rectifiers_slope_at_its_kink_is_zero) {
     add_gradient(&made, gradient);
     for (int p = 0; p < 8; p++) assert_true(gradient[p] == 0);
     assert_true(gradient[8] != 0); /* the output's bias */
-}
-
-TEST(gradients_add_up) {
-    OWN(Case) made = make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
-    double once[64] = {0}, twice[64] = {0};
-    assert_true(made.count <= 64);
-    add_gradient(&made, once);
-    add_gradient(&made, twice);
-    add_gradient(&made, twice);
-    for (int p = 0; p < made.count; p++) assert_true(twice[p] == 2 * once[p]);
 }
 
 /* Training and inference are the same function, one in double, the other in float32. */
@@ -173,13 +87,6 @@ TEST(forward_agrees_with_predict) {
         network_predict(made.network, input, scratch, output);
         for (int k = 0; k < 2; k++) assert_near(made.block->values[3][k * BLOCK_ROWS + r], output[k], 1e-6);
     }
-}
-
-TEST(dot_sums_every_row_once) {
-    double a[BLOCK_ROWS], b[BLOCK_ROWS];
-    for (int r = 0; r < BLOCK_ROWS; r++) a[r] = r + 1, b[r] = r;
-    /* sum of r^2 + r for r < n = (n - 1) n (n + 1) / 3 */
-    assert_true(network_block_dot(a, b) == (BLOCK_ROWS - 1.0) * BLOCK_ROWS * (BLOCK_ROWS + 1.0) / 3);
 }
 
 static void gradient_by(const Kernels *kernels, Case *made, double *gradient) {

@@ -64,47 +64,8 @@ TEST(a_new_network_is_zero_and_has_its_own_slots) {
     for (int i = 0; i < INPUTS; i++) assert_true(network->low[i] == 0 && network->high[i] == 0);
 }
 
-/* Small whole numbers: every sum of them is exact. */
-static void make_whole(float *numbers, size_t count) {
-    for (size_t i = 0; i < count; i++) numbers[i] = roundf(8 * numbers[i]);
-}
-
 static double packed_number(const PackedRows *packed, int row, int column) {
     return (double)packed->units[row] * (double)packed->numbers[row * packed->width + column];
-}
-
-static void centre(Projection *projection, const int32_t *index, const float *numbers, int count) {
-    for (int i = 0; i < projection->from; i++) projection->packed.units[i] = 1;
-    for (int c = 0; c < projection->to; c++) {
-        projection->centre[c] = 0;
-        for (int i = 0; i < count; i++)
-            projection->centre[c] +=
-                numbers[i] * (float)packed_number(&projection->packed, index != NULL ? index[i] : i, c);
-    }
-}
-
-TEST(what_lies_at_the_centre_projects_to_zero) {
-    SeenScene scene;
-    uint32_t seed = 3;
-    OWN(SceneNet) *network = make_scene_net(&five_shape, five_slots, &seed);
-    make_scene(&scene, &seed);
-    see(&scene, 3, few_slots);
-    make_whole(scene.bomb, SLOT_BODY_NUMBERS);
-    make_whole(scene.state, STATE);
-    make_whole(scene.warm, 2 * FIVE_SLOTS);
-    centre(&network->bomb_state, NULL, scene.bomb, SLOT_BODY_NUMBERS);
-    centre(&network->state, NULL, scene.state, STATE);
-    centre(&network->present, scene.slots, scene.ones, 3);
-    centre(&network->warm, scene.impulses, scene.warm, 6);
-    float inputs[INPUTS];
-    scene_net_look(network, &scene.view, inputs);
-    for (int i = 0; i < INPUTS; i++) assert_true(inputs[i] == 0);
-    scene.warm[5] += 1; /* and other slots do not */
-    scene_net_look(network, &scene.view, inputs);
-    bool moved = false;
-    for (int i = INPUTS - 48; i < INPUTS; i++) moved |= inputs[i] != 0;
-    for (int i = 0; i < INPUTS - 48; i++) assert_true(inputs[i] == 0);
-    assert_true(moved);
 }
 
 static double *project(const Projection *projection, const int32_t *index, const float *numbers, int count,
@@ -163,26 +124,6 @@ TEST(a_prediction_is_the_formula) {
     }
 }
 
-/* For the same inputs, each alone and in any company. */
-TEST(a_slot_does_not_mind_the_others) {
-    SeenScene scene;
-    uint32_t seed = 5;
-    OWN(SceneNet) *network = make_scene_net(&five_shape, five_slots, &seed);
-    float inputs[INPUTS], first[HIDDEN], second[HIDDEN], all[2 * FIVE_SLOTS], few[6], one[2];
-    make_scene(&scene, &seed);
-    scene_net_look(network, &scene.view, inputs);
-    scene_net_predict(network, inputs, &scene.view, first, second, all);
-    see(&scene, 3, few_slots);
-    scene_net_predict(network, inputs, &scene.view, first, second, few);
-    for (int i = 0; i < 3; i++) assert_memory_equal(&few[2 * i], &all[2 * few_slots[i]], sizeof one);
-    for (int32_t slot = 0; slot < FIVE_SLOTS; slot++) {
-        see(&scene, 1, &slot);
-        scene_net_predict(network, inputs, &scene.view, first, second, one);
-        assert_memory_equal(one, &all[2 * slot], sizeof one);
-        assert_true(one[0] != 0 && one[0] != one[1]);
-    }
-}
-
 /* A step without contacts. */
 TEST(no_slots_are_none) {
     SeenScene scene;
@@ -201,33 +142,6 @@ TEST(no_slots_are_none) {
 static void refuse(SceneNetShape shape, const Slot *slots, const char *text) {
     Error error = {0};
     assert_refused(scene_net_create(&shape, slots, &error), text);
-}
-
-TEST(shapes_out_of_bounds_are_refused) {
-    const SceneNetShape fine = {3, 2, 1, 16, 16, 16, 16};
-    const Slot slot = {0, 1, 0};
-#define REFUSE(member, value, text) \
-    do {                            \
-        SceneNetShape shape = fine; \
-        shape.member = (value);     \
-        refuse(shape, &slot, text); \
-    } while (0)
-    REFUSE(body_count, 1, "1 bodies");
-    REFUSE(body_count, -1, "-1 bodies");
-    REFUSE(body_count, SCENE_NET_BODIES_MAX + 1, "257 bodies");
-    REFUSE(bomb, -1, "of which -1 is the bomb");
-    REFUSE(bomb, 3, "of which 3 is the bomb");
-    REFUSE(slot_count, 0, "0 slots");
-    REFUSE(slot_count, -5, "-5 slots");
-    REFUSE(slot_count, SLOTS_MAX + 1, "20001 slots");
-    const int bad[] = {0, -16, 8, 17, SCENE_NET_WIDTH_MAX + ROW_LANES};
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        REFUSE(state, bad[i], "a width");
-        REFUSE(present, bad[i], "a width");
-        REFUSE(warm, bad[i], "a width");
-        REFUSE(hidden, bad[i], "a width");
-    }
-#undef REFUSE
 }
 
 TEST(slots_that_do_not_rise_are_refused) {

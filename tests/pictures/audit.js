@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What access.py runs in the page before its own script: how large and how clear text is (WCAG 2.2 AA: contrast 4.5, of
-   large text 3), in elements and on canvases. On a canvas the colour behind a text is what is there when it is drawn. */
+/* What access.py and regression/page run in the page before its own script: how large and how clear text is (WCAG 2.2 AA:
+   contrast 4.5, of large text 3), in elements and on canvases. On a canvas the colour behind a text is what is there when
+   it is drawn. */
 "use strict";
 window.audit = (() => {
   const SMALLEST = 12; /* px */
@@ -31,10 +32,10 @@ window.audit = (() => {
   const visible = e => e.getClientRects().length > 0 && getComputedStyle(e).visibility === "visible";
 
   const fault_of = (what, size, colour, behind, limit) => {
-    if (size < SMALLEST - 0.01) return `${what}: ${size.toFixed(1)} px`;
     const found = ratio(over(colour, behind), behind);
     const pair = [colour, behind].map(channels => channels.map(Math.round)).join(" on ");
-    return found >= limit - 0.005 ? "" : `${what}: contrast ${found.toFixed(2)}, ${pair}`;
+    if (!(found >= limit - 0.005)) return `${what}: contrast ${found.toFixed(2)}, ${pair}`;
+    return size >= SMALLEST - 0.01 ? "" : `${what}: ${size.toFixed(1)} px`;
   };
 
   /* Texts of canvases, as they are drawn. */

@@ -51,17 +51,6 @@ TEST(the_impact_is_the_bombs_first_touch_of_a_box) {
     run->bomb = BOMB_BODY;
 }
 
-TEST(without_options_a_picture_is_a_frame) {
-    for (int slow = 0; slow <= 1; slow++) {
-        MomentPlan plan = plan_for((RenderOptions){.slow = slow});
-        assert_int_equal(moments_last(&plan) + 1, FRAMES);
-        for (int i = 0; i < FRAMES; i++) {
-            Moment moment = moments_at(&plan, i);
-            assert_true(moment.kind == MOMENT_STORED && moment.frame == i && moment.part == 0 && moment.slow == 1);
-        }
-    }
-}
-
 /* Simulated time, in frames. */
 static double time_of(Moment moment) { return moment.frame + moment_fraction(moment); }
 

@@ -123,41 +123,21 @@ TEST_WITH(a_sequence_can_be_stopped, make, destroy) {
     }
 }
 
-/* A file size limit simulates a full disk: with its signal ignored, write() fails. */
-static void limit_files(rlim_t bytes, void (*handler)(int)) {
+static void limit_files(rlim_t bytes) {
     struct rlimit limit;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
     limit.rlim_cur = bytes;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
     assert_int_equal(setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0}), 0);
-    signal(SIGXFSZ, handler);
+    signal(SIGXFSZ, SIG_DFL);
 }
 
-TEST_WITH(a_full_disk_is_told, make, destroy) {
-    RenderOptions options = options_for(temporary_path("full"), 2);
-    /* Too small for the manifest, for a picture (3 kB), for the journal's growth. */
-    static const struct {
-        rlim_t bytes;
-        const char *text;
-    } cases[] = {{100, "full/manifest.json.part"}, {2000, "full/frame_00000"}};
-    for (int i = 0; i < 2; i++) {
-        error = (Error){0};
-        limit_files(cases[i].bytes, SIG_IGN);
-        bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
-        limit_files(RLIM_INFINITY, SIG_DFL);
-        assert_false(ok);
-        assert_error(error, ERROR_SYSTEM, cases[i].text);
-        assert_int_equal(count_files(options.directory, ".png"), 0);
-        assert_int_equal(count_files(options.directory, ".tmp"), 0);
-    }
-}
-
-/* With its signal, the same limit kills the process. */
+/* By the signal of a limit of file sizes. */
 TEST_WITH(a_killed_process_is_reported, make, destroy) {
     RenderOptions options = options_for(temporary_path("killed"), 2);
-    limit_files(2000, SIG_DFL);
+    limit_files(2000);
     bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
-    limit_files(RLIM_INFINITY, SIG_DFL);
+    limit_files(RLIM_INFINITY);
     assert_false(ok);
     assert_error(error, ERROR_SYSTEM, "a drawing process was killed by signal");
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);

@@ -11,10 +11,8 @@
 #include "runs/trajectory.h"
 #include "sanitized.h"
 
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 enum { FRAMES = 9, WIDTH = 96, HEIGHT = 64 };
 
@@ -272,42 +270,6 @@ TEST(a_video_can_be_stopped) {
     assert_error(error, ERROR_INTERRUPTED, "stopped");
     assert_int_equal(access(options.path, F_OK), -1);
     assert_nothing_left(temporary_folder);
-}
-
-static bool kill_oneself(void *context, double done, double total) {
-    (void)context, (void)total;
-    if (done >= FRAMES / 2) raise(SIGKILL);
-    return true;
-}
-
-/* The encoder has no name of a file. */
-TEST(a_killed_program_leaves_nothing) {
-    static const char *const names[] = {"killed/a.mp4", "killed/a.gif"};
-    int status;
-    assert_ok(file_make_directory(temporary_path("killed"), &error), error);
-    for (int i = 0; i < 2; i++) {
-        VideoOptions options = options_for(temporary_path(names[i]));
-        const pid_t child = fork();
-        if (child == 0) {
-            video_encode(&options, &(Progress){kill_oneself, NULL}, &error);
-            _exit(0);
-        }
-        assert_int_equal(waitpid(child, &status, 0), child);
-        assert_true(WIFSIGNALED(status));
-        assert_int_equal(count_files(temporary_path("killed"), ""), 0);
-    }
-}
-
-TEST(y4m_holds_every_frame) {
-    int frames, width, height;
-    double rate;
-    const char *path = temporary_path("a.y4m");
-    VideoOptions options = options_for(path);
-    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    assert_ok(video_write_y4m(&options, file, NULL, &error), error);
-    assert_int_equal(close(file), 0);
-    probe(path, &frames, &rate, &width, &height);
-    assert_true(frames == FRAMES && width == WIDTH && height == HEIGHT && rate == 60);
 }
 
 TEST(a_reader_that_has_gone_is_told) {

@@ -241,30 +241,6 @@ TEST(pixels_that_cannot_be_complete_are_refused) {
     }
 }
 
-/* One red pixel, its stream with some padding cut into chunks behind `cut` bytes; each file is read by both decoders:
-   libpng's is forced by Adam7, which of one pixel is the plain order. */
-TEST(checksums_count_however_they_are_split) {
-    for (int i = 0; i < 2 * 12; i++)
-        for (int damaged = 0; damaged <= 4; damaged++) {
-            static PngParts file;
-            uint8_t stream[64] = {0};
-            uLongf size = sizeof stream;
-            assert_int_equal(compress(stream, &size, (const uint8_t[]){0, 255, 0, 0}, 4), Z_OK);
-            const size_t cut = (size_t)i / 2 % size;
-            if (damaged > 0) stream[size - (size_t)damaged] ^= 0x55;
-            put_header_of(&file, 1, 1, 8, PNG_COLOR_TYPE_RGB, i % 2);
-            put_chunk(&file, "IDAT", stream, cut);
-            for (size_t at = cut; at + 1 < size; at++) put_chunk(&file, "IDAT", stream + at, 1);
-            put_chunk(&file, "IDAT", stream + size - 1, 1 + 7);
-            put_chunk(&file, "IEND", NULL, 0);
-            error = (Error){0};
-            OWN(Image) *image = image_decode_png(file.data, file.size, "file.png", IMAGE_MAX_PIXELS, &error);
-            assert_int_equal(image != NULL, damaged == 0);
-            assert_int_equal(is_sound(&file, IMAGE_MAX_PIXELS, &(Error){0}), damaged == 0);
-            if (image != NULL) assert_memory_equal(image->pixels, ((const uint8_t[]){255, 0, 0, 255}), 4);
-        }
-}
-
 TEST(large_claims_are_refused_before_they_cost) {
     const char *path = temporary_path("claim.png");
     write_claim(path, 19000, 19000);
@@ -287,27 +263,6 @@ TEST(the_limit_of_pixels_is_the_callers) {
                    "small.png: error: the picture has 5 x 4 pixels; at most 19");
 }
 
-/* Two pictures that differ in 16 bits but not in 8. */
-TEST(sixteen_bits_count_in_full) {
-    static const PngKind kind = {"rgb 16", PNG_COLOR_TYPE_RGB, 16, false};
-    for (int interlace = 0; interlace < 2; interlace++) {
-        const char *path = temporary_path("deep.png");
-        write_kind(path, &kind, interlace);
-        OWN(Image) *a = image_of(path), *b = image_of(path);
-        assert_non_null(a->pixels16);
-        for (int y = 0; y < PNG_SIDE; y++)
-            for (int x = 0; x < PNG_SIDE; x++)
-                assert_int_equal(a->pixels16[(y * PNG_SIDE + x) * 4 + 1], sample(x, y, 1, 16));
-        ImageDifference difference;
-        image_compare_masked(a, b, NULL, 0, &difference);
-        assert_true(difference.equal);
-        b->pixels16[(5 * PNG_SIDE + 7) * 4 + 2] ^= 1;
-        image_compare_masked(a, b, NULL, 0, &difference);
-        assert_true(difference.pixels == 1 && difference.largest == 1);
-        assert_true(difference.first_x == 7 && difference.first_y == 5);
-    }
-}
-
 /* A sample v of 8 bits is v * 257 in 16. */
 TEST(depths_are_compared_by_what_they_mean) {
     ImageDifference difference;
@@ -318,41 +273,6 @@ TEST(depths_are_compared_by_what_they_mean) {
     deep.pixels16[0]++;
     image_compare_masked(&shallow, &deep, NULL, 0, &difference);
     assert_true(difference.pixels == 1 && difference.largest == 1);
-}
-
-enum { SWOLLEN = 1 << 20 };
-
-/* 1 MiB of text in 1 KiB of file. */
-static void write_text_bomb(const char *path) {
-    size_t size = SWOLLEN;
-    FREED char *text = malloc(size);
-    FILE *file = fopen(path, "wb");
-    assert_true(file != NULL && text != NULL);
-    memset(text, 'a', size - 1);
-    text[size - 1] = '\0';
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
-    png_infop info = png_create_info_struct(png);
-    png_text chunk = {
-        .compression = PNG_TEXT_COMPRESSION_zTXt, .key = (char *)"Bomb", .text = text, .text_length = size - 1};
-    png_init_io(png, file);
-    png_set_IHDR(png, info, 1, 1, 8, PNG_COLOR_TYPE_RGB, 0, 0, 0);
-    png_set_text(png, info, &chunk, 1);
-    png_write_info(png, info);
-    png_write_row(png, (png_const_bytep) "abc");
-    png_write_end(png, info);
-    png_destroy_write_struct(&png, &info);
-    fclose(file);
-}
-
-TEST(texts_that_swell_do_no_harm) {
-    const char *path = temporary_path("bomb.png");
-    static char value[SWOLLEN];
-    write_text_bomb(path);
-    Image *image = image_of(path);
-    assert_memory_equal(image->pixels, "abc\xFF", 4);
-    image_destroy(image);
-    text_of_image(path, "Bomb", value, sizeof value);
-    assert_string_equal(value, "");
 }
 
 TEST(what_is_no_file_is_refused) {

@@ -115,16 +115,6 @@ TEST(shapes_sampled_otherwise_are_equal) {
     for (int i = 0; i < SHAPES; i++) assert_no_difference(&shapes[i], &plain, &coarse);
 }
 
-/* Any colours, and dark as well as light ink. */
-TEST(colours_do_not_matter) {
-    static const TestDrawing one = {.samples = FINE, .strength = 1, .ink = {250, 90, 20}, .paper = {20, 24, 60}};
-    for (int i = 0; i < SHAPES; i++) {
-        TestDrawing moved = one;
-        moved.x = -0.15, moved.y = 0.2;
-        assert_no_difference(&shapes[i], &one, &moved);
-    }
-}
-
 TEST(real_changes_are_detected) {
     TestDrawing changes[] = {plain, plain, plain, plain, plain, plain};
     changes[0].strength = 0; /* erased */
@@ -168,35 +158,6 @@ TEST(lines_of_another_colour_are_detected) {
             assert_difference(&shapes[i], &ink, &blue);
             assert_difference(&shapes[i], &ink, &lighter);
         }
-}
-
-/* A line over another one, moved across by 0.3 pixels. */
-static Image *crossing(double below, double above, double move) {
-    const TestShape under = {LINE, below, 1, 18}, over = {LINE, above, 1, 18};
-    const double turn = above * acos(-1) / 180;
-    TestDrawing moved = plain;
-    moved.x = -move * sin(turn), moved.y = move * cos(turn);
-    Image *picture = drawn(&under, &plain), *line = drawn(&over, &moved);
-    for (int i = 0; i < SIDE * SIDE; i++)
-        for (int c = 0; c < 3; c++)
-            picture->pixels[4 * i + c] = (uint8_t)((picture->pixels[4 * i + c] * line->pixels[4 * i + c] + 127) / 255);
-    image_destroy(line);
-    return picture;
-}
-
-TEST(lines_that_cross_may_move) {
-    static const double angles[] = {0, 23, 45, 68, 90, 120};
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++)
-            for (int way = -1; way <= 1 && i != k; way += 2) {
-                Image *a = crossing(angles[i], angles[k], 0), *b = crossing(angles[i], angles[k], 0.3 * way);
-                const ImageDifference difference = difference_of(a, b);
-                if (difference.pixels > 0)
-                    fail_msg("%g over %g degrees, %d: %d pixels count, at %d, %d", angles[k], angles[i], way,
-                             (int)difference.pixels, difference.first_x, difference.first_y);
-                image_destroy(a);
-                image_destroy(b);
-            }
 }
 
 /* A line of this width and colour between sky and earth, by 16 x 16 samples; its normal has this angle. */

@@ -61,11 +61,6 @@ TEST(frames_meet_by_stem_and_number) {
                  "stack_000030.png=stack_30.PNG -=stack_000031.png");
 }
 
-TEST(a_longer_stem_is_another) {
-    assert_pairs(folder_of("long_a", "a_1.png a_b_1.png"), folder_of("long_b", "a_1.png a_b_2.png"),
-                 "a_1.png=a_1.png a_b_1.png=- -=a_b_2.png");
-}
-
 /* Two tools name their frames differently. */
 TEST(where_there_is_one_stem_numbers_decide) {
     assert_pairs(folder_of("ours", "frame_000002.png frame_000010.png"), folder_of("theirs", "0010.png 0003.png 2.png"),
@@ -121,14 +116,6 @@ TEST(two_files_meet_whatever_their_names) {
     snprintf(a, sizeof a, "%s/before_7.png", folder_of("files_a", "before_7.png"));
     snprintf(b, sizeof b, "%s/after.png", folder_of("files_b", "after.png"));
     assert_pairs(a, b, "before_7.png=after.png");
-}
-
-TEST(numbers_too_long_are_part_of_the_name) {
-    ImageSequence *sequence = opened(folder_of("digits", "1234567890123456789.png 123456789012345678.png"));
-    assert_int_equal(sequence->count, 2);
-    assert_true(sequence->frames[0].number == 123456789012345678 && sequence->frames[0].stem == 0);
-    assert_true(sequence->frames[1].number == -1 && sequence->frames[1].stem == 19);
-    image_sequence_close(sequence);
 }
 
 static void refuse(const char *path, const char *text) {

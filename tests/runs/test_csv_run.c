@@ -190,13 +190,9 @@ static const struct {
      "run.csv:10: error: body 1 is finite in frame 2, but not in frame 1"},
     {HEAD "0,0,0,-0.5,0\n0,1,0,1e39,0\n", "run.csv: error: body 1: a number of its first frame is NaN or infinite"},
     {HEAD "0,0,0,-0.5,0\n0,1,0,nano,0\n", "run.csv:6:7: error: y: 'nano' is not a finite number"},
-    {HEAD "0,0,0,-0.5,\n", "run.csv:5:12: error: angle: '' is not a finite number"},
     {HEAD "0,0,0,-0.5\n", "run.csv:5: error: 4 fields, but the header has 5"},
-    {HEAD "0,0,0,-0.5,0,0\n", "run.csv:5: error: 6 fields, but the header has 5"},
     {HEAD "\n" ROWS, "run.csv:5: error: the line is empty"},
     {HEAD "-1,0,0,0,0\n", "run.csv:5:1: error: frame: '-1' is not a whole number from 0"},
-    {HEAD "0.5,0,0,0,0\n", "run.csv:5:1: error: frame: '0.5' is not a whole number"},
-    {HEAD "99999999999999999999,0,0,0,0\n", "run.csv:5:1: error: frame: '9999"},
     {HEAD ROWS "2000000000,0,0,0,0\n", "run.csv:9: error: frame 2000000000 cannot follow from frame 0"},
     {HEAD ROWS "2,2000000000,0,0,0\n", "run.csv:9: error: body 2000000000 has no size"},
     {HEAD "0,0,0,0,0\n", "run.csv: error: body 1 has a size but no row"},
@@ -211,7 +207,6 @@ static const struct {
      "run.csv:4: error: time 0.1 s does not fit to equal steps of 0.5 s: frame 1 is due at 0.5 s"},
     {"# dt: 0\n" HEAD, "run.csv:1: error: dt: expected a time in seconds"},
     {"# size: 0,0,1\n" HEAD, "run.csv:1: error: size: expected BODY,WIDTH,HEIGHT"},
-    {"# size: 0,1,1,fixed\n" HEAD, "run.csv:1: error: size: expected BODY,WIDTH,HEIGHT"},
     {"# sizes: 0,1,1\n" HEAD, "run.csv:1: error: '# sizes:': did you mean '# size:'?"},
     {"# size: 1,5,5\n" HEAD ROWS, "run.csv: error: body 1 has two sizes"},
     {"# bomb: 7\n" HEAD ROWS, "run.csv: error: the bomb is body 7, which has no size"},
@@ -219,9 +214,6 @@ static const struct {
     {"# size: 0,1,1\nframe;body;x;y;angle\n",
      "run.csv:2: error: the fields are separated by semicolons; expected commas"},
     {"# size: 0,1,1\nframe,body,x,\"y\n", "run.csv:2:14: error: this quote is not closed"},
-    {"# size: 0,1,1\nframe,body,x,\"y\"z\n", "run.csv:2:14: error: expected a comma after the closing quote"},
-    {HEAD ROWS "\n2,0,0,0,0\n", "run.csv:9: error: the line is empty"},
-    {HEAD "0,0,0,-0.5,0\n0,1,0x1.8q,3,0\n", "run.csv:6:5: error: x: '0x1.8q' is not a finite number"},
     {"# dt: 1/120\n# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n0.0167,1,0,0,0,0\n",
      "run.csv:5: error: time 0.0167 s does not fit to equal steps of 0.00833333 s: frame 1 is due at 0.00833333 s"},
     {"# dt: 1\n# size: 0,1,1,static\n# size: "
@@ -231,7 +223,6 @@ static const struct {
     {"PK\3\4", "run.csv: error: is a zip archive"},
     {"# size: 0,1,1\nframe,body,x,y,theta\n", "run.csv:2: error: the column 'angle' is missing"},
     {"# size: 0,1,1\nframes,body,x,y,angle\n", "run.csv:2:1: error: unknown column 'frames': did you mean 'frame'?"},
-    {"# size: 0,1,1\nframe,body,x,y,angle,x\n", "run.csv:2:22: error: the column 'x' appears twice"},
     {"# size: 0,1,1\nframe,body,x,y,angle,vx\n", "run.csv:2: error: give all of vx, vy and omega, or none"},
 };
 
@@ -242,21 +233,6 @@ TEST(what_is_no_run_is_refused_with_its_line) {
         if (run != NULL) fail_msg("taken: %s", refused[i].text);
         assert_error(error, ERROR_INPUT, refused[i].reason);
     }
-}
-
-/* A few rows must not become a huge run: each of 60,000 frames has one row, of one of 60,000 bodies. */
-TEST(few_rows_of_many_bodies_are_refused) {
-    enum { MANY = 60000 };
-    const char *path = temporary_path("many.csv");
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    for (int i = 0; i < MANY; i++) fprintf(file, "# size: %d,1,1\n", i);
-    fprintf(file, "frame,body,x,y,angle\n");
-    for (int i = 0; i < MANY; i++) fprintf(file, "%d,%d,0,0,0\n", i, i);
-    fclose(file);
-    const CsvRunOptions options = {.name = "many", .dt = 1};
-    assert_refused(csv_run_read(path, &options, &notes, &error),
-                   "60000 frames of 60000 bodies take 259200000000 bytes; expected at most ");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -207,16 +207,12 @@ TEST(a_value_in_its_bounds_may_be_refused) {
 static const Refused expressions[] = {
     {SCENE("1e9*$height"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+10 kg, from 1e9*$height with "
                            "height = 10 boxes)"},
-    {SCENE("2 - $height"),
-     "6:44: error: mass must be greater than 0 (got -8 kg, from 2 - $height with height = 10 boxes)"},
     {SCENE("$height/0"), "6:51: error: mass is divided by 0 (got $height/0 with height = 10 boxes)"},
-    {SCENE("1/($height - 10)"), "6:45: error: mass is divided by 0 (got 1/($height - 10) with height = 10 boxes)"},
     {SCENE("2*$"), "6:46: error: mass: a parameter's name must follow the '$' (got 2*$)"},
     {SCENE("2*$hieght"), "6:46: error: mass: '$hieght' is not a parameter; did you mean 'height'?"},
     {SCENE("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: height, ratio"},
     {MASS("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: none"},
     {SCENE("2*"), "6:46: error: mass" OPERAND "2*)"},
-    {SCENE("'*2'"), "6:45: error: mass" OPERAND "*2)"},
     {SCENE("2$height"), "6:45: error: mass" OPERATOR "2$height with height = 10 boxes)"},
     {SCENE("2*(3+4"), "6:50: error: mass: an operator or ')' is expected here (got 2*(3+4)"},
     {SCENE(EIGHT("1e38*") "1e38"), "6:83: error: mass has an intermediate result that is infinite (got "
@@ -224,9 +220,6 @@ static const Refused expressions[] = {
     {SCENE(EIGHT(EIGHT(EIGHT("(((("))) "1"),
      "6:76: error: mass: an expression has too many numbers, signs and parentheses (got "
      "(((((((((((((((((((((((((((((((((((((((((...)"},
-    {SCENE(EIGHT(EIGHT("(-")) "1"), "6:76: error: mass: an expression has too many numbers, signs and parentheses (got "
-                                    "(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(...)"},
-    {SCENE("\"\\x32*$speed\""), "6:45: error: mass: '$speed' is not a parameter; known: height, ratio"},
 };
 
 TEST(the_caret_is_under_what_is_wrong) {
@@ -246,7 +239,6 @@ static const Refused whole_numbers[] = {
      "2:9: error: frames must be a whole number from 1 to 1000000 (got 1.5, from 3*$half with half = 0.5)"},
     {WHOLE("iterations: 2*$big"),
      "2:13: error: iterations must be a whole number from 1 to 1000000 (got 2000000, from 2*$big with big = 1000000)"},
-    {WHOLE("iterations: 2*$haf"), "2:15: error: iterations: '$haf' is not a parameter; did you mean 'half'?"},
 };
 
 #define PARAMETERS(text) BASE GROUND "parameters:\n  " text "\n"
@@ -255,13 +247,11 @@ static const Refused whole_numbers[] = {
 
 static const Refused parameters[] = {
     {BASE GROUND "parameters: 3\n", "7:13: error: parameters must be a mapping of names to values (got 3)"},
-    {BASE GROUND "parameters: {}\nparameters: {}\n", "8:1: error: key 'parameters' is given twice"},
     {BASE GROUND "parameters: {}\n", NULL},
     {PARAMETERS("A: {value: 1, from: 0, to: 2}"),
      "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got A)"},
     {PARAMETERS(NAME_32 ": {value: 1, from: 0, to: 2}"),
      "8:3: error: a parameter's name must have 1 to 31 characters of a-z, 0-9 and _ (got " NAME_32 ")"},
-    {ONE("value: 1, from: 0"), "8:6: error: a parameter needs the key 'to'"},
     {ONE("value: 1, form: 0"), "8:17: error: 'form' is not a key of a parameter; did you mean 'from'?"},
     {ONE("value: 1/2, from: 0.75, to: 3"), "8:14: error: value must be from 0.75 to 3 (got 0.5, from 1/2)"},
     {ONE("value: x, from: 3, to: 0"), "8:14: error: value must be a number (got x)"},
@@ -271,8 +261,6 @@ static const Refused parameters[] = {
     {ONE("value: 1, from: 1, to: 2, unit: " NAME_32),
      "8:39: error: unit must be a text of at most 24 bytes (got " NAME_32 ")"},
     {ONE("value: 1, from: 0, to: 2"), "8:3: error: no number of the scene uses the parameter '$a'"},
-    {PARAMETERS("a: {value: 1, from: 0, to: 2}\n  a: {value: 1, from: 0, to: 2}"),
-     "9:3: error: key 'a' is given twice"},
     {BASE GROUND "parameters: {a: {value: 1, from: 0, to: 2}, b: {value: 1, from: 0, to: 2}, c: {value: 1, from: 0, "
                  "to: 2},\n d: {value: 1, from: 0, to: 2}, e: {value: 1, from: 0, to: 2}}\n",
      "8:33: error: a scene must have at most 4 parameters"},

@@ -9,50 +9,35 @@
 
 static const Refused keys[] = {
     {BASE, "1:1: error: a scene needs the key 'bodies'"},
-    {GROUND, "1:1: error: a scene needs the key 'gravity'"},
     {"hello\n", "1:1: error: a scene must be a mapping of keys to values (got hello)"},
     {BASE GROUND "gravty: 1\n", "7:1: error: 'gravty' is not a key of a scene; did you mean 'gravity'?"},
     {BASE GROUND "\"a\\eb\": red\n", "7:2: error: 'a?b' is not a key of a scene; known: " SCENE_KEYS},
-    {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is given twice"},
-    {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
     {BASE GROUND ": 1\n", "7:1: error: expected a key; check the indentation"},
-    {BASE GROUND "\"\": 1\n", "7:2: error: a key must be a word"},
     {BODY("massa: 1"), "6:6: error: 'massa' is not a key of a body; did you mean 'mass'?"},
-    {BODY("mass: 1, position: [0, 0]"), "6:5: error: a body needs the key 'size'"},
     {BASE "bodies:\n  - box\n", "6:5: error: a body must be a mapping of keys to values (got box)"},
-    {BASE "bodies:\n", "5:1: error: bodies must be a list of at least one body (got nothing)"},
     {BASE "bodies: []\n", "5:9: error: bodies must be a list of at least one body (got none)"},
 };
 
 static const Refused numbers[] = {
     {"gravity: 10\n", "1:10: error: gravity must be a list of two numbers (got 10)"},
-    {"gravity: [0, [1]]\n", "1:14: error: gravity must be a number (got a list)"},
     {"gravity: [0, -1e5]\n", "1:14: error: gravity must be from -10000 to 10000 m/s^2 (got -1e5)"},
-    {"gravity: [0, .nan]\n", "1:14: error: gravity must be a number (got .nan)"},
     {"dt: NaN\n", "1:5: error: dt must be a number (got NaN)"},
     {"dt:\n", "1:1: error: dt must be a number (got nothing)"},
     {"dt: -1/60\n", "1:5: error: dt must be greater than 0 (got -0.0166666675 s, from -1/60)"},
-    {"dt: 2\n", "1:5: error: dt must be from 1e-05 to 1 s (got 2)"},
     {"iterations: 2.5\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 2.5)"},
-    {"iterations: 1000001\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 1000001)"},
-    {"frames: [1]\n", "1:9: error: frames must be a whole number from 1 to 1000000 (got a list)"},
     {"warm_starting: maybe\n", "1:16: error: warm_starting must be on or off (got maybe)"},
-    {"camera: {center: [0, 0]}\n", "1:9: error: a camera needs the key 'size'"},
     {"dt: " TEXT_64 "\n", "1:5: error: dt must be a number (got aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
 };
 
 static const Refused bodies[] = {
     {BODY("size: [1, 1], mass: -10, position: [0, 0]"), "6:26: error: mass must be greater than 0 (got -10)"},
-    {BODY("size: [1, 0]"), "6:16: error: size must be greater than 0 (got 0)"},
     {BODY("position: [0, 2e6]"), "6:20: error: position must be from -1e+06 to 1e+06 m (got 2e6)"},
-    {BODY("friction: -0.1"), "6:16: error: friction must be from 0 to 10 (got -0.1)"},
     {BODY("size: [1, 1], position: [0, 0]"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
     {BODY(BOX ", static: true"), "6:26: error: a static body must not have a mass"},
     {BODY("static: on, size: [1, 1], position: [0, 0], velocity: [0, 0]"),
      "6:60: error: a static body must not have the key 'velocity'"},
     {BODY(BOX ", pattern: heap"), "6:56: error: pattern must be row, stack or pyramid (got heap)"},
     {BODY(BOX ", pattern: row, count: 3"), "6:5: error: a pattern needs the key 'spacing'"},
-    {BODY(BOX ", pattern: row, spacing: [1, 1]"), "6:5: error: a pattern needs the key 'count'"},
     {BODY(BOX ", count: 3"), "6:54: error: count needs the key 'pattern' beside it"},
     {BODY(BOX ", pattern: row, count: 3, spacing: [0, 5e5]"), NULL}, /* 0, 5e5, 1e6: just within reach */
     {BODY(BOX ", pattern: row, count: 4, spacing: [0, 5e5]"),
@@ -64,11 +49,9 @@ static const Refused bodies[] = {
 
 static const Refused names[] = {
     {BODY(BOX ", name: " TEXT_31), NULL},
-    {BODY(BOX ", name: 7"), NULL},
     {BODY(BOX ", name: " TEXT_31 "\xc3\xa4"), NAME_IS "(got " TEXT_31 "\xc3\xa4)"},
     {BODY(BOX ", name: \"\""),
      "6:54: error: name must be a text of 1 to 31 bytes without control characters (got nothing)"},
-    {BODY(BOX ", name: [a]"), NAME_IS "(got a list)"},
     {BODY(BOX ", name: \"a\\nb\""),
      "6:54: error: name must be a text of 1 to 31 bytes without control characters (got a?b)"},
     {BODY(BOX ", name: a\xe2\x80\xae"
@@ -92,13 +75,10 @@ static const Refused untils[] = {
 #define BOMB "x: 1, y: 15, size: [1, 1], mass: 50"
 
 static const Refused bombs[] = {
-    {BASE GROUND "bomb: 5\n", "7:7: error: a bomb must be a mapping of keys to values (got 5)"},
-    {BASE GROUND "bomb: {y: 1}\n", "7:7: error: a bomb needs the key 'x'"},
     {BASE GROUND "bomb: {" BOMB ", angle: 1}\n", "7:45: error: 'angle' is not a key of a bomb; known: x, y, size, "
                                                  "mass, friction, rotation, spin, frame, velocity, impact_frames"},
     {BASE GROUND "bomb: {" BOMB ", frame: 300}\n", NULL},
     {BASE GROUND "bomb: {" BOMB ", frame: 301}\n", "7:7: error: the bomb's frame 301 is after the last (frames: 300)"},
-    {BASE GROUND "bomb: {" BOMB ", velocity: {}}\n", "7:55: error: a velocity law needs the key 'times_position'"},
     {BASE GROUND "bomb: {" BOMB ", velocity: {times_position: 1000}}\n",
      "7:55: error: the bomb's start velocity is (1000, 15000) m/s; the largest allowed component is 10000"},
 };
@@ -109,9 +89,7 @@ static const Refused families[] = {
     {FAMILY("{from: -5, to: 5, value: 5}",
             "mass: {from: 1, to: 50}, rotation: {from: -1, to: 1}, spin: {from: 0, to: 2}"),
      NULL},
-    {FAMILY("{from: -5}", "mass: 50"), "7:11: error: a family of launches needs the key 'to'"},
     {FAMILY("{from: 5, to: -5}", "mass: 50"), "7:18: error: x: from must be less than to (got 5 and -5)"},
-    {FAMILY("{from: .nan, to: 5}", "mass: 50"), "7:18: error: from must be a number (got .nan)"},
     {FAMILY("{from: -5, to: 5, value: 6}", "mass: 50"), "7:36: error: x: value must be from -5 to 5 (got 6)"},
     {FAMILY("1", "mass: {from: 0, to: 50}"), "7:48: error: from must be greater than 0 (got 0)"},
     {FAMILY("{from: -5, to: 9000}", "mass: 50, velocity: {times_position: -1.5}"),
@@ -119,11 +97,8 @@ static const Refused families[] = {
 };
 
 static const Refused networks[] = {
-    {BASE GROUND "networks: x.npz\n", "7:11: error: networks must be a mapping of methods to files (got x.npz)"},
     {BASE GROUND "networks: {Pair: x.npz}\n", "7:12: error: a method's name must consist of a-z, 0-9 and - (got Pair)"},
-    {BASE GROUND "networks: {a: [b]}\n", "7:15: error: a network must be the path of a file (got a list)"},
     {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network must be the path of a file (got b?c)"},
-    {BASE GROUND "networks: {a: b, a: c}\n", "7:18: error: key 'a' is given twice"},
     {BASE GROUND "networks: {a: b, b: b, c: b, d: b, e: b, f: b, g: b, h: b, "
                  "i: b, j: b, k: b, l: b, m: b, n: b, o: b, p: b, q: b}\n",
      "7:108: error: a scene must have at most 16 networks"},
@@ -141,8 +116,6 @@ static const Refused yaml[] = {
     {"a: \x01\n", "1:4: error: control character 0x01"},
     {"a: x\xe2\x80\xa8y\n", "1:5: error: the character U+2028 is not allowed"},
     {"a: b\n\xc3\xa4\xff\n", "2:2: error: not UTF-8 text"},
-    {"a: \xc0\x80\n", "1:4: error: not UTF-8 text"},
-    {"a: \xe2\x82", "1:4: error: not UTF-8 text"},
     {"", "1:1: error: the file is empty"},
 };
 

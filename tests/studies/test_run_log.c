@@ -43,19 +43,6 @@ static RunLog log_by_hand(Handmade *made) {
                     .at = made->at};
 }
 
-TEST(equal_runs_have_no_differences) {
-    Handmade a, b;
-    const Scene scene = scene_by_hand();
-    const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
-    RunMeasures measures = run_measures(&log, &converged, &scene);
-    for (int phase = 0; phase < PHASES; phase++) {
-        assert_near(measures.energy[phase], 0, 0);
-        assert_near(measures.penetration[phase], 0.01, 0);
-    }
-    assert_near(measures.drift, 0, 0);
-    assert_near(measures.moved, 0, 0);
-}
-
 /* The converged run is one until frame 5, the first of the impact. */
 TEST(nothing_is_compared_with_steps_that_did_not_converge) {
     Handmade a, b;

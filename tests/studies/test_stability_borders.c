@@ -158,17 +158,6 @@ TEST(titles_of_studies_fit_and_read_as_English) {
     }
 }
 
-/* Only rows without values; one value; zero and negative values; forty decades. */
-TEST(unusual_ranges_are_drawn) {
-    static const char *const rows[] = {"a,engine,,x,,,,not applicable\n", "a,engine,,x,,0,,settles\n",
-                                       "a,engine,,x,m,-5,-5,falls\n",     "a,engine,,x,,1e-20,1e20,falls\n",
-                                       "a,engine,,x,,-1e30,1e30,falls\n", "a,engine,,x,,3,3.0000001,falls\n"};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        start_afresh(MAPS ONE_CELL, printed(BORDERS "%s", rows[i]));
-        draw();
-    }
-}
-
 TEST(invalid_borders_are_refused_with_their_place) {
     static const struct {
         const char *rows, *message;

@@ -130,21 +130,6 @@ TEST(titles_are_names_and_settings) {
     }
 }
 
-TEST(many_methods_and_large_grids_are_drawn) {
-    static const struct { int methods, across, up; } cases[] = {{24, 3, 2}, {2, 1, 1}, {5, 2, 60}, {10, 8, 10}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char *maps = make_map(cases[i].methods, cases[i].across, cases[i].up);
-        start_afresh(maps, BORDERS ONE_BORDER);
-        free(maps);
-        draw();
-        int cells = cases[i].across * cases[i].up;
-        check_svg("svg = read('map-grid')\nexpect(count(svg, '#%06X'), %d, 'settles')\n"
-                  "expect(sum(t.startswith('engine:k=') for t in texts(svg)), %d, 'panels')\n",
-                  verdict_looks[0].fill, cases[i].methods * ((cells + CELL_MISSING - 1) / CELL_MISSING) + 1,
-                  cases[i].methods);
-    }
-}
-
 #define START "stack,engine,,a,,1,b,,"
 
 TEST(invalid_maps_are_refused_with_their_place) {
