@@ -354,7 +354,7 @@ static bool check_limits(CheckedRun *checked, Error *error) {
     if (!isnan(options->max_drift) && isnan(reading->drift))
         return error_input(error, options->scene, "lasts %.3g s: --max-drift needs a run of more than %.3g s",
                            (checked->run->frames - 1) * (double)checked->run->dt,
-                           verdict_watch_units(&checked->judged.verdict.watch, VERDICT_DRIFT_UNITS));
+                           VERDICT_DRIFT_UNITS * checked->judged.verdict.watch.unit);
     if (!isnan(options->max_gain) && isnan(reading->excess))
         return error_input(error, options->scene, "has no masses, and bodies are struck: --max-gain needs --scene");
     const bool right = options->verdict == 0          ? true

@@ -47,8 +47,8 @@ void judged_run_print(const JudgedRun *judged, const JudgeOptions *options) {
     const VerdictReading *reading = &judged->verdict.reading;
     printf("    verdict: %s\n    deepest overlap: %.3g m\n", judged->words, reading->deepest);
     if (!isnan(reading->drift))
-        printf("    drift after the first %.3g s: %.3g m\n",
-               verdict_watch_units(&judged->verdict.watch, VERDICT_DRIFT_UNITS), reading->drift);
+        printf("    drift after the first %.3g s: %.3g m\n", VERDICT_DRIFT_UNITS * judged->verdict.watch.unit,
+               reading->drift);
     if (isnan(reading->excess))
         printf("    energy gained: unknown without masses\n");
     else
@@ -115,7 +115,6 @@ void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, cons
     if (!json_put_absent(json, "at_rest", reading->too_short)) json_put_bool(json, "at_rest", !reading->moving);
     if (!json_put_absent(json, "rest_since", reading->moving))
         json_put_number(json, "rest_since", reading->since * (double)verdict->scene->dt);
-    json_put_number(json, "kinetic", watch->kinetic);
     json_put_number(json, "energy", watch->energy);
     json_put_number(json, "available", watch->available - watch->least);
     json_put_number(json, "drift", reading->drift);

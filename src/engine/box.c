@@ -9,15 +9,14 @@
 
 static double dot(Vec2 a, Vec2 b) { return (double)a.x * (double)b.x + (double)a.y * (double)b.y; }
 
-/* Half the extent of a box along an axis, m. */
-static double reach(const Box *box, Vec2 axis) {
+double box_reach(const Box *box, Vec2 axis) {
     return fabs(dot(box->rotation.column1, axis)) * (double)box->half.x +
            fabs(dot(box->rotation.column2, axis)) * (double)box->half.y;
 }
 
 /* The overlap along one axis. */
 static double along(const Box *a, const Box *b, Vec2 axis) {
-    return reach(a, axis) + reach(b, axis) - fabs(dot(b->position, axis) - dot(a->position, axis));
+    return box_reach(a, axis) + box_reach(b, axis) - fabs(dot(b->position, axis) - dot(a->position, axis));
 }
 
 double overlap_depth(const Box *a, const Box *b) {
@@ -39,19 +38,20 @@ bool overlap_exceeds(const Box *a, const Box *b, double depth) {
            along(a, b, b->rotation.column1) > limit && along(a, b, b->rotation.column2) > limit;
 }
 
-OverlapSpan overlap_span(const Box *a, const Box *b, double depth, bool any_rotation) {
+OverlapSpan overlap_span(const Box *a, const Box *b, Vec2 way, double depth, bool any_rotation) {
     const Vec2 axes[] = {a->rotation.column1, a->rotation.column2, b->rotation.column1, b->rotation.column2};
-    const double radius = vec2_distance(b->half, vec2(0, 0)), limit = depth + rounding(a, b);
+    const double limit = depth + rounding(a, b);
+    /* No box reaches farther, though its rotation is rounded. */
+    const double radius = vec2_distance(b->half, vec2(0, 0)) * (1 + 2 * (double)FLT_EPSILON);
     OverlapSpan span = {-INFINITY, INFINITY};
-    /* Each axis cuts the span to the x at which the projections on it overlap by more than the limit. */
+    /* Each axis cuts the span to the ways after which the projections on it overlap by more than the limit. */
     for (int i = 0; i < (any_rotation ? 2 : 4); i++) {
-        const Vec2 axis = axes[i];
-        const double least = 1e-9, room = reach(a, axis) + (any_rotation ? radius : reach(b, axis)) - limit;
-        const double across = ((double)b->position.y - (double)a->position.y) * (double)axis.y;
-        if (room <= 0 || (fabs((double)axis.x) < least && fabs(across) >= room)) span = (OverlapSpan){0, 0};
-        if (fabs((double)axis.x) < least) continue;
-        const double first = (double)a->position.x + (-room - across) / (double)axis.x;
-        const double second = (double)a->position.x + (room - across) / (double)axis.x;
+        const double room = box_reach(a, axes[i]) + (any_rotation ? radius : box_reach(b, axes[i])) - limit;
+        const double apart = dot(b->position, axes[i]) - dot(a->position, axes[i]), speed = dot(way, axes[i]);
+        const bool never_nearer = fabs(speed) < 1e-6; /* the rounding of two unit vectors */
+        if (room <= 0 || (never_nearer && fabs(apart) >= room)) return (OverlapSpan){0, 0};
+        if (never_nearer) continue;
+        const double first = (-room - apart) / speed, second = (room - apart) / speed;
         span.from = fmax(span.from, fmin(first, second));
         span.to = fmin(span.to, fmax(first, second));
     }

@@ -109,6 +109,9 @@ bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *boun
 /* How deep boxes overlap, by separating axes in double. For what a scene places, not for contacts: the narrow phase
    prefers the face of the last step to the axis of the smallest overlap. */
 
+/* Half the extent of a box along a unit vector, m. */
+double box_reach(const Box *box, Vec2 axis);
+
 /* The smallest overlap of two boxes along the axes of their faces, m; negative: they are apart by that much along one.
    */
 double overlap_depth(const Box *a, const Box *b);
@@ -120,9 +123,9 @@ typedef struct OverlapSpan {
     double from, to; /* m */
 } OverlapSpan;
 
-/* The x of b's centre at which it would overlap a by more than `depth`. Empty (from >= to) if it never would. With
+/* How far b may go along a unit vector to overlap a by more than `depth`. Empty (from >= to) if it never would. With
    any_rotation, b may be turned: the span contains those of all its rotations. */
-OverlapSpan overlap_span(const Box *a, const Box *b, double depth, bool any_rotation);
+OverlapSpan overlap_span(const Box *a, const Box *b, Vec2 along, double depth, bool any_rotation);
 
 /* Finds two boxes, not both fixed, that overlap by more than `depth`; found->a is -1 if no two do. Stops at the
    first pair, so that memory is linear in `count` for any boxes. False when memory is short. */

@@ -66,8 +66,9 @@ static bool refuse(const Check *check, int launch, int body, const Box *bomb, in
     int count = 0;
     if (blocked == NULL) return false;
     for (int i = 0; i < bodies; i++) {
-        blocked[count] = overlap_span(&check->boxes[i], bomb, SCENE_OVERLAP, turned);
-        count += blocked[count].from < blocked[count].to;
+        const OverlapSpan span = overlap_span(&check->boxes[i], bomb, vec2(1, 0), SCENE_OVERLAP, turned);
+        blocked[count] = (OverlapSpan){(double)at->x + span.from, (double)at->x + span.to};
+        count += span.from < span.to;
     }
     qsort(blocked, (size_t)count, sizeof *blocked, by_start);
     for (int i = 0; i <= count; i++) {

@@ -17,26 +17,24 @@
    Sound, unless a body's state is not finite, or the run
    - explodes: the energy of all dynamic bodies exceeds what they brought by 1% of what is available to be lost, or the
      least that it stayed below for a unit by 5%; or a body has five times the energy per kg of the liveliest one at the
-     start. The bomb brings what it has in the step before it first touches a body. Where boxes overlap at the start by
-     2% of a side, energy is judged from one unit on.
+     start. The bomb brings what it has in the step before it first touches a body.
    - sinks: two bodies are deeper in each other than a quarter of the smaller side for half a unit.
    - tunnels: a body is on the other side of another, past which it went by more than half a side deep: between two
      frames, or while they were deeper in each other than a quarter of a side.
-   - hangs: a body that no chain of touching bodies joins to a static one keeps its height for half a unit.
+   - hangs: a body has kept its place for half a unit, and no chain of touching bodies joins it to a static one.
 
    Rest. A body has a place: the pose from which its corners have since moved by no more than 2% of its size; when it
    moves farther, it takes a new place there. It rests if it took its last place half a unit ago and more than twice the
    shorter of its last two stays, so that constant gliding never rests. A run rests since its last body does; the bomb
    need not.
 
-   Carrier. A body's carrier is what it touches first if it moves down by up to half its side or, if it starts at rest,
-   as far as it would fall in a unit; or what it touches beside itself, as in an arch. Its reference is its pose at the
-   start or, of what has no carrier then, when the bomb strikes; without one it is judged by rest and leaving only.
+   Carrier. A body's carrier is what it touches first if it moves down from its start by up to half its side or, if it
+   starts at rest, as far as it would fall in a unit. What has none is judged by rest and leaving only.
 
-   Fell, at the end: a body is lower than at its reference by more than half its side and the gaps below it, and so
-   relative to its carrier, beside how deep it is in that; or its carrier fell, too: neither sag nor pressing in is a
-   fall. Or it has turned by 30 degrees; or it left: it is below all static bodies, or beside all that contacts join to
-   them. Moved: has not fallen, and is a tenth of its size beside its reference, or above it. */
+   Fell, at the end: a body is lower than at the start by more than half its side and the gaps below it, and so relative
+   to its carrier, beside how deep it is in that; or its carrier fell, too: neither sag nor pressing in is a fall. Or it
+   has turned by 30 degrees; or it left: it is below all static bodies. Moved: has not fallen, and is a tenth of its size
+   beside its start, or above it. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -100,8 +98,9 @@ typedef struct VerdictReading {
     const char *unit; /* "J", "m", "m/s", "s", "boxes" */
     int other;        /* tunnels: the body that was passed through; else -1 */
     VerdictCount count;
-    bool struck; /* as verdict_is_struck() */
-    bool moving; /* at the end, a body is not at rest; also if the run is too short to tell */
+    bool struck;    /* as verdict_is_struck() */
+    bool by_itself; /* the first body fell before the bomb touched anything */
+    bool moving;    /* at the end, a body is not at rest; also if the run is too short to tell */
     bool too_short;
     int since;                        /* the frame since which the run rests, if it does */
     char reason[VERDICT_REASON_SIZE]; /* adapter failed: how; else empty */
@@ -164,31 +163,29 @@ typedef struct VerdictWatch {
     VerdictRun run;
     VerdictReading worst; /* so far, from hangs on */
     int frame, body_count;
-    double up_x, up_y, pull;   /* unit vector; m/s^2 */
+    Vec2 up;                   /* unit vector */
+    double pull;               /* m/s^2 */
     double mean;               /* m: mean size of the bodies at the start */
     double smallest, thinnest; /* m: smallest side of a dynamic body; of any */
-    double floor, low, high;   /* m: the lowest point of all static bodies; their ends across gravity */
-    double held[2];            /* m: the same ends, with what contacts join to them in this step */
+    double floor;              /* m: the lowest point of all static bodies */
     double unit;               /* s */
-    double energy, kinetic;    /* J: in the last frame: of all dynamic bodies; their mean */
+    double energy;             /* J: in the last frame: of all dynamic bodies */
     double speed, fastest;     /* m/s: of the fastest body in the last frame; of the fastest corner so far */
     double brought, available; /* J: what bodies brought; of that, and of their height, what they can lose */
     double lowest, liveliest;  /* m, J/kg: of dynamic bodies at the start, and of added ones */
     double weight, lift, largest, farthest; /* N, J, m, m: floor of what counts as gained energy */
     double peak, kept, excess, least; /* J, above `brought`: this unit's most, the least of whole units, most, least */
     int unit_began;
-    double judged_from; /* J: energy is judged above this; INFINITY: not yet, as boxes overlap at the start */
     bool struck;
     int met;                /* the frame before the bomb first touched a dynamic body; -1: not so far */
     double deepest, rested; /* m; J: energy after ten units */
     int rested_frame;       /* 0: before ten units */
     Fallbacks fallbacks;
     WatchedBody *bodies;
-    int *order; /* [carried] bodies with a carrier, each behind it */
-    int carried, deep_count;
+    int deep_count;
     DeepPair *deep; /* pairs that are too deep now */
     ContactFinder finder;
-    size_t capacity, order_capacity, deep_capacity;
+    size_t capacity, deep_capacity;
 } VerdictWatch;
 
 void verdict_watch_free(VerdictWatch *watch);
@@ -211,9 +208,6 @@ bool verdict_watch_is_final(const VerdictWatch *watch);
 
 /* The verdict on the run up to the last step. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch);
-
-/* s */
-double verdict_watch_units(const VerdictWatch *watch, double units);
 
 /* True if the body has fallen at the end. */
 bool verdict_watch_fell(const VerdictWatch *watch, int body);

@@ -55,8 +55,7 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
     if (reading->verdict >= VERDICT_NON_FINITE) return;
     if (count->fell > 0) {
         text_add(words, SIZE, "; %d of %d fell, first at %.3g s", count->fell, count->bodies, count->first * dt);
-        if (watch->run.bomb >= 0 && (watch->met < 0 || count->first <= watch->met))
-            text_add(words, SIZE, ", before the bomb touched anything");
+        if (reading->by_itself) text_add(words, SIZE, ", before the bomb touched anything");
     }
     if (count->moved > 0) text_add(words, SIZE, "; %d moved by up to %.2g m", count->moved, count->farthest);
     if (count->left > 0) text_add(words, SIZE, "; %d out of the scene", count->left);

@@ -54,7 +54,8 @@ TEST(spans_end_where_the_overlap_does) {
     for (int i = 0; i < 5000; i++) {
         const Box a = random_box(&seed);
         Box b = random_box(&seed);
-        const OverlapSpan span = overlap_span(&a, &b, depth, false), any = overlap_span(&a, &b, depth, true);
+        const Vec2 from = b.position, way = vec2(cosf((float)i), sinf((float)i));
+        const OverlapSpan span = overlap_span(&a, &b, way, depth, false), any = overlap_span(&a, &b, way, depth, true);
         if (!(span.from < span.to)) {
             assert_false(overlap_exceeds(&a, &b, depth));
             continue;
@@ -64,7 +65,7 @@ TEST(spans_end_where_the_overlap_does) {
         spans++;
         const double places[] = {span.from - 1e-4, span.from + 1e-4, span.to - 1e-4, span.to + 1e-4};
         for (int k = 0; k < 4; k++) {
-            b.position.x = (float)places[k];
+            b.position = vec2_add(from, vec2_scale((float)places[k], way));
             if (overlap_exceeds(&a, &b, depth) != (k == 1 || k == 2)) fail_msg("pair %d: end %d of the span", i, k);
         }
     }
@@ -74,11 +75,11 @@ TEST(spans_end_where_the_overlap_does) {
 TEST(boxes_that_never_meet_have_no_span) {
     const Box ground = box_make(vec2(0, -10), vec2(100, 20), 0), above = unit_box(0, 5, 0.3f),
               beside = unit_box(60, -1, 0);
-    OverlapSpan span = overlap_span(&ground, &above, depth, true);
+    OverlapSpan span = overlap_span(&ground, &above, vec2(1, 0), depth, true);
     assert_false(span.from < span.to);
-    span = overlap_span(&ground, &beside, depth, false);
-    assert_near(span.from, -50.5 + depth, 1e-4);
-    assert_near(span.to, 50.5 - depth, 1e-4);
+    span = overlap_span(&ground, &beside, vec2(1, 0), depth, false);
+    assert_near(span.from, -110.5 + depth, 1e-4);
+    assert_near(span.to, -9.5 - depth, 1e-4);
 }
 
 /* Positions are float32: 1e6 m from the origin they are 6 cm apart, so boxes that touch may overlap by that. */
