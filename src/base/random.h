@@ -5,6 +5,7 @@
      uint64_t state = seed;
      const double share = random_unit(&state); */
 #pragma once
+#include <math.h>
 #include <stdint.h>
 
 static inline uint64_t split_mix(uint64_t *state) {
@@ -19,8 +20,11 @@ static inline double random_unit(uint64_t *state) { return (double)(split_mix(st
 static inline double random_signed(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-52 - 1; }
 static inline int random_below(uint64_t *state, int count) { return (int)(split_mix(state) % (uint64_t)count); }
 
-/* Fills weights[count] with numbers in [-bound, bound); returns what follows them. */
-static inline double *weights_uniform(double *weights, int count, double bound, uint64_t *state) {
-    for (int i = 0; i < count; i++) *weights++ = bound * random_signed(state);
+/* The first weights of a layer, uniform with the variance size^2 / inputs, so that a layer keeps the size of its numbers
+   (LeCun, Bottou, Orr, Mueller, "Efficient BackProp", 1998), then its biases, 0. Returns what follows them. */
+static inline double *weights_of_layer(double *weights, int inputs, int units, double size, uint64_t *state) {
+    const double bound = size * sqrt(3.0 / inputs);
+    for (int i = 0; i < inputs * units; i++) *weights++ = bound * random_signed(state);
+    for (int i = 0; i < units; i++) *weights++ = 0;
     return weights;
 }

@@ -5,12 +5,12 @@
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
+#include "learning/launches.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "methods/reference.h"
 #include "methods/sweeps.h"
 #include "runs/launch_check.h"
-#include "runs/runs.h"
 #include "scenes/scenes.h"
 
 #include <gsl/gsl_errno.h>
@@ -129,102 +129,11 @@ typedef struct PairRow {
 typedef struct LaunchRows {
     PairRow *rows;
     size_t count, capacity;
+    size_t seen;     /* rows, of which one in `every` is kept; the others are made in `left_out` */
     size_t start;    /* index of its first row in the dataset */
     int unconverged; /* as in Dataset */
+    PairRow left_out;
 } LaunchRows;
-
-/* The launch being recorded. */
-typedef struct LaunchRecorder {
-    const Dataset *dataset; /* options of the recording */
-    const Scene *scene;
-    LaunchRows *launch;
-    Reference reference;
-    PairMoment labels; /* of the reference */
-    PairMoment now;
-} LaunchRecorder;
-
-static bool reserve(PairMoment *moment, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    if (!pair_moment_reserve(moment, problem)) return error_memory(error, "dataset");
-    *solution = pair_moment_solution(moment);
-    return true;
-}
-
-/* Appends a row of a pair with its current inputs (pair_inputs). NULL when memory is short. */
-static PairRow *add_row(LaunchRecorder *recorder, int frame, const ContactProblem *problem, int first,
-                        const PairMoment *now) {
-    LaunchRows *launch = recorder->launch;
-    if (!array_reserve((void **)&launch->rows, &launch->capacity, launch->count + 1, sizeof *launch->rows)) return NULL;
-    PairRow *row = &launch->rows[launch->count++];
-    row->frame = frame;
-    row->bodies[0] = problem->contacts[first].a;
-    row->bodies[1] = problem->contacts[first].b;
-    pair_inputs(problem, now, first, recorder->dataset->view, row->inputs);
-    return row;
-}
-
-/* The state after the warm start, before the first sweep. */
-static SequentialOptions sweeps_of(const Scene *scene) {
-    return (SequentialOptions){.accumulate = scene->accumulate_impulses, .warm = true};
-}
-
-static bool record_step(LaunchRecorder *recorder, int frame, const World *world, Error *error) {
-    const Dataset *dataset = recorder->dataset;
-    const ContactProblem *problem = world_problem(world);
-    const SequentialOptions options = sweeps_of(recorder->scene);
-    ContactSolution solution = *world_solution(world), begun;
-    if (dataset->labels == DATASET_BY_REFERENCE) {
-        Reference *reference = &recorder->reference;
-        if (!reference_solve(reference, problem, NULL, error)) return false;
-        if (!reference_converged(reference)) {
-            recorder->launch->unconverged++;
-            return true;
-        }
-        if (!reserve(&recorder->labels, problem, &solution, error)) return false;
-        reference_round(reference, problem, &solution);
-    }
-    if (!reserve(&recorder->now, problem, &begun, error)) return false;
-    const bool by_contact = pair_views[dataset->view].by_contact;
-    if (by_contact) sequential_impulses_begin(problem, &options, &begun);
-    if (dataset->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&recorder->now, problem);
-    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
-        PairRow *row = add_row(recorder, frame, problem, first, by_contact ? &recorder->now : NULL);
-        if (row == NULL) return error_memory(error, "dataset");
-        pair_step_changes(problem, &solution, first, dataset->view, dataset->target, row->changes);
-        pair_context(problem, first, row->context);
-    }
-    return true;
-}
-
-/* Repeats the engine's sweeps with the scalar reference implementation, pair by pair. */
-static bool record_visits(LaunchRecorder *recorder, int frame, const World *world, Error *error) {
-    const ContactProblem *problem = world_problem(world);
-    const SequentialOptions options = sweeps_of(recorder->scene);
-    ContactSolution now;
-    if (!reserve(&recorder->now, problem, &now, error)) return false;
-    sequential_impulses_begin(problem, &options, &now);
-    for (int sweep = 0; sweep < recorder->scene->iterations; sweep++)
-        for (int first = 0, count; first < problem->contact_count; first += count) {
-            count = pair_contact_count(problem, first);
-            PairRow *row = add_row(recorder, frame, problem, first, &recorder->now);
-            if (row == NULL) return error_memory(error, "dataset");
-            const BodyVelocity *a = &now.velocities[row->bodies[0]], *b = &now.velocities[row->bodies[1]];
-            BodyVelocity before_a = *a, before_b = *b;
-            sequential_impulses_visit(problem, &options, first, count, &now);
-            const float changes[PAIR_CHANGES] = {a->linear.x - before_a.linear.x, a->linear.y - before_a.linear.y,
-                                                 a->angular - before_a.angular,   b->linear.x - before_b.linear.x,
-                                                 b->linear.y - before_b.linear.y, b->angular - before_b.angular};
-            memcpy(row->changes, changes, sizeof changes);
-            if (pair_views[recorder->dataset->view].by_contact)
-                pair_to_contact_frame(&problem->contacts[first], row->changes);
-        }
-    return true;
-}
-
-static bool observe(void *context, int frame, const World *world, Error *error) {
-    LaunchRecorder *recorder = context;
-    return recorder->dataset->target == TARGET_IMPULSE ? record_visits(recorder, frame, world, error)
-                                                       : record_step(recorder, frame, world, error);
-}
 
 /* What is recorded; shared by the threads. */
 typedef struct Recording {
@@ -234,33 +143,111 @@ typedef struct Recording {
     LaunchRows *launches; /* [dataset->launches] */
 } Recording;
 
-/* Runs launch i with the engine, and appends the rows for the dataset's view, target and labels. */
-static bool record_launch(void *context, int i, Error *error) {
+static bool reserve(PairMoment *moment, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    if (!pair_moment_reserve(moment, problem)) return error_memory(error, "dataset");
+    *solution = pair_moment_solution(moment);
+    return true;
+}
+
+/* Appends a row of a pair with its current inputs (pair_inputs). NULL when memory is short. */
+static PairRow *add_row(const Recording *recording, const LaunchStep *step, int first, const PairMoment *now) {
+    LaunchRows *launch = &recording->launches[step->launch];
+    const ContactProblem *problem = step->problem;
+    const size_t every = recording->options->every > 1 ? (size_t)recording->options->every : 1;
+    const bool kept = launch->seen++ % every == (size_t)step->launch % every;
+    if (!array_reserve((void **)&launch->rows, &launch->capacity, launch->count + 1, sizeof *launch->rows)) return NULL;
+    PairRow *row = kept ? &launch->rows[launch->count++] : &launch->left_out;
+    row->frame = step->frame;
+    row->bodies[0] = problem->contacts[first].a;
+    row->bodies[1] = problem->contacts[first].b;
+    pair_inputs(problem, now, first, recording->dataset->view, row->inputs);
+    return row;
+}
+
+/* The state after the warm start, before the first sweep. */
+static SequentialOptions sweeps_of(const Scene *scene) {
+    return (SequentialOptions){.accumulate = scene->accumulate_impulses, .warm = true};
+}
+
+static bool record_step(void *context, const LaunchStep *step, Error *error) {
     const Recording *recording = context;
     const Dataset *dataset = recording->dataset;
-    const Scene *scene = recording->scenes[dataset->launch_scene[i]];
-    const size_t every = recording->options->every > 1 ? (size_t)recording->options->every : 1;
-    LaunchRows *rows = &recording->launches[i];
-    Launch launch = launch_of(scene);
-    launch.x = dataset->launch_x[i];
-    launch.rotation = dataset->launch_rotation[i];
-    launch.spin = dataset->launch_spin[i];
-    const Scene launched = launch_scene(scene, &launch);
-    LaunchRecorder recorder = {.dataset = dataset, .scene = &launched, .launch = rows};
-    Method method;
-    const StepObserver observer = {observe, &recorder};
-    const bool ok = method_parse(&method, "engine", error) && simulate_observed(&launched, &method, &observer, error);
-    reference_free(&recorder.reference);
-    pair_moment_free(&recorder.labels);
-    pair_moment_free(&recorder.now);
-    if (!ok || every == 1) return ok;
-    /* Drops and frees the other rows now: those of many launches would exceed memory. */
-    size_t kept = 0;
-    for (size_t row = (size_t)i % every; row < rows->count; row += every) rows->rows[kept++] = rows->rows[row];
-    rows->count = kept;
-    PairRow *smaller = realloc(rows->rows, (kept + 1) * sizeof *smaller);
-    if (smaller != NULL) rows->rows = smaller;
+    const ContactProblem *problem = step->problem;
+    const SequentialOptions options = sweeps_of(step->scene);
+    ContactSolution solution = *world_solution(step->world), begun;
+    if (dataset->labels == DATASET_BY_REFERENCE) {
+        if (!reference_solve(step->reference, problem, NULL, error)) return false;
+        if (!reference_converged(step->reference)) {
+            recording->launches[step->launch].unconverged++;
+            return true;
+        }
+        if (!reserve(step->labels, problem, &solution, error)) return false;
+        reference_round(step->reference, problem, &solution);
+    }
+    if (!reserve(step->now, problem, &begun, error)) return false;
+    const bool by_contact = pair_views[dataset->view].by_contact;
+    if (by_contact) sequential_impulses_begin(problem, &options, &begun);
+    if (dataset->view == PAIR_NEIGHBOURS) pair_moment_jacobi(step->now, problem);
+    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
+        PairRow *row = add_row(recording, step, first, by_contact ? step->now : NULL);
+        if (row == NULL) return error_memory(error, "dataset");
+        pair_step_changes(problem, &solution, first, dataset->view, dataset->target, row->changes);
+        pair_context(problem, first, row->context);
+    }
     return true;
+}
+
+/* Repeats the engine's sweeps with the scalar reference implementation, pair by pair. */
+static bool record_visits(void *context, const LaunchStep *step, Error *error) {
+    const Recording *recording = context;
+    const ContactProblem *problem = step->problem;
+    const SequentialOptions options = sweeps_of(step->scene);
+    ContactSolution now;
+    if (!reserve(step->now, problem, &now, error)) return false;
+    sequential_impulses_begin(problem, &options, &now);
+    for (int sweep = 0; sweep < step->scene->iterations; sweep++)
+        for (int first = 0, count; first < problem->contact_count; first += count) {
+            count = pair_contact_count(problem, first);
+            PairRow *row = add_row(recording, step, first, step->now);
+            if (row == NULL) return error_memory(error, "dataset");
+            const BodyVelocity *a = &now.velocities[row->bodies[0]], *b = &now.velocities[row->bodies[1]];
+            BodyVelocity before_a = *a, before_b = *b;
+            sequential_impulses_visit(problem, &options, first, count, &now);
+            const float changes[PAIR_CHANGES] = {a->linear.x - before_a.linear.x, a->linear.y - before_a.linear.y,
+                                                 a->angular - before_a.angular,   b->linear.x - before_b.linear.x,
+                                                 b->linear.y - before_b.linear.y, b->angular - before_b.angular};
+            memcpy(row->changes, changes, sizeof changes);
+            if (pair_views[recording->dataset->view].by_contact)
+                pair_to_contact_frame(&problem->contacts[first], row->changes);
+        }
+    return true;
+}
+
+/* Runs the launches of a scene with the engine. */
+static bool record_scene(const Recording *recording, int scene, const Progress *progress, Error *error) {
+    const Dataset *dataset = recording->dataset;
+    const int each = dataset->launches / dataset->scene_count, first = scene * each;
+    Method engine;
+    Launch *launches = calloc((size_t)each, sizeof *launches);
+    for (int i = 0; launches != NULL && i < each; i++) {
+        launches[i] = launch_of(recording->scenes[scene]);
+        launches[i].x = dataset->launch_x[first + i];
+        launches[i].rotation = dataset->launch_rotation[first + i];
+        launches[i].spin = dataset->launch_spin[first + i];
+    }
+    const LaunchWatch watch = {.scene = recording->scenes[scene],
+                               .launches = launches,
+                               .count = each,
+                               .first = first,
+                               .impact_frames = 1,
+                               .after_frames = recording->scenes[scene]->frames,
+                               .method = &engine,
+                               .see = dataset->target == TARGET_IMPULSE ? record_visits : record_step,
+                               .context = (void *)recording};
+    const bool ok = (launches != NULL || error_memory(error, "dataset")) && method_parse(&engine, "engine", error) &&
+                    launches_observe(&watch, NULL, progress, error);
+    free(launches);
+    return ok;
 }
 
 /* Concatenates the rows of the launches, in order. */
@@ -332,10 +319,12 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
     if (ok) {
         recording.launches = calloc((size_t)dataset->launches, sizeof *recording.launches);
         ok = recording.launches != NULL || error_memory(error, "dataset");
-        ok = ok &&
-             parallel_for(&(ParallelWork){record_launch, &recording}, dataset->launches, "recorded launches", progress,
-                          error) &&
-             gather(&recording, error);
+        ProgressStage stage = {.whole = progress};
+        for (int scene = 0; ok && scene < dataset->scene_count; scene++) {
+            progress_next_stage(&stage, 1.0 / dataset->scene_count);
+            ok = record_scene(&recording, scene, &(Progress){progress_stage, &stage}, error);
+        }
+        ok = ok && gather(&recording, error);
         for (int i = 0; recording.launches != NULL && i < dataset->launches; i++) free(recording.launches[i].rows);
         free(recording.launches);
     }

@@ -86,11 +86,7 @@ bool gns_examples_add(GnsExamples *examples, Scene *scene, const Method *method,
 }
 
 void gns_example_free(GnsExample *example) {
-    free(example->particles.body);
-    free(example->particles.position);
-    free(example->particles.velocity);
-    free(example->targets);
-    free(example->counts);
+    free(example->arrays.memory);
     gns_graph_free(&example->graph);
     *example = (GnsExample){.from = NULL};
 }
@@ -98,14 +94,9 @@ void gns_example_free(GnsExample *example) {
 static bool reserve(GnsExample *example, int bodies) {
     const size_t count = (size_t)bodies * BOX_PARTICLES;
     GnsParticles *particles = &example->particles;
-    return array_reserve((void **)&particles->body, &example->body_capacity, (size_t)bodies, sizeof *particles->body) &&
-           array_reserve((void **)&particles->position, &example->position_capacity, count,
-                         sizeof *particles->position) &&
-           array_reserve((void **)&particles->velocity, &example->velocity_capacity, count,
-                         sizeof *particles->velocity) &&
-           array_reserve((void **)&example->targets, &example->target_capacity, count,
-                         GNS_OUTPUTS * sizeof *example->targets) &&
-           array_reserve((void **)&example->counts, &example->count_capacity, (size_t)bodies, sizeof *example->counts);
+    return ARRAY_BLOCK_RESERVE(&example->arrays, ARRAY_PART(particles->body, bodies),
+                               ARRAY_PART(particles->position, count), ARRAY_PART(particles->velocity, count),
+                               ARRAY_PART(example->targets, count * GNS_OUTPUTS), ARRAY_PART(example->counts, bodies));
 }
 
 static int below(uint64_t *random, int count) { return (int)(random_unit(random) * count); }

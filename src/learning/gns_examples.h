@@ -55,7 +55,7 @@ typedef struct GnsExample {
     float *targets; /* [particles, GNS_OUTPUTS] m/s^2, without gravity */
     float *counts;  /* [bodies] 1: it counts; 0: boxes that touch it may lie outside of the example */
     const GnsRuns *from;
-    size_t body_capacity, position_capacity, velocity_capacity, target_capacity, count_capacity;
+    ArrayBlock arrays; /* of the particles, too */
 } GnsExample;
 
 void gns_example_free(GnsExample *example);

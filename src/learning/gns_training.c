@@ -115,11 +115,11 @@ static bool run_batch(Trainer *trainer, const GnsExamples *examples, uint64_t nu
     return true;
 }
 
-/* Uniform, with the variance 1 / inputs, so that a layer keeps the size of its numbers. Biases 0, gains 1. */
+/* Biases 0, gains 1. */
 static void first_weights(double *weights, const GnsMlp *mlp, uint64_t *random) {
     const int widths[4] = {mlp->inputs, mlp->width, mlp->width, mlp->outputs};
-    for (int l = 0; l < 3; l++)
-        weights_uniform(weights + mlp->weights[l], widths[l] * widths[l + 1], sqrt(3.0 / widths[l]), random);
+    double *at = weights + mlp->weights[0];
+    for (int l = 0; l < 3; l++) at = weights_of_layer(at, widths[l], widths[l + 1], 1, random);
     for (int i = 0; mlp->gain >= 0 && i < mlp->outputs; i++) weights[mlp->gain + i] = 1;
 }
 

@@ -43,7 +43,7 @@ static const double least_variance = 1e-10;
 typedef struct AskedStep {
     ContactProblem problem;
     ContactSolution solution; /* its arrays are in `block`, as `others` */
-    uint64_t hash;
+    HybridQuery query;        /* its key: once there is a memory */
     float bomb[HYBRID_NUMBERS];
     float *others; /* [6 (body_count - 1)] */
     int entry;     /* that answered, or -1: the solution is converged */
@@ -61,13 +61,6 @@ typedef struct Trainer {
     PairMoment answer, converged; /* work space */
     HybridMemory *memory;         /* NULL until the directions are fitted */
 } Trainer;
-
-/* A step, solved to convergence. */
-typedef struct SolvedStep {
-    const ContactProblem *problem;
-    const ContactSolution *solution;
-    HybridQuery query;
-} SolvedStep;
 
 /* An entry in the making. */
 typedef struct NewEntry {
@@ -139,8 +132,8 @@ static void fit_weights(NewEntry *fit, int key_size) {
 }
 
 /* Products of the velocity changes that P_j - P0 make, means over the bodies that move. */
-static bool find_images(NewEntry *fit, const HybridMemory *memory, const SolvedStep *step) {
-    const ContactProblem *problem = step->problem;
+static bool find_images(NewEntry *fit, const HybridMemory *memory, const AskedStep *step) {
+    const ContactProblem *problem = &step->problem;
     const size_t bodies = (size_t)problem->body_count;
     BodyVelocity *changes = calloc(HYBRID_NEAR * bodies, sizeof *changes);
     if (changes == NULL) return false;
@@ -149,7 +142,7 @@ static bool find_images(NewEntry *fit, const HybridMemory *memory, const SolvedS
     for (int n = 0; n < fit->count; n++) {
         const ContactImpulse *other = memory->impulses + memory->entry_begin[fit->near[n]];
         for (int i = 0; i < problem->contact_count; i++) {
-            const ContactImpulse own = step->solution->impulses[i];
+            const ContactImpulse own = step->solution.impulses[i];
             contact_push(changes + (size_t)n * bodies, &problem->contacts[i], problem->bodies,
                          (ContactImpulse){other[i].normal - own.normal, other[i].tangent - own.tangent});
         }
@@ -167,7 +160,8 @@ static bool find_images(NewEntry *fit, const HybridMemory *memory, const SolvedS
     return true;
 }
 
-static bool add_entry(HybridMemory *memory, const SolvedStep *step, Error *error) {
+/* Of a step, solved to convergence. */
+static bool add_entry(HybridMemory *memory, const AskedStep *step, Error *error) {
     NewEntry fit;
     find_neighbours(&fit, memory, &step->query);
     fit_weights(&fit, memory->key_size);
@@ -186,15 +180,15 @@ static bool add_entry(HybridMemory *memory, const SolvedStep *step, Error *error
                     sum += (double)fit.weights[n * size + i] * fit.images[n][m] * (double)fit.weights[m * size + j];
             *metric++ = (float)(unit * sum);
         }
-    const HybridEntry entry = {step->solution->impulses, fit.near, fit.weights, fit.metric,
+    const HybridEntry entry = {step->solution.impulses, fit.near, fit.weights, fit.metric,
                                memory->tolerance * memory->tolerance};
     return hybrid_memory_add(memory, &step->query, &entry, error);
 }
 
 /* Of an entry's answer, RMS over the dynamic bodies of |dv|^2 + dspin^2 / 6, as in methods/reference.h, m/s. */
-static float error_of(const HybridMemory *memory, int entry, const SolvedStep *step, ContactSolution *answer) {
-    const ContactProblem *problem = step->problem;
-    const BodyVelocity *a = answer->velocities, *b = step->solution->velocities;
+static float error_of(const HybridMemory *memory, int entry, const AskedStep *step, ContactSolution *answer) {
+    const ContactProblem *problem = &step->problem;
+    const BodyVelocity *a = answer->velocities, *b = step->solution.velocities;
     double sum = 0;
     int count = 0;
     hybrid_answer(memory, entry, step->query.key, problem, answer);
@@ -215,45 +209,45 @@ static bool is_near(const HybridMemory *memory, int entry, const float *key) {
     return sum <= step_max * step_max;
 }
 
-static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, HybridLaunch *launch, Error *error) {
+static bool learn_step(Trainer *trainer, AskedStep *step, bool checks, HybridLaunch *launch, Error *error) {
     HybridMemory *memory = trainer->memory;
     float key[HYBRID_KEY_MAX];
-    hybrid_memory_key(memory, asked->bomb, asked->others, key);
-    SolvedStep step = {&asked->problem, &asked->solution, {asked->hash, asked->problem.contact_count, key}};
-    if (!pair_moment_reserve(&trainer->answer, &asked->problem) ||
-        !pair_moment_reserve(&trainer->converged, &asked->problem))
+    hybrid_memory_key(memory, step->bomb, step->others, key);
+    step->query.key = key;
+    if (!pair_moment_reserve(&trainer->answer, &step->problem) ||
+        !pair_moment_reserve(&trainer->converged, &step->problem))
         return error_memory(error, "hybrid");
     ContactSolution answer = pair_moment_solution(&trainer->answer);
 
     /* An answer is checked, and its ellipsoid shrinks if it was wrong. */
-    if (asked->entry >= 0) {
+    if (step->entry >= 0) {
         if (!checks) return true;
-        ContactSolution converged = pair_moment_solution(&trainer->converged);
-        if (!trainer->interior.kind->solve(trainer->interior.state, step.problem, &converged, error)) return false;
-        step.solution = &converged;
-        const float wrong = error_of(memory, asked->entry, &step, &answer);
-        if (!(wrong <= memory->tolerance)) hybrid_memory_stretch(memory, asked->entry, key);
+        step->solution = pair_moment_solution(&trainer->converged);
+        if (!trainer->interior.kind->solve(trainer->interior.state, &step->problem, &step->solution, error))
+            return false;
+        const float wrong = error_of(memory, step->entry, step, &answer);
+        if (!(wrong <= memory->tolerance)) hybrid_memory_stretch(memory, step->entry, key);
         launch->error += (double)wrong;
         launch->checked++;
         return true;
     }
 
     /* A step that was not answered may be known by now, from the steps before it. */
-    const int entry = hybrid_memory_nearest(memory, &step.query, step_max);
+    const int entry = hybrid_memory_nearest(memory, &step->query, step_max);
     if (entry >= 0 && hybrid_memory_distance(memory, entry, key) <= 1) return true;
-    if (entry >= 0 && is_near(memory, entry, key) && error_of(memory, entry, &step, &answer) <= memory->tolerance) {
+    if (entry >= 0 && is_near(memory, entry, key) && error_of(memory, entry, step, &answer) <= memory->tolerance) {
         hybrid_memory_stretch(memory, entry, key);
         launch->grown++;
         return true;
     }
-    if (memory->entry_count == HYBRID_ENTRIES_MAX || step.query.contacts > HYBRID_CONTACTS_MAX ||
-        hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, step.query.contacts) >
+    if (memory->entry_count == HYBRID_ENTRIES_MAX || step->query.contacts > HYBRID_CONTACTS_MAX ||
+        hybrid_memory_bytes(memory) + hybrid_memory_entry_bytes(memory, step->query.contacts) >
             trainer->training->limit) {
         launch->full++;
         return true;
     }
     launch->added++;
-    return add_entry(memory, &step, error);
+    return add_entry(memory, step, error);
 }
 
 /* Makes the memory: its centre is the mean of the bodies' numbers in the steps so far, its rows are their strongest
@@ -306,7 +300,7 @@ static bool keep_asked(void *context, const HybridStep *step, Error *error) {
                        sizeof *trainer->asked))
         return error_memory(error, "hybrid");
     AskedStep *copy = &trainer->asked[trainer->asked_count++];
-    *copy = (AskedStep){.hash = step->query.hash, .entry = step->entry};
+    *copy = (AskedStep){.query = step->query, .entry = step->entry};
     copy->block = malloc(velocities + impulses + numbers + 1); /* all of four-byte numbers */
     if (!problem_copy(&copy->problem, step->problem) || copy->block == NULL) return error_memory(error, "hybrid");
     copy->solution.velocities = (BodyVelocity *)copy->block;
@@ -323,11 +317,6 @@ static bool make_hybrid(void *context, int i, ContactSolver *solver, Error *erro
     Trainer *trainer = context;
     (void)i;
     return hybrid_make(solver, trainer->memory, &(HybridWatch){keep_asked, trainer}, error);
-}
-
-static bool see_nothing(void *context, const LaunchStep *step, Error *error) {
-    (void)context, (void)step, (void)error;
-    return true;
 }
 
 /* Launch i depends on the seed and i only. */
@@ -353,7 +342,6 @@ static bool do_launch(Trainer *trainer, int i, Error *error) {
                                .after_frames = 1,
                                .may_fail = true,
                                .make = make_hybrid,
-                               .see = see_nothing,
                                .context = trainer,
                                .past = trainer->past};
     HybridLaunch launch = {.number = i + 1};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loop over launches of all learners that need contact problems, and recorded poses for those that need none. */
+/* The loop over launches of all learners, and what they record: steps with their solutions, or poses. */
 #include "learning/launches.h"
 
 #include "base/base.h"
@@ -50,7 +50,8 @@ void recorded_steps_free(RecordedSteps *steps) {
     *steps = (RecordedSteps){0};
 }
 
-bool recorded_steps_move(RecordedSteps *steps, RecordedSteps *from) {
+/* Moves all of `from` to the end of the steps. False when memory is short. */
+static bool move_steps(RecordedSteps *steps, RecordedSteps *from) {
     if (!array_reserve((void **)&steps->items, &steps->capacity, steps->count + from->count + 1, sizeof *steps->items))
         return false;
     for (size_t i = 0; i < from->count; i++) steps->items[steps->count++] = from->items[i];
@@ -83,15 +84,6 @@ bool launch_step_record(const LaunchStep *step, bool converged, Error *error) {
     return true;
 }
 
-/* *finite: false if the new state is NaN or infinite, which is no error. */
-static bool take_step(World *world, const Scene *scene, const ContactSolver *solver, bool *finite, Error *error) {
-    Error failure = {0};
-    *finite = world_step(world, solver->kind->solve, solver->state, scene->dt, &failure);
-    if (*finite || failure.failure != FAILURE_NONE) return true;
-    *error = failure;
-    return false;
-}
-
 /* A world without the bomb, also if that is there from the start. */
 static World *quiet_world(const Scene *scene, Error *error) {
     Scene quiet = *scene;
@@ -101,51 +93,75 @@ static World *quiet_world(const Scene *scene, Error *error) {
 
 World *launches_past(const Scene *scene, const ContactSolver *solver, Error *error) {
     World *world = quiet_world(scene, error);
-    bool ok = world != NULL, finite = true;
-    for (int frame = 1; ok && frame <= scene->bomb.frame; frame++)
-        ok = take_step(world, scene, solver, &finite, error) &&
-             (finite || error_input(error, scene->name, "a body's state is NaN or infinite before the bomb is added"));
-    if (ok) return world;
-    world_destroy(world);
-    return NULL;
+    for (int frame = 1; world != NULL && frame <= scene->bomb.frame; frame++) {
+        if (world_step(world, solver->kind->solve, solver->state, scene->dt, error)) continue;
+        world_destroy(world);
+        world = NULL;
+    }
+    return world;
 }
 
 typedef struct Observing {
     const LaunchWatch *watch;
-    const World *past;
+    const World *past;    /* or NULL: launches begin with the scene */
     RecordedSteps *steps; /* [launches] */
 } Observing;
+
+static Stepper *make_stepper(const LaunchWatch *watch, int i, const Scene *launched, Error *error) {
+    ContactSolver solver = {0};
+    if (watch->method != NULL) return stepper_create(watch->method, launched, error);
+    return watch->make(watch->context, i, &solver, error) ? stepper_of_solver(&solver, error) : NULL;
+}
+
+/* The world in which a launch begins. */
+static World *begin(const Observing *observing, const Scene *launched, Error *error) {
+    if (observing->past == NULL) return scene_world(launched, error);
+    World *world = quiet_world(launched, error);
+    if (world != NULL && world_copy(world, observing->past, error) && scene_add_bomb(launched, world, error))
+        return world;
+    world_destroy(world);
+    return NULL;
+}
 
 static bool observe(void *context, int i, Error *error) {
     const Observing *observing = context;
     const LaunchWatch *watch = observing->watch;
     const Scene launched = launch_scene(watch->scene, &watch->launches[i]);
-    ContactSolver solver = {0};
     Reference reference = {0};
+    PairMoment now = {0}, labels = {0};
     PhaseTracker tracker = {.impact_frames = watch->impact_frames};
-    World *world = quiet_world(&launched, error);
-    LaunchStep step = {.launch = watch->first + i, .steps = &observing->steps[i], .reference = &reference};
-    bool ok = world != NULL && (observing->past == NULL || world_copy(world, observing->past, error)) &&
-              watch->make(watch->context, i, &solver, error);
-    for (int frame = observing->past != NULL ? launched.bomb.frame : 0; ok && frame < launched.frames;) {
-        bool finite = true;
-        if (frame == launched.bomb.frame && !(ok = scene_add_bomb(&launched, world, error))) break;
-        frame++;
-        if (tracker.touch > 0 && frame >= tracker.touch + watch->impact_frames + watch->after_frames) break;
-        ok = take_step(world, &launched, &solver, &finite, error);
-        if (ok && !finite && !watch->may_fail)
-            ok = error_input(error, launched.name, "a body's state is NaN or infinite in frame %d of launch %d", frame,
-                             step.launch);
-        if (!ok || !finite) break;
+    Stepper *stepper = make_stepper(watch, i, &launched, error);
+    World *world = stepper != NULL ? begin(observing, &launched, error) : NULL;
+    LaunchStep step = {.scene = &launched,
+                       .world = world,
+                       .launch = watch->first + i,
+                       .steps = &observing->steps[i],
+                       .reference = &reference,
+                       .now = &now,
+                       .labels = &labels};
+    bool ok = world != NULL && (!watch->whole || watch->see(watch->context, &step, error));
+    for (int frame = observing->past != NULL ? launched.bomb.frame + 1 : 1; ok && frame <= launched.frames; frame++) {
+        const bool ends = tracker.touch > 0 && frame >= tracker.touch + watch->impact_frames + watch->after_frames;
+        Error failure = {0};
+        if (ends && !watch->whole) break;
+        if (!simulate_step(stepper, world,
+                           &(Step){.scene = &launched, .frame = frame, .engine_step = watch->method == NULL},
+                           &failure)) {
+            ok = watch->may_fail && failure.failure != FAILURE_NONE;
+            if (!ok) *error = failure, error_add(error, ", launch %d", step.launch);
+            break;
+        }
         step.problem = world_problem(world);
         step.phase = phase_next(&tracker, step.problem, frame);
         step.frame = frame;
         step.since = frame - tracker.touch;
-        ok = watch->see(watch->context, &step, error);
+        ok = watch->see == NULL || watch->see(watch->context, &step, error);
     }
     world_destroy(world);
-    solver_destroy(&solver);
+    stepper_destroy(stepper);
     reference_free(&reference);
+    pair_moment_free(&now);
+    pair_moment_free(&labels);
     return ok;
 }
 
@@ -153,7 +169,7 @@ bool launches_observe(const LaunchWatch *watch, RecordedSteps *steps, const Prog
     World *past = NULL;
     Observing observing = {watch, watch->past, calloc((size_t)watch->count + 1, sizeof *observing.steps)};
     bool ok = observing.steps != NULL || error_memory(error, "launches");
-    if (ok && !watch->from_start && watch->past == NULL) {
+    if (ok && !watch->from_start && watch->method == NULL && watch->past == NULL) {
         ContactSolver solver = {0};
         past = watch->make(watch->context, 0, &solver, error) ? launches_past(watch->scene, &solver, error) : NULL;
         solver_destroy(&solver);
@@ -162,8 +178,7 @@ bool launches_observe(const LaunchWatch *watch, RecordedSteps *steps, const Prog
     }
     ok = ok && parallel_for(&(ParallelWork){observe, &observing}, watch->count, "launches", progress, error);
     for (int i = 0; observing.steps != NULL && i < watch->count; i++) {
-        if (ok && steps != NULL)
-            ok = recorded_steps_move(steps, &observing.steps[i]) || error_memory(error, "launches");
+        if (ok && steps != NULL) ok = move_steps(steps, &observing.steps[i]) || error_memory(error, "launches");
         recorded_steps_free(&observing.steps[i]);
     }
     free(observing.steps);
@@ -173,39 +188,16 @@ bool launches_observe(const LaunchWatch *watch, RecordedSteps *steps, const Prog
 
 enum { LAUNCH_RUNS_MAX_BYTES = 1 << 30 };
 
-typedef struct PoseWork {
-    LaunchRuns *runs;
-    const Scene *scene;
-    const Method *method;
-} PoseWork;
-
-/* The run of a launch whose poses are kept. */
-typedef struct PoseRun {
-    int bodies;
-    BodyPose *poses; /* [frames, bodies] */
-} PoseRun;
-
-static bool keep_poses(void *context, int frame, const World *world, Error *error) {
+static bool keep_poses(void *context, const LaunchStep *step, Error *error) {
+    const LaunchRuns *runs = context;
+    const Body *bodies = world_bodies(step->world);
+    const int count = world_body_count(step->world);
+    BodyPose *poses =
+        runs->poses + ((size_t)step->launch * (size_t)runs->frames + (size_t)step->frame) * (size_t)runs->bodies;
     (void)error;
-    const PoseRun *run = context;
-    const Body *bodies = world_bodies(world);
-    const int count = world_body_count(world);
-    for (int i = 0; i < run->bodies; i++)
-        run->poses[frame * run->bodies + i] =
-            i < count ? (BodyPose){bodies[i].position, bodies[i].angle} : (BodyPose){{NAN, NAN}, NAN};
+    for (int i = 0; i < runs->bodies; i++)
+        poses[i] = i < count ? (BodyPose){bodies[i].position, bodies[i].angle} : (BodyPose){{NAN, NAN}, NAN};
     return true;
-}
-
-static bool run_launch(void *context, int i, Error *error) {
-    const PoseWork *work = context;
-    const LaunchRuns *runs = work->runs;
-    PoseRun run = {runs->bodies, runs->poses + (size_t)i * (size_t)runs->frames * (size_t)runs->bodies};
-    const Scene launched = launch_scene(work->scene, &runs->launches[i]);
-    World *start = scene_world(&launched, error);
-    if (start == NULL) return false;
-    keep_poses(&run, 0, start, error);
-    world_destroy(start);
-    return simulate_observed(&launched, work->method, &(StepObserver){keep_poses, &run}, error);
 }
 
 bool launch_runs_record(LaunchRuns *runs, const Scene *scene, const Method *method, const Launch *launches, int count,
@@ -220,8 +212,15 @@ bool launch_runs_record(LaunchRuns *runs, const Scene *scene, const Method *meth
     runs->poses = malloc((size_t)bytes);
     if (runs->launches == NULL || runs->poses == NULL) return error_memory(error, scene->name);
     memcpy(runs->launches, launches, (size_t)count * sizeof *launches);
-    PoseWork work = {runs, scene, method};
-    return parallel_for(&(ParallelWork){run_launch, &work}, count, "launches", progress, error);
+    const LaunchWatch watch = {.scene = scene,
+                               .launches = launches,
+                               .count = count,
+                               .impact_frames = scene->bomb.impact_frames,
+                               .whole = true,
+                               .method = method,
+                               .see = keep_poses,
+                               .context = runs};
+    return launches_observe(&watch, NULL, progress, error);
 }
 
 void launch_runs_free(LaunchRuns *runs) {

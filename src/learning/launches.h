@@ -9,6 +9,7 @@
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
 #include "methods/reference.h"
 #include "scenes/scenes.h"
 
@@ -30,16 +31,16 @@ typedef struct RecordedSteps {
 
 void recorded_steps_free(RecordedSteps *steps);
 
-/* Moves all of `from` to the end of the steps. False when memory is short. */
-bool recorded_steps_move(RecordedSteps *steps, RecordedSteps *from);
-
 /* A step of a launch, taken. */
 typedef struct LaunchStep {
-    const ContactProblem *problem;
+    const Scene *scene; /* with the launch */
+    const World *world;
+    const ContactProblem *problem; /* NULL at the start, which is frame 0 */
     Phase phase;
     int launch, frame, since; /* since: steps since the bomb's first touch */
     RecordedSteps *steps;     /* of this launch */
-    Reference *reference;     /* work space of this launch */
+    Reference *reference;     /* work space of this launch, as the next */
+    PairMoment *now, *labels;
 } LaunchStep;
 
 /* Appends the step with the solution of the last solve of step->reference; or counts it, if that has not converged. */
@@ -52,10 +53,12 @@ typedef struct LaunchWatch {
     int impact_frames;      /* of the phase */
     int after_frames;       /* that are seen after it; then the launch ends */
     bool may_fail;          /* a launch that comes to a NaN or infinite state ends there; otherwise that is an error */
-    bool from_start; /* each launch begins with the scene; otherwise with the bomb, after a past that all share */
-    /* Makes the solver of launch i of the list, which is destroyed after it. */
+    bool from_start;      /* each launch begins with the scene; otherwise with the bomb, after a past that all share */
+    bool whole;           /* a launch does not end after its impact, and its start is seen, too */
+    const Method *method; /* runs the launches from their start, as in a run of the scene. Or NULL: */
+    /* Makes the solver of launch i of the list, which is destroyed after it; its contacts are Box2D-Lite's. */
     bool (*make)(void *context, int i, ContactSolver *solver, Error *error);
-    bool (*see)(void *context, const LaunchStep *step, Error *error);
+    bool (*see)(void *context, const LaunchStep *step, Error *error); /* or NULL */
     void *context;
     World *past; /* NULL: is made. A caller that observes one launch after the other keeps that of launches_past() */
 } LaunchWatch;

@@ -218,19 +218,14 @@ void sain_set_ranges(SainNetwork *network, const SainSamples *samples) {
     }
 }
 
-/* Uniform in +-sqrt(3 / inputs): sums of the standard deviation 1. */
-static double *fill_layer(double *weight, const Network *network, int l, double size, uint64_t *state) {
-    const int inputs = network->widths[l], units = network->widths[l + 1];
-    weight = weights_uniform(weight, units * inputs, size * sqrt(3.0 / inputs), state);
-    for (int i = 0; i < units; i++) *weight++ = 0;
-    return weight;
-}
-
 void sain_first_weights(const SainNetwork *network, uint64_t seed, double *weights) {
+    const Network *relation = network->relation, *object = network->object;
     uint64_t state = seed;
-    for (int l = 0; l < network->relation->layers; l++) weights = fill_layer(weights, network->relation, l, 1, &state);
-    for (int l = 0; l < network->object->layers; l++)
-        weights = fill_layer(weights, network->object, l, l + 1 < network->object->layers ? 1 : output_weight, &state);
+    for (int l = 0; l < relation->layers; l++)
+        weights = weights_of_layer(weights, relation->widths[l], relation->widths[l + 1], 1, &state);
+    for (int l = 0; l < object->layers; l++)
+        weights = weights_of_layer(weights, object->widths[l], object->widths[l + 1],
+                                   l + 1 < object->layers ? 1 : output_weight, &state);
 }
 
 void sain_set_weights(SainNetwork *network, const double *weights) {

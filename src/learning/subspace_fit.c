@@ -322,11 +322,7 @@ double window_fit_slopes(WindowFit *fit, const double *parameters, uint64_t seed
 
 void window_fit_begin(const WindowFit *fit, uint64_t seed, double *parameters) {
     uint64_t random = seed;
-    for (int l = 0; l < fit->shape->layers; l++) {
-        const int from = fit->shape->widths[l], to = fit->shape->widths[l + 1];
-        /* Uniform with the variance 1 / from (LeCun 1998); a tenth of that for the outputs. */
-        const double bound = (l == 2 ? 0.1 : 1) * sqrt(3.0 / from);
-        parameters = weights_uniform(parameters, from * to, bound, &random);
-        for (int i = 0; i < to; i++) *parameters++ = 0;
-    }
+    for (int l = 0; l < fit->shape->layers; l++) /* a tenth for the outputs */
+        parameters =
+            weights_of_layer(parameters, fit->shape->widths[l], fit->shape->widths[l + 1], l == 2 ? 0.1 : 1, &random);
 }

@@ -146,6 +146,15 @@ Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) 
     return NULL;
 }
 
+Stepper *stepper_of_solver(const ContactSolver *solver, Error *error) {
+    Stepper *stepper = calloc(1, sizeof *stepper);
+    if (stepper != NULL)
+        *stepper = (Stepper){.description = &solver->kind->description, .solver = *solver};
+    else
+        error_memory(error, solver->kind->description.name), solver->kind->destroy(solver->state);
+    return stepper;
+}
+
 void stepper_destroy(Stepper *stepper) {
     if (stepper == NULL) return;
     if (stepper->stepping != NULL)

@@ -221,6 +221,9 @@ const char *method_network(const Settings *settings, const Scene *scene, const c
 typedef struct Stepper Stepper;
 
 Stepper *stepper_create(const Method *method, const Scene *scene, Error *error);
+
+/* Of a solver in memory, which is destroyed with it, or at once where memory is short. */
+Stepper *stepper_of_solver(const ContactSolver *solver, Error *error);
 void stepper_destroy(Stepper *stepper);
 
 /* The description of its method. */

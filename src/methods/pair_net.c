@@ -159,7 +159,28 @@ static void changes_of(const PairNetwork *pair, const ContactProblem *problem, i
     if (two) share_relative_change(problem, first, vec2(changes[3], changes[4]), changes);
 }
 
-void pair_solver_destroy(void *state) {
+/* The common part of pair-net and contact-net, which accept different networks. */
+
+typedef struct PairSolver {
+    PairNetwork network;
+    int sweep_count;  /* for TARGET_IMPULSE */
+    bool predicts;    /* false: the mean of its training data */
+    int *pair_counts; /* [body_count] number of pairs of each body */
+    size_t count_capacity;
+} PairSolver;
+
+#define PAIR_SOLVER_SWEEPS                                                                             \
+    {                                                                                                  \
+        "k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)", \
+            SETTING_INT(PairSolver, sweep_count, 1, SWEEPS_MAX)                                        \
+    }
+#define PAIR_SOLVER_NET                                                                           \
+    {                                                                                             \
+        "net", "on|off: off predicts the mean of the training data for every pair (default: on)", \
+            SETTING_BOOL(PairSolver, predicts)                                                    \
+    }
+
+static void destroy_solver(void *state) {
     PairSolver *solver = state;
     if (solver == NULL) return;
     pair_network_free(&solver->network);
@@ -167,7 +188,8 @@ void pair_solver_destroy(void *state) {
     free(solver);
 }
 
-PairSolver *pair_solver_create(const char *name, const SettingSpec *known, const Settings *chosen, Error *error) {
+/* Reads the network and the settings of the table. name: of the method. */
+static PairSolver *create_solver(const char *name, const SettingSpec *known, const Settings *chosen, Error *error) {
     static const PairSolver standard = {.sweep_count = 10, .predicts = true};
     const char *path = method_network(chosen, NULL, name, error);
     PairSolver *solver = path != NULL ? settings_make(chosen, known, &standard, sizeof standard, name, error) : NULL;
@@ -246,7 +268,7 @@ static void push_points(const ContactProblem *problem, int first, const float *o
     }
 }
 
-bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     PairSolver *solver = state;
     PairNetwork *network = &solver->network;
     contact_solution_begin(problem, solution);
@@ -299,12 +321,12 @@ static const SettingSpec contact_net_settings[] = {
     {"network", "file of a network with the target points (default: the scene's)", SETTING_OWN}, PAIR_SOLVER_NET, {0}};
 
 static void *contact_net_create(const Settings *chosen, Error *error) {
-    PairSolver *solver = pair_solver_create("contact-net", contact_net_settings, chosen, error);
+    PairSolver *solver = create_solver("contact-net", contact_net_settings, chosen, error);
     if (solver == NULL || solver->network.target == TARGET_POINTS) return solver;
     error_input(error, settings_get(chosen, "network"),
                 "the network has the target %s, which is for pair-net; contact-net needs the target points",
                 pair_target_names[solver->network.target]);
-    pair_solver_destroy(solver);
+    destroy_solver(solver);
     return NULL;
 }
 
@@ -320,8 +342,8 @@ const ContactSolverKind solver_contact_net = {
                     .chart_quick = METHOD_RUNS("", "net=off"),
                     .stability = METHOD_RUNS("", "net=off")},
     .create = contact_net_create,
-    .solve = pair_solver_solve,
-    .destroy = pair_solver_destroy};
+    .solve = solve,
+    .destroy = destroy_solver};
 
 /* The paper's network in place of constraint solving (Avatavului, Ifrim, Voncila 2023, sections 3.1 to 3.3).
 
@@ -354,7 +376,7 @@ static const SettingSpec settings[] = {{"network", "file of the trained network 
                                        {0}};
 
 static void *pair_net_create(const Settings *chosen, Error *error) {
-    PairSolver *solver = pair_solver_create("pair-net", settings, chosen, error);
+    PairSolver *solver = create_solver("pair-net", settings, chosen, error);
     if (solver == NULL) return NULL;
     const PairNetwork *network = &solver->network;
     const char *path = settings_get(chosen, "network");
@@ -369,7 +391,7 @@ static void *pair_net_create(const Settings *chosen, Error *error) {
                     pair_views[network->view].name);
     else
         return solver;
-    pair_solver_destroy(solver);
+    destroy_solver(solver);
     return NULL;
 }
 
@@ -384,5 +406,5 @@ const ContactSolverKind solver_pair_net = {
                     .chart_quick = METHOD_RUNS("", "net=off"),
                     .stability = METHOD_RUNS("", "net=off")},
     .create = pair_net_create,
-    .solve = pair_solver_solve,
-    .destroy = pair_solver_destroy};
+    .solve = solve,
+    .destroy = destroy_solver};

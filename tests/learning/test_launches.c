@@ -113,7 +113,8 @@ TEST(what_cannot_run_is_an_error) {
     watch.make = make_momentum;
     watch.from_start = true;
     error = (Error){0};
-    assert_refused(launches_observe(&watch, &steps, NULL, &error), "NaN or infinite in frame 1 of launch 0");
+    assert_refused(launches_observe(&watch, &steps, NULL, &error), "is NaN or infinite",
+                   "in step 1 of scene stack, launch 0");
     watch.may_fail = true;
     error = (Error){0};
     assert_ok(launches_observe(&watch, &steps, NULL, &error), error);
