@@ -63,7 +63,8 @@ typedef struct Borders {
     int study_count, method_count, struck_count;
     BorderStudy studies[BORDERS_MAX_STUDIES];  /* those that are not struck first; what most methods hold first */
     BorderMethod methods[BORDERS_MAX_METHODS]; /* what holds most first */
-    bool used[VERDICT_LOOKS], rigid;
+    bool used[VERDICT_LOOKS], rigid, hatched;
+    bool compares;               /* struck studies of a table of before */
     bool few;                    /* a column for each study and a row for each method, instead of the reverse */
     double width, label, column; /* mm: of the page, of the names of rows, of a column */
     int tiers, lines;            /* of the methods' names above columns: heights, and lines of the longest */
@@ -104,6 +105,7 @@ static bool gather(Borders *borders, Error *error) {
     for (int i = 0; i < table->count; i++) {
         const BorderRow *row = border_row(table, i);
         bool new_study = true, new_method = true, applies = false;
+        borders->compares |= verdict_compares(row->verdict);
         for (int k = 0; k < table->count; k++) {
             const BorderRow *other = border_row(table, k);
             if (k < i && border_same_study(other, row)) new_study = false;
@@ -118,7 +120,7 @@ static bool gather(Borders *borders, Error *error) {
             study->row = row;
             study->known = border_study(borders->own, row);
             study->range = border_range(table, i, study->known);
-            study->struck = border_is_struck(table, i);
+            study->struck = border_is_struck(table, i, borders->own);
             stability_axis_text(study->title, study->known != NULL ? study->known->title : row->study, "");
             chart_make_plain(study->title);
             name_extent(study->extent, row, &study->range);
@@ -140,10 +142,39 @@ static bool gather(Borders *borders, Error *error) {
     return true;
 }
 
-/* Struck studies tell where a method agrees with the reference. Without the reference it is the whole range that
-   counts. */
-static bool holds_as_far(const Borders *borders, int study, const BorderCell *cell) {
+/* Beyond a border of falling it is unknown what collapses. */
+static int look_of(const BorderSpan *span) {
+    return span->holds ? (int)VERDICT_STANDS : span->look == VERDICT_COLLAPSES ? (int)VERDICT_FALLS : span->look;
+}
+
+/* The next part of a struck study in which a method differs from the reference, from span i of one and k of the other
+   on. */
+static bool next_difference(const BorderCell *cell, const BorderCell *reference, int *i, BorderSpan *part) {
+    for (; *i < cell->count * reference->count; ++*i) {
+        const BorderSpan *own = &cell->spans[*i / reference->count], *other = &reference->spans[*i % reference->count];
+        *part = (BorderSpan){fmax(own->from, other->from), fmin(own->to, other->to), own->holds, own->look};
+        if (part->to > part->from && verdict_differs(look_of(own), look_of(other))) return ++*i, true;
+    }
+    return false;
+}
+
+/* The reference of a struck study, with which its methods are compared. No spans: nothing is. */
+static BorderCell compared_with(const Borders *borders, int study, int method) {
     const int reference = find_reference(borders);
+    const bool none = !borders->studies[study].struck || borders->compares || reference < 0 || method == reference;
+    return none ? (BorderCell){0} : cell_at(borders, study, reference);
+}
+
+/* Without the reference it is the whole range that counts; of a struck study, that nothing differs from it. */
+static bool holds_as_far(const Borders *borders, int study, int method, const BorderCell *cell) {
+    const int reference = find_reference(borders);
+    if (borders->studies[study].struck && !borders->compares && reference >= 0) {
+        const BorderCell other = compared_with(borders, study, method);
+        double differing = 0;
+        BorderSpan part;
+        for (int i = 0; next_difference(cell, &other, &i, &part);) differing += part.to - part.from;
+        return cell->count > 0 && differing < least_seen;
+    }
     if (borders->studies[study].struck || reference < 0) return border_holds_throughout(cell);
     const BorderCell far = cell_at(borders, study, reference);
     if (far.row == NULL) return border_holds_throughout(cell);
@@ -158,7 +189,9 @@ static void measure(Borders *borders) {
         for (int method = 0; method < borders->method_count; method++) {
             const BorderCell cell = cell_at(borders, study, method);
             borders->methods[method].held += cell.held / borders->study_count;
-            borders->methods[method].as_far += holds_as_far(borders, study, &cell);
+            borders->methods[method].as_far += holds_as_far(borders, study, method, &cell);
+            const BorderCell other = compared_with(borders, study, method);
+            borders->hatched |= next_difference(&cell, &other, &(int){0}, &(BorderSpan){0});
             borders->studies[study].held += cell.held;
             applicable += cell.row != NULL && cell.row->verdict != CELL_NOT_APPLICABLE;
             double decided = 0;
@@ -296,24 +329,25 @@ static BorderSpan placed(const BorderSpan *span, double left, double width) {
 }
 
 /* The value up to which the first part holds, at that part's end. False: no room. */
-static bool put_number(Sketch *sketch, const BorderSpan *span, bool at_right, double value, double y) {
+static bool put_number(Sketch *sketch, const BorderSpan *span, bool at_right, bool halo, double value, double y) {
     char text[32];
     snprintf(text, sizeof text, fabs(value) >= 10 && fabs(value) < 1e5 ? "%.0f" : "%.2g", value);
     if (span->to - span->from < type_width(text, small_points) + 2 * number_gap) return false;
     const TextStyle style = {.points = small_points,
                              .align = at_right ? TEXT_RIGHT : TEXT_LEFT,
-                             .colour = span->holds ? 0x000000 : verdict_looks[span->look].ink};
+                             .colour = span->holds ? 0x000000 : verdict_looks[span->look].ink,
+                             .halo = halo && span->holds};
     sketch_text(sketch, (Point){at_right ? span->to - number_gap : span->from + number_gap, y}, &style, "%s", text);
     return true;
 }
 
 /* The first border's value stands in the part that holds or, if that is too narrow, in the one that fails. */
-static int number_border(Sketch *sketch, const BorderCell *cell, const BorderSpan *spans, double y) {
+static int number_border(Sketch *sketch, const BorderCell *cell, const BorderSpan *spans, bool halo, double y) {
     const int holds = cell->count > 0 && !spans[0].holds, fails = !holds;
     if (cell->count == 0 || holds >= cell->count || isnan(cell->row->holds_at) || border_holds_throughout(cell))
         return -1;
-    if (put_number(sketch, &spans[holds], holds == 0, cell->row->holds_at, y) || fails >= cell->count) return -1;
-    return put_number(sketch, &spans[fails], holds != 0, cell->row->holds_at, y) ? fails : -1;
+    if (put_number(sketch, &spans[holds], holds == 0, halo, cell->row->holds_at, y) || fails >= cell->count) return -1;
+    return put_number(sketch, &spans[fails], holds != 0, halo, cell->row->holds_at, y) ? fails : -1;
 }
 
 /* Ticks at the edges of a cell, up to which rigid boxes hold. */
@@ -339,7 +373,14 @@ static void draw_cell(const Borders *borders, int study, int method, double y) {
         fill(borders->sketch, spans[i].from, spans[i].to, y,
              spans[i].holds ? verdict_looks[VERDICT_MOVES].fill : verdict_looks[spans[i].look].fill);
     }
-    const int numbered = number_border(borders->sketch, &cell, spans, y);
+    const BorderCell other = compared_with(borders, study, method);
+    BorderSpan part;
+    const bool hatched = next_difference(&cell, &other, &(int){0}, &part);
+    for (int i = 0; next_difference(&cell, &other, &i, &part);)
+        verdict_hatch(borders->sketch, (Point){left + width * part.from, y - tile_height / 2},
+                      (Point){left + width * part.to, y + tile_height / 2},
+                      part.holds ? verdict_looks[VERDICT_MOVES].ink : verdict_looks[part.look].ink);
+    const int numbered = number_border(borders->sketch, &cell, spans, hatched, y);
     for (int i = 0; i < cell.count; i++)
         if (!spans[i].holds && i != numbered) put_symbol(borders->sketch, spans[i].from, spans[i].to, y, spans[i].look);
     if (known != NULL && known->rigid != NULL)
@@ -365,25 +406,34 @@ static void draw_heading(const Borders *borders, bool struck, double y) {
     sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
     fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_MOVES].fill);
     plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
-              struck ? "as many boxes fall as with the reference" : "holds");
+              !struck             ? "holds"
+              : borders->compares ? "as many boxes fall as with the reference"
+                                  : "struck: no box falls");
 }
 
 static int legend_columns(const Borders *borders) { return (int)((borders->width - edge) / legend_item); }
 
 static void draw_legend(const Borders *borders, double foot, int rows) {
     const LegendPlace place = {edge, foot + LEGEND_ROW * (rows - 0.5), legend_item, legend_columns(borders)};
-    const char *blue = borders->struck_count == 0                      ? "holds"
-                       : borders->struck_count == borders->study_count ? "as the reference"
-                                                                       : "holds, or agrees";
+    const char *blue = borders->struck_count == 0 || !borders->compares ? "holds"
+                       : borders->struck_count == borders->study_count  ? "as the reference"
+                                                                        : "holds, or agrees";
     int next = verdict_draw_legend(borders->sketch, borders->used, &place);
-    for (int sample = !borders->few; sample <= borders->rigid; sample++, next++) {
+    const bool shown[] = {borders->few, borders->rigid, borders->hatched};
+    for (int sample = 0; sample < 3; sample++) {
+        if (!shown[sample]) continue;
         const Point at = {edge + legend_item * (next % place.columns), place.top - LEGEND_ROW * (next / place.columns)};
         if (sample == 0)
             fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_MOVES].fill);
+        else if (sample == 2)
+            verdict_hatch(borders->sketch, (Point){at.x, at.y - 1.4}, (Point){at.x + 2.9, at.y + 1.4}, 0x000000);
         else
             sketch_line(borders->sketch, (Point){at.x + 1.4, at.y - 1.5}, (Point){at.x + 1.4, at.y + 1.5}, &rigid_pen);
         plot_text(borders->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS,
-                  sample == 0 ? blue : "rigid boxes");
+                  sample == 0   ? blue
+                  : sample == 1 ? "rigid boxes"
+                                : HATCHED_WORDS);
+        next++;
     }
 }
 
@@ -439,7 +489,9 @@ static void write_caption(const Borders *borders, PlotPage *page) {
         "is pale. The number is the last value that holds, rounded. A stroke: the method does not apply; an empty "
         "cell: not in the study. Sorted by what holds, the reference first.%s",
         borders->rigid ? " Ticks: rigid boxes hold up to here, in closed form." : "");
-    if (borders->struck_count > 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
+    if (borders->struck_count > 0)
+        text_add(page->caption, sizeof page->caption, " %s",
+                 borders->compares ? stability_compared_words : stability_struck_words);
     for (int i = 0; i < borders->study_count; i++)
         if (stability_unconverged(borders->unconverged, borders->studies[i].row->study,
                                   (char[UNCONVERGED_TEXT_SIZE]){0})) {
@@ -463,7 +515,7 @@ bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged,
     qsort(borders.methods, (size_t)borders.method_count, sizeof *borders.methods, by_method);
     lay_out(&borders);
     /* From the foot: what is left out, legend, rows, names. */
-    int items = borders.rigid + borders.few;
+    int items = borders.rigid + borders.few + borders.hatched;
     for (int look = 0; look < VERDICT_LOOKS; look++) items += borders.used[look];
     const int columns = legend_columns(&borders), rows = (items + columns - 1) / columns;
     const double foot = NOTE_ROW * left_out_rows(&borders.foot, borders.width - edge - 1) + 1;

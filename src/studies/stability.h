@@ -46,7 +46,7 @@ typedef struct StabilityStudy {
     bool rests;            /* also records drift and energy of every run */
     bool quick;            /* part of a quick run */
     double weight;         /* s for all methods on two cores, approximately */
-    const char *file;      /* path of another scene instead; `stands` is then false */
+    const char *file;      /* path of another scene instead; `stands`: it is not struck */
     double (*rigid)(void); /* the value up to which rigid boxes hold, in closed form; NULL: unknown */
 } StabilityStudy;
 
@@ -205,11 +205,15 @@ static inline const BorderRow *border_row(const CsvTable *table, int i) { return
 
 bool border_same_method(const BorderRow *a, const BorderRow *b);
 
-/* What studies of struck scenes show, for captions and pages. */
-extern const char stability_struck_words[];
+/* What studies of struck scenes show, for captions and pages; and what they showed in tables of before, whose rows
+   compare (border_compares()): agrees, too few or too many fall. */
+extern const char stability_struck_words[], stability_compared_words[];
 
-/* The study of row i is one of a struck scene: it tells where methods agree with the reference. */
-bool border_is_struck(const CsvTable *table, int i);
+/* The study of row i is one of a struck scene, of `own` or, if it is NULL, of the table of studies. */
+bool border_is_struck(const CsvTable *table, int i, const StabilityOwn *own);
+
+/* Whether the verdict is one of a comparison with the reference. */
+bool verdict_compares(int verdict);
 
 /* Writes at which values of a study or map the reference did not converge, by unconverged.csv, into text: "at rows 22,
    26 (12 of 900 steps, residual up to 3e-07 m/s)". Names the first twelve values. False, and "", if there are none. */
@@ -241,7 +245,8 @@ typedef struct MapPanels {
     double x[MAP_MAX_VALUES], y[MAP_MAX_VALUES]; /* values of all methods, ascending */
     const MapCell *methods[MAP_MAX_METHODS];     /* first row of each */
     unsigned char looks[MAP_MAX_METHODS][MAP_MAX_VALUES]
-                       [MAP_MAX_VALUES]; /* [panel][x][y]; CELL_MISSING without a row */
+                       [MAP_MAX_VALUES];                       /* [panel][x][y]; CELL_MISSING without a row */
+    int fell[MAP_MAX_METHODS][MAP_MAX_VALUES][MAP_MAX_VALUES]; /* boxes, of what falls */
 } MapPanels;
 
 /* Gathers the map whose rows start at *row and advances *row past them. ERROR_INPUT, with path:line:column: a repeated
@@ -305,7 +310,7 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
 /* The study's scene, in this folder, with a value of its parameter. The caller frees it. */
 Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error);
 
-/* Whether the study compares what stands with the converged run: the scene is struck (runs/verdict.h), and its table
+/* Whether the study shows what the converged run does, beside what methods do: the scene is struck (runs/verdict.h), and its table
    does not say that it stands. */
 bool stability_is_struck(const StabilityPlace *place, const Scene *scene, bool stands);
 
@@ -317,15 +322,14 @@ typedef struct Convergence {
     Fallbacks fallbacks; /* of all of them */
 } Convergence;
 
-/* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses
-   (runs/verdict.h). It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre
+/* The truth of a struck scene is what the converged run does: stands, falls or collapses (runs/verdict.h). It is
+   undecided near the edge, where runs that are shifted by a micrometre
    differ in that, and where the converged run is not sound or has a step that did not converge. Of a scene that is not
    struck it is VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
 bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *convergence, Error *error);
 
-/* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is
-   not sound stays so. The reference's verdict is what its own run does, so that a
-   study shows the truth, or undecided if a step of it did not converge. */
+/* The verdict of a study on a run: what the run does. The reference's is undecided where the truth is, or where a step
+   of its run did not converge; what is not sound stays so. */
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
 
 /* Shifts the first dynamic body, or if there is none the bomb, along x: by 0 for seed 0, by +-1e-6 m for seeds 1 and

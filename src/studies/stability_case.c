@@ -108,12 +108,9 @@ bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *con
 }
 
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method) {
-    const bool is_truth = method->kind->description->role == METHOD_REFERENCE;
-    if (truth == VERDICT_SETTLES || !verdict_sound(reading->verdict)) return reading->verdict;
-    if (is_truth) return reading->fallbacks.not_converged > 0 ? VERDICT_UNDECIDED : reading->verdict;
-    if (truth == VERDICT_UNDECIDED) return VERDICT_UNDECIDED;
-    if (reading->verdict == truth) return VERDICT_AGREES;
-    return reading->verdict < truth ? VERDICT_TOO_FEW : VERDICT_TOO_MANY;
+    const bool is_truth = method->kind->description->role == METHOD_REFERENCE,
+               unknown = truth == VERDICT_UNDECIDED || reading->fallbacks.not_converged > 0;
+    return is_truth && unknown && verdict_sound(reading->verdict) ? VERDICT_UNDECIDED : reading->verdict;
 }
 
 /* The run of the scene at the value by the method "reference", and its truth. NULL with error set if it fails. */

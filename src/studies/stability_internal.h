@@ -12,6 +12,7 @@
 #include "studies/stability.h"
 #include "studies/study_page.h"
 
+#include <stdint.h>
 #include <stdio.h>
 
 /* How verdicts are drawn: a tile with a symbol. Worse is darker, readable in grey and for the colour-blind; holding is
@@ -39,7 +40,9 @@ typedef struct TileSize {
 typedef struct Tile {
     Point at; /* centre */
     int look;
-    bool bare; /* without its symbol */
+    bool bare;    /* without its symbol */
+    bool hatched; /* not as the reference */
+    int16_t fell; /* the number of boxes instead of the symbol; 0: the symbol */
 } Tile;
 
 /* The tile's symbol alone, `width` mm wide. */
@@ -53,6 +56,13 @@ typedef struct LegendPlace {
     double left, top, width; /* mm: left edge and centre height of the first item; column width */
     int columns;
 } LegendPlace;
+
+/* Strokes over a part in which a method does something else than the reference: stands, falls, collapses, or is not
+   sound. Of what is undecided, or has no verdict, nothing is known. */
+void verdict_hatch(Sketch *sketch, Point low, Point high, uint32_t ink);
+bool verdict_differs(int look, int reference);
+
+#define HATCHED_WORDS "not as the reference"
 
 /* Draws tiles and names of the used looks. Returns their number. */
 int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const LegendPlace *place);

@@ -53,7 +53,9 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
                                        MAP_MAX_METHODS);
             map->methods[map->panel_count++] = cell;
         }
-        unsigned char *look = &map->looks[map->panel_count - 1][place_of(map->x, cell->x)][place_of(map->y, cell->y)];
+        const int x = place_of(map->x, cell->x), y = place_of(map->y, cell->y);
+        unsigned char *look = &map->looks[map->panel_count - 1][x][y];
+        if (strcmp(cell->unit, "boxes") == 0) map->fell[map->panel_count - 1][x][y] = (int)cell->value;
         if (*look != CELL_MISSING)
             return csv_table_error(table, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
                                    cell->x, cell->y_parameter, cell->y);
@@ -168,7 +170,7 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
 /* mm. Seams between small tiles would be most of what is seen; these overlap instead, as half-covered pixels would let
    the page through. */
 static const double most_symbol = 2.0, seam = 0.07, overlap = 0.02, least_with_seam = 1.2, legend_tile = 2.9,
-                    name_gap = 1.3;
+                    name_gap = 1.3, hatch_step = 1.1, number_room = 2.6, fell_points = 6, clear_of_hatch = 1.5;
 
 /* Symbol width relative to a tile's smaller side. */
 static const double symbol_share = 0.56;
@@ -185,6 +187,26 @@ void verdict_draw_symbol(Sketch *sketch, const Tile *tile, double width) {
         plot_mark(sketch, tile->at, &style, look->size * half, 1.2);
 }
 
+bool verdict_differs(int look, int reference) {
+    const int looks[] = {look, reference};
+    int does[2]; /* 0: stands, 1: falls, 2: collapses, 3: is not sound */
+    for (int i = 0; i < 2; i++) {
+        if (looks[i] >= VERDICTS || looks[i] == VERDICT_UNDECIDED) return false;
+        does[i] = !verdict_sound((Verdict)looks[i]) ? 3
+                  : looks[i] == VERDICT_COLLAPSES   ? 2
+                                                    : !verdict_holds((Verdict)looks[i]);
+    }
+    return does[0] != does[1];
+}
+
+void verdict_hatch(Sketch *sketch, Point low, Point high, uint32_t ink) {
+    const double wide = high.x - low.x, tall = high.y - low.y;
+    const Pen pen = pen_line(ink, 0.8, NULL);
+    for (double at = hatch_step / 2; at < wide + tall; at += hatch_step)
+        sketch_line(sketch, (Point){low.x + fmax(at - tall, 0), low.y + fmin(at, tall)},
+                    (Point){low.x + fmin(at, wide), low.y + fmax(at - wide, 0)}, &pen);
+}
+
 void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size) {
     const double inside = fmin(size.width, size.height) < least_with_seam ? -overlap : seam;
     const double x = size.width / 2 - inside, y = size.height / 2 - inside;
@@ -192,12 +214,21 @@ void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize s
         const Point at = tiles[i].at;
         const uint32_t fill = verdict_looks[tiles[i].look].fill;
         if (fill == NO_COLOUR) continue;
-        sketch_rectangle(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y},
-                         &(Pen){fill, 1, NO_COLOUR, 0, NULL});
+        const Point low = {at.x - x, at.y - y}, high = {at.x + x, at.y + y};
+        const Pen plain = {fill, 1, NO_COLOUR, 0, NULL};
+        sketch_rectangle(sketch, low, high, &plain);
+        if (!tiles[i].hatched) continue;
+        verdict_hatch(sketch, low, high, verdict_looks[tiles[i].look].ink);
+        if (!tiles[i].bare) sketch_dot(sketch, at, fmin(fmin(x, y), clear_of_hatch), &plain);
     }
     const double room = size.symbol_room > 0 ? size.symbol_room : fmin(size.width, size.height);
-    for (int i = 0; i < count; i++)
-        if (!tiles[i].bare) verdict_draw_symbol(sketch, &tiles[i], fmin(symbol_share * room, most_symbol));
+    for (int i = 0; i < count; i++) {
+        const TextStyle style = {fell_points, TEXT_CENTER, verdict_looks[tiles[i].look].ink, 0, false};
+        if (tiles[i].fell > 0 && fmin(size.width, size.height) >= number_room)
+            sketch_text(sketch, tiles[i].at, &style, "%d", tiles[i].fell);
+        else if (!tiles[i].bare)
+            verdict_draw_symbol(sketch, &tiles[i], fmin(symbol_share * room, most_symbol));
+    }
 }
 
 int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const LegendPlace *place) {
@@ -274,21 +305,35 @@ void left_out_draw(const LeftOut *left_out, PlotPage *page, double left) {
     }
 }
 
-/* Where a method holds or fails everywhere, there is nothing to see. If no panel has a border, all stay. */
+/* The panel of the reference, which only maps of struck scenes have; -1: none. */
+static int reference_of(const MapPanels *map) {
+    for (int panel = 0; panel < map->panel_count; panel++)
+        if (strcmp(map->methods[panel]->method, "reference") == 0) return panel;
+    return -1;
+}
+
+/* Where a method holds or fails everywhere, there is nothing to see, unless the reference is beside it. If no panel has
+   a border, all stay. */
+static bool is_kept(const MapPanels *map, int panel) {
+    return border_of(map, panel) == 1 || (reference_of(map) >= 0 && border_of(map, panel) > -2);
+}
+
 static void leave_out(MapPanels *map, LeftOut *left_out) {
     static const char *const why[] = {
         "Left out, as holding everywhere: ", "Left out, as failing everywhere: ", "Left out, as not applicable: "};
     const int count = map->panel_count;
     int kept = 0;
-    for (int panel = 0; panel < count; panel++) kept += border_of(map, panel) == 1;
+    bool keep[MAP_MAX_METHODS];
+    for (int panel = 0; panel < count; panel++) kept += keep[panel] = is_kept(map, panel);
     for (int kind = 0; kept > 0 && kind < 3; kind++)
         for (int panel = 0; panel < count; panel++)
-            if (border_of(map, panel) == -kind)
+            if (!keep[panel] && border_of(map, panel) == -kind)
                 left_out_add(left_out, why[kind], map->methods[panel]->method, map->methods[panel]->setting);
     map->panel_count = kept > 0 ? 0 : count;
     for (int panel = 0; kept > 0 && panel < count; panel++) {
-        if (border_of(map, panel) != 1) continue;
+        if (!keep[panel]) continue;
         map->methods[map->panel_count] = map->methods[panel];
+        memmove(map->fell[map->panel_count], map->fell[panel], sizeof map->fell[panel]);
         memmove(map->looks[map->panel_count++], map->looks[panel], sizeof map->looks[panel]);
     }
 }
@@ -308,7 +353,16 @@ typedef struct Layout {
     PlotGrid grid;
     double cell_x, cell_y; /* mm: size of a cell */
     bool used[VERDICT_LOOKS];
+    int reference; /* its panel is the first, and others are hatched where they differ; -1: none */
 } Layout;
+
+/* Whether verdicts are those of tables of before. */
+static bool compares(const MapPanels *map) {
+    for (int panel = 0; panel < map->panel_count; panel++)
+        for (int cell = 0; cell < map->x_count * map->y_count; cell++)
+            if (verdict_compares(map->looks[panel][cell % map->x_count][cell / map->x_count])) return true;
+    return false;
+}
 
 /* The title of a panel, in lines. */
 static int wrap_title(char title[STABILITY_TEXT_SIZE], const MapPanels *map, int panel, double width) {
@@ -319,8 +373,8 @@ static int wrap_title(char title[STABILITY_TEXT_SIZE], const MapPanels *map, int
 /* A single panel is one column of a printed page wide; several fill the page. */
 static Layout lay_out(const MapPanels *map, const LeftOut *left_out, Sketch *sketch) {
     int panels = map->panel_count;
-    Layout layout = {.map = map, .sketch = sketch};
-    int used = 0;
+    Layout layout = {.map = map, .sketch = sketch, .reference = compares(map) ? -1 : reference_of(map)};
+    int used = layout.reference >= 0;
     for (int p = 0; p < panels; p++)
         for (int x = 0; x < map->x_count; x++)
             for (int y = 0; y < map->y_count; y++) layout.used[map->looks[p][x][y]] = true;
@@ -340,7 +394,7 @@ static Layout lay_out(const MapPanels *map, const LeftOut *left_out, Sketch *ske
     grid.top = title_room + (lines - 1) * line_height(8);
     grid.row_gap = grid.top + row_gap;
     layout.foot = NOTE_ROW * left_out_rows(left_out, grid.width - grid.left - 1);
-    layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
+    layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS - (layout.reference >= 0);
     /* The border is one more legend item. */
     layout.legend_rows = (used + layout.legend_columns) / layout.legend_columns;
     grid.bottom = layout.foot + LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
@@ -366,12 +420,16 @@ static bool has_symbol(int i, int count, int every) {
 static void draw_tiles(const Layout *layout, int panel, const PlotPanel *plot) {
     const MapPanels *map = layout->map;
     Tile tiles[MAP_MAX_VALUES * MAP_MAX_VALUES];
-    const int across = symbols_every(layout->cell_x), up = symbols_every(layout->cell_y);
+    const int across = symbols_every(layout->cell_x), up = symbols_every(layout->cell_y), reference = layout->reference;
     int count = 0;
     for (int x = 0; x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++)
-            tiles[count++] = (Tile){plot_place(plot, x, y), map->looks[panel][x][y],
-                                    !has_symbol(x, map->x_count, across) || !has_symbol(y, map->y_count, up)};
+            tiles[count++] = (Tile){.at = plot_place(plot, x, y),
+                                    .look = map->looks[panel][x][y],
+                                    .bare = !has_symbol(x, map->x_count, across) || !has_symbol(y, map->y_count, up),
+                                    .fell = (int16_t)(reference >= 0 ? map->fell[panel][x][y] : 0),
+                                    .hatched = reference >= 0 &&
+                                               verdict_differs(map->looks[panel][x][y], map->looks[reference][x][y])};
     verdict_draw_tiles(layout->sketch, tiles, count,
                        (TileSize){layout->cell_x, layout->cell_y, fmin(across * layout->cell_x, up * layout->cell_y)});
 }
@@ -405,14 +463,15 @@ static void draw_panel(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     PlotTicks ticks[2];
     char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
-    PlotPanel plot = {.box = plot_grid_box(&layout->grid, panel), .title = title};
+    const int place = panel == layout->reference ? 0 : panel + (panel < layout->reference);
+    PlotPanel plot = {.box = plot_grid_box(&layout->grid, place), .title = title};
     wrap_title(title, map, panel, plot.box.width);
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
     plot.x = map_axis(&ticks[0], true, map->x, map->x_count, layout->cell_x);
     plot.y = map_axis(&ticks[1], false, map->y, map->y_count, layout->cell_y);
-    if (panel + layout->grid.columns >= map->panel_count) plot.x.label = x;
-    if (panel % layout->grid.columns == 0) plot.y.label = y;
+    if (place + layout->grid.columns >= map->panel_count) plot.x.label = x;
+    if (place % layout->grid.columns == 0) plot.y.label = y;
     plot_panel_place(&plot);
     draw_tiles(layout, panel, &plot);
     draw_border(layout, panel, &plot);
@@ -423,11 +482,18 @@ static void draw_legend(const Layout *layout) {
     LegendPlace place = {layout->grid.left, layout->foot + LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
                          (layout->grid.width - layout->grid.left) / layout->legend_columns, layout->legend_columns};
     const int next = verdict_draw_legend(layout->sketch, layout->used, &place);
-    const Point at = {place.left + place.width * (next % place.columns),
-                      place.top - LEGEND_ROW * (next / place.columns)};
-    sketch_rectangle(layout->sketch, (Point){at.x, at.y - border_width / 2},
-                     (Point){at.x + 2.9, at.y + border_width / 2}, &(Pen){0x000000, 1, NO_COLOUR, 0, NULL});
-    plot_text(layout->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS, "border of holding");
+    for (int i = 0; i <= (layout->reference >= 0); i++) {
+        const double half = i == 0 ? border_width / 2 : legend_tile / 2;
+        const Point at = {place.left + place.width * ((next + i) % place.columns),
+                          place.top - LEGEND_ROW * ((next + i) / place.columns)},
+                    low = {at.x, at.y - half}, high = {at.x + legend_tile, at.y + half};
+        if (i == 0)
+            sketch_rectangle(layout->sketch, low, high, &(Pen){0x000000, 1, NO_COLOUR, 0, NULL});
+        else
+            verdict_hatch(layout->sketch, low, high, 0x000000);
+        plot_text(layout->sketch, (Point){at.x + legend_tile + name_gap, at.y}, TEXT_LEFT, LEGEND_POINTS,
+                  i == 0 ? "border of holding" : HATCHED_WORDS);
+    }
 }
 
 static void write_caption(const MapPanels *map, bool converged, PlotPage *page) {
@@ -440,13 +506,9 @@ static void write_caption(const MapPanels *map, bool converged, PlotPage *page) 
         "worse. Settling and moving count as holding; the black line separates them from failing. All "
         "cells have the same size, whatever their values.",
         map->first->map, x, y);
-    bool struck = false;
-    for (int panel = 0; panel < map->panel_count; panel++)
-        for (int cell = 0; cell < map->x_count * map->y_count; cell++) {
-            const int look = map->looks[panel][cell % map->x_count][cell / map->x_count];
-            struck |= look == VERDICT_AGREES || look == VERDICT_TOO_FEW || look == VERDICT_TOO_MANY;
-        }
-    if (struck) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
+    if (compares(map) || reference_of(map) >= 0)
+        text_add(page->caption, sizeof page->caption, " %s",
+                 compares(map) ? stability_compared_words : stability_struck_words);
     if (!converged) text_add(page->caption, sizeof page->caption, " %s", stability_unconverged_words);
 }
 

@@ -2,6 +2,7 @@
 /* The studies of one scene file, from the texts of --vary. */
 #include "base/base.h"
 #include "base/csv.h"
+#include "runs/verdict.h"
 #include "scenes/scenes.h"
 #include "studies/stability.h"
 
@@ -175,6 +176,7 @@ static bool add_study(StabilityOwn *own, const Scene *scene, const char *path, c
                                                         .scene = own->names[i],
                                                         .parameter = name,
                                                         .scan = scan,
+                                                        .stands = !verdict_is_struck(scene),
                                                         .iterations = iterations,
                                                         .weight = scan.points + 16,
                                                         .file = path};
@@ -196,6 +198,7 @@ static void add_map(StabilityOwn *own, const char *scene_name, const char *path)
                                                  .scene = own->names[STABILITY_MAX_VARY],
                                                  .x = x,
                                                  .y = y,
+                                                 .stands = own->studies[0].stands,
                                                  .iterations = own->studies[0].iterations || own->studies[1].iterations,
                                                  .weight = x.scan.points * y.scan.points,
                                                  .file = path};

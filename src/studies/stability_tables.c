@@ -11,6 +11,7 @@
 #include "scenes/scenes.h"
 #include "studies/chart_data.h"
 #include "studies/stability.h"
+#include "studies/stability_internal.h"
 
 #include <ctype.h>
 #include <limits.h>
@@ -27,10 +28,17 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
 
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
-const char stability_struck_words[] = "Where a bomb or a moving body strikes, a method holds where it agrees with the "
-                                      "reference: as there, no box falls, fewer "
-                                      "than half of the boxes, or at least half; the reference itself holds where it "
-                                      "stands. Undecided: a micrometre decides, or the reference did not converge.";
+const char stability_struck_words[] =
+    "Where a bomb or a moving body strikes, a method holds where no box falls; where it collapses, half of the boxes "
+    "do, or more. Hatched: it stands where the reference falls, or falls where it stands, or is not sound as it is; in "
+    "maps also where only one of the two collapses. "
+    "Undecided: a micrometre decides, or the reference did not converge.";
+
+const char stability_compared_words[] =
+    "Where a bomb or a moving body strikes, a method holds where it agrees with the "
+    "reference: as there, no box falls, fewer "
+    "than half of the boxes, or at least half; the reference itself holds where it "
+    "stands. Undecided: a micrometre decides, or the reference did not converge.";
 
 const char stability_unconverged_words[] =
     "From a step on that did not converge no run is judged by the reference, and "
@@ -79,12 +87,18 @@ bool stability_unconverged(const CsvTable *table, const char *study, char text[U
     return places > 0;
 }
 
-bool border_is_struck(const CsvTable *table, int i) {
+bool verdict_compares(int verdict) {
+    return verdict == VERDICT_AGREES || verdict == VERDICT_TOO_FEW || verdict == VERDICT_TOO_MANY;
+}
+
+bool border_is_struck(const CsvTable *table, int i, const StabilityOwn *own) {
+    const StabilityStudy *known = border_study(own, border_row(table, i));
+    if (known != NULL) return !known->stands;
     for (int k = 0; k < table->count; k++) {
         const int verdict = border_row(table, k)->verdict;
         if (!border_same_study(border_row(table, k), border_row(table, i))) continue;
-        if (verdict == VERDICT_AGREES || verdict == VERDICT_STANDS || verdict == VERDICT_UNDECIDED ||
-            verdict == VERDICT_TOO_FEW || verdict == VERDICT_TOO_MANY || verdict == VERDICT_COLLAPSES)
+        if (verdict_compares(verdict) || verdict == VERDICT_STANDS || verdict == VERDICT_UNDECIDED ||
+            verdict == VERDICT_COLLAPSES)
             return true;
     }
     return false;

@@ -19,7 +19,7 @@ if ! sanitized && "${hidden[@]}" true 2>/dev/null; then # sanitizers read it, to
 fi
 
 run 0 stability $few -o one
-says "bomb_speed: speed in m/s, holds | fails"
+says "bomb_speed: speed in m/s, stands | falls"
 says "heavy_on_one: ratio, holds | fails"
 says "  scene-net                not applicable"
 says "borders -> one/stability.csv; maps -> one/maps.csv"

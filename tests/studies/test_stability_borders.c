@@ -109,6 +109,41 @@ TEST(a_range_is_that_of_its_study) {
     }
 }
 
+#define STRUCK "a,engine,,m,,12,13,collapses\na,reference,,m,,20,21,falls\n"
+
+/* The engine falls from 13 on, the reference from 21 on, as nncg does; momentum explodes there and admm stands. */
+TEST(what_is_not_as_the_reference_is_hatched) {
+    static const char strokes[] =
+        "def strokes(title):\n"
+        "    (left, low, right, high), = [c for c in cells(title, pale)]\n"
+        "    lines = re.findall('<path d=\"M([^\"LZ]*)L([^\"LZ]*)\" fill=\"none\" stroke=\"#[0-9A-F]{6}\"', svg)\n"
+        "    x = [float(end.split()[0]) for line in lines for end in line\n"
+        "         if all(low - 0.01 <= float(p.split()[1]) <= high + 0.01 for p in line)]\n"
+        "    x = [12 + 18 * (each - left) / (right - left) for each in x]\n"
+        "    return [round(min(x)), round(max(x))] if x else []\n";
+    start_afresh(MAPS ONE_CELL, BORDERS STRUCK "a,nncg,,m,,20,21,falls\na,momentum,,m,,20,21,explodes\n"
+                                               "a,admm,,m,,30,,stands\n");
+    draw();
+    check_svg("svg = read('borders')\n%s"
+              "for name, part in (('engine', [13, 20]), ('nncg', []), ('momentum', [21, 30]), ('admm', [21, 30])):\n"
+              "    expect(strokes(name), part, name)\n"
+              "expect(texts(svg).count('not as the reference'), 1, 'legend')\n"
+              "expect([t for t in texts(svg) if t in ('engine', 'reference', 'admm')], ['reference', 'admm', "
+              "'engine'], 'order')\n"
+              "assert '%s' in caption('borders')\n",
+              strokes, stability_struck_words);
+    /* A table of before says itself what agrees; what was not struck is not compared. */
+    static const char *const others[] = {BORDERS STRUCK "a,admm,,m,,30,,agrees\n",
+                                         BORDERS "a,engine,,m,,12,13,falls\na,reference,,m,,20,21,falls\n"};
+    for (int i = 0; i < 2; i++) {
+        start_afresh(MAPS ONE_CELL, others[i]);
+        draw();
+        check_svg("expect(texts(read('borders')).count('not as the reference'), 0, 'legend')\n"
+                  "expect('%s' in caption('borders'), %s, 'words')\n",
+                  stability_compared_words, i == 0 ? "True" : "False");
+    }
+}
+
 #define UNCONVERGED_RUN(map, method, x, y, rest) map "," method ",,h,," x ",v,," y ",settles," rest "\n"
 
 /* Once for all methods, with what all values have together; a map names both values. */

@@ -62,6 +62,27 @@ TEST(without_any_border_all_panels_stay) {
               "assert 'Left out' not in caption('map-m'), caption('map-m')\n");
 }
 
+/* The reference is first, and stays without a border; tiles have the number of boxes that fell. */
+TEST(maps_of_struck_scenes_have_numbers_and_are_hatched) {
+    start_afresh(MAPS "m,engine,,a,,1,b,,1,falls,9,2,3,boxes\nm,engine,,a,,2,b,,1,collapses,9,2,7,boxes\n"
+                      "m,nncg,,a,,1,b,,1,stands,9,-1,0.5,m/s\nm,nncg,,a,,2,b,,1,stands,9,-1,0.5,m/s\n"
+                      "m,reference,,a,,1,b,,1,stands,9,-1,0,m/s\nm,reference,,a,,2,b,,1,undecided,9,2,8,m\n",
+                 BORDERS ONE_BORDER);
+    draw();
+    check_svg("svg = read('map-m')\n"
+              "found = texts(svg)\n"
+              "for text in ('3', '7', 'not as the reference', 'engine', 'nncg', 'reference'):\n"
+              "    expect(found.count(text), 1, text)\n"
+              "place = {t: float(re.search('translate[(]([^ ]*) [^>]*>' + t + '<', svg)[1]) for t in ('engine', "
+              "'nncg', 'reference')}\n"
+              "assert place['reference'] < place['engine'], place\n"
+              "tile, = [a for a in areas(svg, '#EE9A2E') if a[2] - a[0] > 4]\n"
+              "lines = re.findall('<path d=\"M([^\"LZ]*)L([^\"LZ]*)\" fill=\"none\" stroke=\"#[0-9A-F]{6}\"', svg)\n"
+              "hatched = [line for line in lines if all(tile[0] - 0.1 <= float(p.split()[0]) <= tile[2] + 0.1 for p in "
+              "line)]\n"
+              "assert len(hatched) > 3 and len(lines) < 2 * len(hatched), (len(hatched), len(lines))\n");
+}
+
 /* Three panels are a row. */
 TEST(no_place_of_three_panels_is_empty) {
     char *maps = make_map(3, 4, 4);

@@ -20,7 +20,7 @@ static double luminance(uint32_t rgb) {
 static double lightness(uint32_t colour) { return 116 * cbrt(luminance(colour)) - 16; }
 
 TEST(the_worse_the_darker) {
-    /* Of scenes at rest, struck ones, and studies of these; a program that failed says nothing of the physics. */
+    /* Of scenes at rest, struck ones, and older studies of these; a program that failed says nothing of the physics. */
     static const Verdict orders[3][9] = {{VERDICT_SETTLES, VERDICT_MOVES, VERDICT_FALLS, VERDICT_SINKS, VERDICT_TUNNELS,
                                           VERDICT_EXPLODES, VERDICT_NON_FINITE},
                                          {VERDICT_STANDS, VERDICT_FALLS, VERDICT_COLLAPSES, VERDICT_SINKS},
