@@ -12,7 +12,6 @@
 #include "studies/stability.h"
 #include "studies/study_page.h"
 
-#include <stdint.h>
 #include <stdio.h>
 
 /* How verdicts are drawn: a tile with a symbol. Worse is darker, readable in grey and for the colour-blind; holding is
@@ -42,7 +41,7 @@ typedef struct Tile {
     int look;
     bool bare;    /* without its symbol */
     bool hatched; /* not as the reference */
-    int16_t fell; /* the number of boxes instead of the symbol; 0: the symbol */
+    int fell;     /* the number of boxes instead of the symbol; 0: the symbol */
 } Tile;
 
 /* The tile's symbol alone, `width` mm wide. */

@@ -419,19 +419,21 @@ static bool has_symbol(int i, int count, int every) {
 
 static void draw_tiles(const Layout *layout, int panel, const PlotPanel *plot) {
     const MapPanels *map = layout->map;
-    Tile tiles[MAP_MAX_VALUES * MAP_MAX_VALUES];
+    Tile *tiles = malloc((size_t)(map->x_count * map->y_count) * sizeof *tiles); /* the stack may be smaller */
     const int across = symbols_every(layout->cell_x), up = symbols_every(layout->cell_y), reference = layout->reference;
     int count = 0;
-    for (int x = 0; x < map->x_count; x++)
+    layout->sketch->failed |= tiles == NULL;
+    for (int x = 0; tiles != NULL && x < map->x_count; x++)
         for (int y = 0; y < map->y_count; y++)
             tiles[count++] = (Tile){.at = plot_place(plot, x, y),
                                     .look = map->looks[panel][x][y],
                                     .bare = !has_symbol(x, map->x_count, across) || !has_symbol(y, map->y_count, up),
-                                    .fell = (int16_t)(reference >= 0 ? map->fell[panel][x][y] : 0),
+                                    .fell = reference >= 0 ? map->fell[panel][x][y] : 0,
                                     .hatched = reference >= 0 &&
                                                verdict_differs(map->looks[panel][x][y], map->looks[reference][x][y])};
     verdict_draw_tiles(layout->sketch, tiles, count,
                        (TileSize){layout->cell_x, layout->cell_y, fmin(across * layout->cell_x, up * layout->cell_y)});
+    free(tiles);
 }
 
 /* One holds and the other fails; cells without a verdict do neither. */
