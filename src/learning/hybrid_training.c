@@ -235,9 +235,11 @@ static bool learn_step(Trainer *trainer, AskedStep *step, bool checks, HybridLau
     /* A step that was not answered may be known by now, from the steps before it. */
     const int entry = hybrid_memory_nearest(memory, &step->query, step_max);
     if (entry >= 0 && hybrid_memory_distance(memory, entry, key) <= 1) return true;
-    if (entry >= 0 && is_near(memory, entry, key) && error_of(memory, entry, step, &answer) <= memory->tolerance) {
+    const float wrong = entry >= 0 && is_near(memory, entry, key) ? error_of(memory, entry, step, &answer) : INFINITY;
+    if (wrong <= memory->tolerance) {
         hybrid_memory_stretch(memory, entry, key);
         launch->grown++;
+        launch->grown_error = fmaxf(launch->grown_error, wrong);
         return true;
     }
     if (memory->entry_count == HYBRID_ENTRIES_MAX || step->query.contacts > HYBRID_CONTACTS_MAX ||

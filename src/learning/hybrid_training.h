@@ -24,6 +24,7 @@ typedef struct HybridLaunch {
     int grown, added, full;     /* of the others: an ellipsoid took it in; an entry; no room for an entry */
     int checked;                /* answers compared with the converged solution */
     double error;               /* m/s: sum of their errors */
+    float grown_error;          /* m/s: the largest of an answer that an ellipsoid took in */
     const HybridMemory *memory; /* after the launch; NULL until there are directions */
 } HybridLaunch;
 

@@ -89,6 +89,7 @@ says '"converged": false'
 grep -q '"error"' out && fail "an error against a step that did not converge"
 run 0 simulate "$wedge" -m reference -o wedge.npz
 grep -Eq '^    steps that did not converge: [1-9]' out || fail "unconverged steps are not counted"
+awk '/largest residual: / { above = $3 > $6 } END { exit !above }' out || fail "the largest residual: $(cat out)"
 says "this run is no yardstick"
 # The words of the verdict go with the run.
 grep -Eq "^    verdict: settles;.*; [0-9]* steps did not converge$" out || fail "the verdict: $(cat out)"

@@ -10,7 +10,31 @@ enum { LAUNCHES = 120 };
 typedef struct Counts {
     int launches, asked, answered, late, late_answered, grown, added, full, checked;
     double worst; /* mean error of a launch's answers */
+    float grown_error;
+    int shrunk, known;   /* ellipsoids, by the trace of their matrix M; entries so far */
+    double traces[1000]; /* [known] */
 } Counts;
+
+/* A new entry's M is at least 1 / tolerance^2 in every direction; a growth lowers its trace, a cut raises it. */
+static void count_shrunk(Counts *counts, const HybridLaunch *launch) {
+    const HybridMemory *memory = launch->memory;
+    const bool checks = launch->number % 10 == 1;
+    for (int i = 0; memory != NULL && i < memory->entry_count; i++) {
+        const float *metric = memory->metrics + (size_t)i * (size_t)memory->metric_size;
+        double trace = 0;
+        for (int row = 0, at = 0; row < memory->key_size; at += ++row + 1) {
+            trace += (double)metric[at];
+            if (i >= counts->known && launch->grown == 0)
+                assert_true(metric[at] >= 0.999f / (memory->tolerance * memory->tolerance));
+        }
+        if (i < counts->known && trace > 1.0001 * counts->traces[i]) {
+            assert_true(checks);
+            counts->shrunk++;
+        }
+        counts->traces[i] = trace;
+    }
+    counts->known = memory != NULL ? memory->entry_count : 0;
+}
 
 static void count(void *context, const HybridLaunch *launch) {
     Counts *counts = context;
@@ -26,6 +50,8 @@ static void count(void *context, const HybridLaunch *launch) {
     counts->full += launch->full;
     counts->checked += launch->checked;
     if (launch->checked > 0) counts->worst = fmax(counts->worst, launch->error / launch->checked);
+    counts->grown_error = fmaxf(counts->grown_error, launch->grown_error);
+    count_shrunk(counts, launch);
 }
 
 static HybridTraining training_of(Counts *counts) {
@@ -59,6 +85,16 @@ TEST(familiar_impacts_are_answered_within_the_tolerance) {
     assert_true(counts.grown > 20);
     assert_true(4 * counts.late_answered > counts.late);
     assert_true(counts.checked > 0 && counts.worst < 0.1);
+}
+
+TEST(ellipsoids_grow_by_right_answers_and_shrink_by_wrong_ones) {
+    OWN(Scene) *scene = scene_named("single");
+    Counts counts;
+    HybridTraining training = training_of(&counts);
+    training.tolerance = 0.3f; /* a check finds an answer that is wrong by more */
+    OWN(HybridMemory) *memory = learn(scene, &training, NULL);
+    assert_true(counts.worst > 0.3 && counts.shrunk > 0);
+    assert_true(counts.grown_error > 0.15f && counts.grown_error <= training.tolerance);
 }
 
 /* Each ends where the memory has no room for one more entry. */

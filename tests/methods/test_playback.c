@@ -2,26 +2,27 @@
 /* What playback plays is what was recorded. */
 #include "made.h"
 
-static Trajectory *run(const char *method_text, float x, int frame) {
-    OWN(Scene) *scene = scene_named("single");
-    scene->bomb.frame = 20;
-    Launch launch = launch_of(scene);
-    launch.x = x;
-    launch.frame = frame;
-    Scene launched = launch_scene(scene, &launch);
-    Trajectory *trajectory = run_by(&launched, method_text);
-    return trajectory;
+static Trajectory *run(const Scene *scene, const char *method_text, const Launch *launch) {
+    Scene launched = launch_scene(scene, launch);
+    return run_by(&launched, method_text);
 }
 
-/* Of two launches recorded, x = -2.5 and 2.5 m, the nearer one. */
+/* Of two launches recorded, which differ in x, rotation or spin, the nearer one. */
 TEST(the_nearest_launch_is_played) {
-    Launch recorded[2];
-    Scene *scene = scene_named("single");
-    assert_ok(launches_for_training(scene, 2, recorded, &error), error);
-    scene_destroy(scene);
-    for (int i = 0; i < 2; i++) {
-        OWN(Trajectory) *played = run("playback:launches=2", recorded[i].x * 0.3f, 20);
-        OWN(Trajectory) *original = run("momentum:k=100", recorded[i].x, 20);
+    OWN(Scene) *scene = scene_named("single");
+    SceneSpan *const spans[] = {&scene->bomb.x, &scene->bomb.rotation, &scene->bomb.spin};
+    scene->bomb.frame = 20;
+    for (int k = 0; k < 6; k++) {
+        const int i = k % 2;
+        Launch recorded[2];
+        for (int span = 0; span < 3; span++) *spans[span] = (SceneSpan){0, span == k / 2 ? -1 : 0, span == k / 2};
+        assert_ok(launches_for_training(scene, 2, recorded, &error), error);
+        Launch near = recorded[i];
+        near.x += 0.4f * (recorded[!i].x - near.x);
+        near.rotation += 0.4f * (recorded[!i].rotation - near.rotation);
+        near.spin += 0.4f * (recorded[!i].spin - near.spin);
+        OWN(Trajectory) *played = run(scene, "playback:launches=2", &near);
+        OWN(Trajectory) *original = run(scene, "momentum:k=100", &recorded[i]);
         size_t states = (size_t)played->frames * (size_t)played->bodies;
         for (size_t s = 21 * (size_t)played->bodies; s < states; s++) {
             assert_near(played->velocity[s].x, original->velocity[s].x, 0);

@@ -61,6 +61,10 @@ TEST(a_run_without_velocities_has_those_of_its_poses) {
     scene->frames = 200;
     judge(scene, "interior", made, &run);
     run->no_velocities = true;
+    for (int i = 0; i < run->frames * run->bodies; i++) {
+        run->velocity[i] = vec2(NAN, NAN);
+        run->angular_velocity[i] = NAN;
+    }
     assert_int_equal(stored(scene, run, read).verdict, VERDICT_SETTLES);
     OWN(Scene) *assumed = trajectory_scene(run, &error);
     assert_true(assumed->body_count == run->bodies && !assumed->bomb.present);
@@ -95,6 +99,24 @@ TEST(figures_of_a_stored_run) {
     for (int frame = 1; frame < run->frames; frame++) most = fmax(most, energy(run, frame) - energy(run, 0));
     assert_near(reading.excess, most, 1e-3);
     assert_true(most > 10 && most < 50);
+}
+
+/* Box 10 lies on the ground from frame 30 on; box 9 is out of the scene from frame 60 on. */
+TEST(the_first_that_fell_is_told) {
+    char made[TRAJECTORY_VERDICT_SIZE], read[TRAJECTORY_VERDICT_SIZE];
+    OWN(Scene) *scene = scene_named("stack");
+    OWN(Trajectory) * run;
+    scene->bomb.present = false;
+    scene->frames = 80;
+    judge(scene, "engine", made, &run);
+    for (int frame = 30; frame < run->frames; frame++) {
+        run->position[frame * run->bodies + 10] = vec2(3, 0.5f);
+        if (frame >= 60) run->position[frame * run->bodies + 9] = vec2(500, -50);
+    }
+    const VerdictReading reading = stored(scene, run, read);
+    assert_true(reading.verdict == VERDICT_FALLS && reading.frame == 30 && reading.body == 10);
+    assert_non_null(strstr(read, "falls; 2 of 10 fell, first at 0.5 s"));
+    assert_non_null(strstr(read, "; 1 out of the scene"));
 }
 
 TEST(another_scene_is_refused) {
