@@ -225,7 +225,7 @@ static void print_chaos(FILE *out, const Chaos *chaos, const Growth *growth, con
 }
 
 int compare_runs_others(const RunComparison *c, RunOther others[RUN_OTHERS_MAX]) {
-    RunOther all[RUN_OTHERS_MAX] = {{.what = "bomb"}, {.what = "verdict"}, {.what = "camera"}};
+    RunOther all[RUN_OTHERS_MAX] = {{.what = "bomb"}, {.what = "verdict"}, {.what = "camera"}, {.what = "network"}};
     int count = 0;
     for (int i = 0; i < 2; i++) {
         const Trajectory *run = c->runs[i];
@@ -234,6 +234,8 @@ int compare_runs_others(const RunComparison *c, RunOther others[RUN_OTHERS_MAX])
         text_add(all[1].values[i], sizeof all[1].values[i], "%s", run->verdict[0] != '\0' ? run->verdict : "none");
         text_add(all[2].values[i], sizeof all[2].values[i], "%g x %g m at (%g, %g) m", (double)size.x, (double)size.y,
                  (double)center.x, (double)center.y);
+        if (c->runs[!i]->network_hash != 0 && run->network_hash != 0)
+            text_add(all[3].values[i], sizeof all[3].values[i], "%016" PRIx64, run->network_hash);
     }
     for (int i = 0; i < RUN_OTHERS_MAX; i++)
         if (strcmp(all[i].values[0], all[i].values[1]) != 0) others[count++] = all[i];

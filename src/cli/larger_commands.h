@@ -52,7 +52,7 @@ typedef struct RunComparison {
 } RunComparison;
 
 /* What differs without being compared, as words. */
-enum { RUN_OTHERS_MAX = 3 };
+enum { RUN_OTHERS_MAX = 4 };
 typedef struct RunOther {
     const char *what; /* "bomb" */
     char values[2][TRAJECTORY_VERDICT_SIZE];

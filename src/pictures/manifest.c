@@ -96,6 +96,7 @@ static void write_runs(JsonWriter *json, const Manifest *manifest) {
         json_put_text(json, "scene", run->scene);
         json_put_hash(json, "scene_hash", run->scene_hash);
         json_put_text(json, "method", run->method);
+        if (run->network_hash != 0) json_put_hash(json, "network_hash", run->network_hash);
         json_put_text(json, "caption", manifest->options->captions[i]);
         colour_put(json, "colour", picture_body_colors(manifest->picture, i)->fill);
         json_put_text(json, "note", manifest->options->notes[i]);

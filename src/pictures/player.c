@@ -123,6 +123,7 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     if (player->options->names[index] != NULL) method_name(note, sizeof note, run->method);
     json_put_text(json, "scene", run->scene);
     json_put_text(json, "method", run->method);
+    if (run->network_hash != 0) json_put_hash(json, "network_hash", run->network_hash);
     json_put_text(json, "name", name);
     json_put_text(json, "caption", player->options->names[index]);
     json_put_text(json, "note", note);

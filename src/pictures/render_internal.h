@@ -13,20 +13,20 @@
 /* Text entries of a picture's PNG file that state its origin. No date: the same picture gives the same file. */
 
 enum {
-    FRAME_TEXTS_MAX = 6,
+    FRAME_TEXTS_MAX = 7,
     FRAME_METHODS_SIZE = RENDER_PANELS_MAX * (TRAJECTORY_NAME_SIZE + 3),
     FRAME_STATES_SIZE = RENDER_PANELS_MAX * 20
 };
 
 /* `entries` point into this struct. */
 typedef struct FrameTexts {
-    char methods[FRAME_METHODS_SIZE], frame[16], part[16], states[FRAME_STATES_SIZE];
+    char methods[FRAME_METHODS_SIZE], frame[16], part[16], states[FRAME_STATES_SIZE], networks[FRAME_STATES_SIZE];
     ImageText entries[FRAME_TEXTS_MAX];
     int count;
 } FrameTexts;
 
 /* Fills in Scene, Method, Frame, State (all panels joined) and Software; for interpolated pictures also "Part", for
-   cards "Card". */
+   cards "Card", and where a method has a network "Network". */
 void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment);
 
 /* The interpolated position, as "1/4". */

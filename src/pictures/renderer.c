@@ -24,18 +24,23 @@ void frame_part_text(char *text, size_t size, Moment moment) {
 }
 
 void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) {
-    texts->methods[0] = texts->states[0] = '\0';
+    bool networks = false;
+    texts->methods[0] = texts->states[0] = texts->networks[0] = '\0';
     texts->count = 0;
     for (int i = 0; i < picture->count; i++) {
         const Trajectory *run = picture->runs[i];
         const int shown = picture_run_frame(picture, i, moment.frame);
         text_join(texts->methods, sizeof texts->methods, " | ", "%s", run->method);
         text_join(texts->states, sizeof texts->states, " | ", "%016" PRIx64, trajectory_frame_hash(run, shown));
+        text_join(texts->networks, sizeof texts->networks, " | ", run->network_hash == 0 ? "none" : "%016" PRIx64,
+                  run->network_hash);
+        networks |= run->network_hash != 0;
     }
     snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
     frame_part_text(texts->part, sizeof texts->part, moment);
     add(texts, "Scene", picture->runs[0]->scene);
     add(texts, "Method", texts->methods);
+    if (networks) add(texts, "Network", texts->networks);
     add(texts, "Frame", texts->frame);
     if (moment.kind == MOMENT_BETWEEN) add(texts, "Part", texts->part);
     if (moment.kind == MOMENT_TITLE) add(texts, "Card", "title");

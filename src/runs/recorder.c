@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Records a run while it is stepped, and writes it in parts by a second thread. */
 #include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
 #include "base/machine.h"
+#include "base/npz.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/programs.h"
@@ -108,10 +111,19 @@ bool recorder_record(Recorder *recorder, int frame, const World *world, Error *e
     return frame == 0 || part->no_contacts || trajectory_set_contacts(part, row, world, error);
 }
 
-void recorder_name_program(Recorder *recorder, const Method *method) {
+bool recorder_name_maker(Recorder *recorder, const Scene *scene, const Method *method, Error *error) {
+    const MethodDescription *description = method->kind->description;
+    Trajectory *run = recorder->parts[0];
     ProgramName name;
-    if (!method_program(method, &name)) return;
-    snprintf(recorder->parts[0]->program, TRAJECTORY_NAME_SIZE, "%s %s", name.name, name.version);
+    if (method_program(method, &name)) snprintf(run->program, TRAJECTORY_NAME_SIZE, "%s %s", name.name, name.version);
+    const char *path =
+        description->needs_network ? method_network(&method->settings, scene, description->name, &(Error){0}) : NULL;
+    if (path == NULL) return true;
+    size_t size;
+    char *data = file_read(file_elsewhere != NULL ? file_elsewhere(path) : path, NPZ_MAX_BYTES, &size, error);
+    if (data != NULL) run->network_hash = hash_xxh3(data, size);
+    free(data);
+    return data != NULL;
 }
 
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body) {

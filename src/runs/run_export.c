@@ -30,6 +30,7 @@ static void put_head(JsonWriter *json, const Trajectory *run) {
     json_put_text(json, "scene", run->scene);
     json_put_text(json, "method", run->method);
     if (run->program[0] != '\0') json_put_text(json, "program", run->program);
+    if (run->network_hash != 0) json_put_hash(json, "network_hash", run->network_hash);
     if (run->scene_hash != 0) json_put_hash(json, "scene_hash", run->scene_hash);
     put_float(json, "dt", run->dt);
     if (run->bomb >= 0) json_put_int(json, "bomb", run->bomb);

@@ -107,6 +107,7 @@ enum {
     ARRAY_CONTACT_NORMAL,
     ARRAY_CONTACT_IMPULSE,
     ARRAY_PROGRAM, /* from here on: known after the run */
+    ARRAY_NETWORK_HASH,
     ARRAY_VERDICT,
     ARRAY_VERDICT_FRAME,
     ARRAY_VERDICT_BODY,

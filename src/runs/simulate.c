@@ -59,8 +59,7 @@ bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *
              error_interrupted(error, scene->name, "stopped after step %d of %d", frame, scene->frames);
     }
     simulation_end(&run);
-    if (ok && watch->recorder != NULL) recorder_name_program(watch->recorder, method);
-    return ok;
+    return ok && (watch->recorder == NULL || recorder_name_maker(watch->recorder, scene, method, error));
 }
 
 bool simulate_observed(const Scene *scene, const Method *method, const StepObserver *observer, Error *error) {

@@ -34,6 +34,7 @@ typedef struct Trajectory {
     char method[TRAJECTORY_NAME_SIZE];  /* as on the command line: "engine", "pair-net:network=..." */
     char program[TRAJECTORY_NAME_SIZE]; /* of the method exec: name and version that the program states; else empty */
     uint64_t scene_hash;                /* of the scene's contents: equal physics, equal hash */
+    uint64_t network_hash;              /* XXH3 of the file of the method's network; 0: none, or unknown */
     int iterations;                     /* the scene's sweeps per step, unless the method sets its own; 0: unknown */
     float dt;                           /* s */
     int frames;                         /* T: steps + 1 */
@@ -71,8 +72,8 @@ typedef struct Trajectory {
 /* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], mass[N],
    body_name[N,32], position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N] (these four in float64 if the
    run has it), contact_start[T+1], contact_bodies[C,2], contact_feature[C], contact_point[C,2], contact_normal[C,2],
-   contact_impulse[C,2], program, verdict, verdict_frame, verdict_body. Without the masses, the names, the velocities,
-   the contacts, the program or the verdict where they are unknown. */
+   contact_impulse[C,2], program, network_hash, verdict, verdict_frame, verdict_body. Without the masses, the names, the
+   velocities, the contacts, the program, the network_hash or the verdict where they are unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the

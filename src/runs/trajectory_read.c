@@ -124,6 +124,7 @@ const RunArray run_arrays[RUN_ARRAYS] = {
     {"contact_normal", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS},
     {"contact_impulse", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS},
     {"program", NPZ_TEXT, 0, {0}, GROUP_NONE},
+    {"network_hash", NPZ_UINT64, 0, {0}, GROUP_NONE},
     {"verdict", NPZ_TEXT, 0, {0}, GROUP_VERDICT},
     {"verdict_frame", NPZ_INT32, 0, {0}, GROUP_VERDICT},
     {"verdict_body", NPZ_INT32, 0, {0}, GROUP_VERDICT},
@@ -225,6 +226,7 @@ static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *err
         !read_if_there(file, "verdict_frame", NPZ_INT32, &frame, sizeof frame, error) ||
         !read_if_there(file, "verdict_body", NPZ_INT32, &body, sizeof body, error) ||
         !read_if_there(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error) ||
+        !read_if_there(file, "network_hash", NPZ_UINT64, &t->network_hash, sizeof t->network_hash, error) ||
         !read_if_there(file, "iterations", NPZ_INT32, &iterations, sizeof iterations, error) ||
         !npz_read_scalar(file, "dt", NPZ_FLOAT32, &t->dt, sizeof t->dt, error) ||
         !read_if_there(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))

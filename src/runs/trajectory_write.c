@@ -212,6 +212,7 @@ bool trajectory_stream_finish(TrajectoryStream *stream, Error *error) {
     }
     /* The last arrays of the file: what is known after the run. */
     if (head->program[0] != '\0' && !add_array(stream, ARRAY_PROGRAM, head->program, error)) return false;
+    if (head->network_hash != 0 && !add_array(stream, ARRAY_NETWORK_HASH, &head->network_hash, error)) return false;
     if (head->verdict[0] != '\0' && (!add_array(stream, ARRAY_VERDICT, head->verdict, error) ||
                                      !add_array(stream, ARRAY_VERDICT_FRAME, &head->verdict_frame, error) ||
                                      !add_array(stream, ARRAY_VERDICT_BODY, &head->verdict_body, error)))

@@ -23,6 +23,25 @@ run 1 train pairs.npz --from net.npz -o net.npz --optimizer lm --iterations 10
 says "verdict: worse than the network in net.npz, which is kept: held-out error "
 cmp -s net.npz kept.npz || fail "a network was replaced by a worse one"
 run 0 train pairs.npz --from net.npz -o other.npz --optimizer lm --iterations 10
+
+# A network is known by its content: the name is the same, or another.
+for name in kept other; do
+    cp $name.npz net.npz
+    run 0 simulate single.yaml --method pair-net:network=net.npz -o of_$name.npz
+done
+run 0 simulate single.yaml --method pair-net:network=other.npz -o renamed.npz
+run 0 render of_other.npz -o film --frames 0:0 --size 320x180
+/usr/bin/python3 - <<'PYTHON' || fail "hashes of networks"
+import json, numpy
+kept, other, renamed = (f"{int(numpy.load(run + '.npz')['network_hash']):016x}" for run in ("of_kept", "of_other", "renamed"))
+assert kept != other == renamed, (kept, other, renamed)
+assert json.load(open("film/manifest.json"))["runs"][0]["network_hash"] == other
+assert f"Network\0\0\0\0\0{other}".encode() in open("film/frame_000000.png", "rb").read()
+open("words", "w").write(f'not compared: the network, "{kept}" in run 1, "{other}" in run 2')
+PYTHON
+run 1 compare of_kept.npz of_other.npz
+says "$(cat words)"
+cp kept.npz net.npz
 run 0 train pairs.npz --from net.npz -o net.npz --iterations 0
 run 0 train pairs.npz -o net.npz --iterations 0
 cmp -s net.npz kept.npz && fail "training without --from did not replace the file"
