@@ -19,6 +19,10 @@ TEST(equal_slopes_make_steps_of_the_rate) {
     adam_free(&adam);
 }
 
+TEST(the_rate_falls_by_half_a_cosine) {
+    for (int i = 0; i <= 6; i++) assert_near(adam_cosine(i / 6.0), pow(cos(M_PI * i / 12), 2), 1e-7);
+}
+
 /* f(x) = (x - 3)^2 / 2 */
 TEST(finds_a_minimum) {
     Adam adam;

@@ -153,8 +153,8 @@ TEST(where_the_reference_did_not_converge_is_named) {
     draw();
     check_svg("for name in ('borders', 'map-m'):\n"
               "    assert 'converge' not in caption(name) + str(texts(read(name))), caption(name)\n");
-    write_table("unconverged.csv", UNCONVERGED UNCONVERGED_RUN("s", "engine", "2", "", "100,7,2e-08,3")
-                                       UNCONVERGED_RUN("s", "engine", "5", "", "300,1,0.02,")
+    write_table("unconverged.csv", UNCONVERGED UNCONVERGED_RUN("s", "engine", "2", "", "100,7,0.02,3")
+                                       UNCONVERGED_RUN("s", "engine", "5", "", "300,1,2e-08,")
                                            UNCONVERGED_RUN("s", "nncg", "2", "", "100,7,2e-08,3")
                                                UNCONVERGED_RUN("m", "engine", "2", "4", "50,50,,1"));
     draw();
