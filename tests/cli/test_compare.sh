@@ -38,7 +38,8 @@ for text in "first difference: frame_000003.png: " "states differ in panel 1: bo
     "frames 3 to 5, 8: states differ, body 7 first" "4 of 10 frames differ, 1 of 1 trajectory differs" "verdict: physics changed"; do
     says "$text"
 done
-has report/report.html "<b>4</b> frames: physics changed"
+equal "counts of the page" "$(sed -nE 's/^<li class="[a-z]+"><b>(.*)<.b> (.*)<.li>$/\1 \2/p' report/report.html | paste -sd,)" \
+    "4 frames: physics changed,6 frames: equal pixels,1 trajectory differs"
 /usr/bin/python3 - <<'PYTHON' || fail "results.json or junit.xml lacks regions, names or causes"
 import json, xml.etree.ElementTree
 results = json.load(open("report/results.json"))
