@@ -96,7 +96,6 @@ static void write_runs(JsonWriter *json, const Manifest *manifest) {
         json_put_text(json, "scene", run->scene);
         json_put_hash(json, "scene_hash", run->scene_hash);
         json_put_text(json, "method", run->method);
-        if (run->network_hash != 0) json_put_hash(json, "network_hash", run->network_hash);
         json_put_text(json, "caption", manifest->options->captions[i]);
         colour_put(json, "colour", picture_body_colors(manifest->picture, i)->fill);
         json_put_text(json, "note", manifest->options->notes[i]);
@@ -104,6 +103,7 @@ static void write_runs(JsonWriter *json, const Manifest *manifest) {
         json_put_int(json, "frames", run->frames);
         json_put_int(json, "bomb", run->bomb);
         json_put_hash(json, "hash", trajectory_hash(run));
+        if (run->network_hash != 0) json_put_hash(json, "network_hash", run->network_hash);
         json_end(json);
     }
     json_end(json);

@@ -74,8 +74,8 @@ void recorder_destroy(Recorder *recorder);
 /* Records a frame; 0: before the first step. Frames in rising order, without gaps. RunWatch does it. */
 bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error);
 
-/* After the run, before recorder_finish() or recorder_take(): what made it (program and network_hash of Trajectory), and
-   the verdict on it (trajectory_judge). */
+/* After the run, before recorder_finish() or recorder_take(): what made it (program and network_hash of Trajectory),
+   and the verdict on it (trajectory_judge). */
 bool recorder_name_maker(Recorder *recorder, const Scene *scene, const Method *method, Error *error);
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body);
 

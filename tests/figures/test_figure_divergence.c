@@ -30,9 +30,12 @@ TEST(growth_by_a_factor_is_a_straight_line) {
     Trajectory *runs[] = {run_make("engine", 61), run_apart()};
     FigureSpec spec = spec_of(runs, 2);
     Sketch sketch;
+    assert_true(trajectory_add_contact(runs[0], 40, &(TrajectoryContact){.a = 1, .b = BOMB_BODY}, &error));
+    trajectory_end_contacts(runs[0]);
     draw_kind(&sketch, "divergence", &spec);
     const SketchMark *line = longest_line(&sketch);
     assert_int_equal(line->count, 61);
+    assert_int_equal(line->pen.line, 0xE69F00); /* of pair-net, in the light theme */
     const Point *points = sketch.points + line->first;
     /* float32 positions: distances below a tenth of a millimetre are coarse. */
     double across = (points[60].x - points[0].x) / 60, up = (points[60].y - points[30].y) / 30;
@@ -40,6 +43,13 @@ TEST(growth_by_a_factor_is_a_straight_line) {
         assert_near(points[i].x, points[0].x + across * i, 1e-9);
         assert_near(points[i].y, points[60].y - up * (60 - i), 0.05);
     }
+    bool impact = false;
+    for (size_t i = 0; i < sketch.mark_count; i++) {
+        const SketchMark *mark = &sketch.marks[i];
+        if (mark->kind == MARK_PATH && mark->pen.dashes != NULL && mark->count == 2)
+            impact |= fabs(sketch.points[mark->first].x - points[40].x) < 1e-9;
+    }
+    assert_true(impact);
     assert_texts(&sketch, "pair-net vs engine", "largest distance (m)", "time (s)", "0.0", "1.0");
     free_drawn(&sketch, runs, 2);
 }
