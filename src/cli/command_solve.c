@@ -22,7 +22,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MAX_METHODS = 64 };
+enum { MAX_METHODS = 64, FLOOR_STARTS = 8 };
 
 typedef struct Options {
     const char *input; /* with `frame` a scene, else a file of a contact problem */
@@ -67,7 +67,10 @@ static const CommandSpec spec = {
         "by -o before. Methods are scored against the converged solution: RMS error of the bodies' velocities (m/s, "
         "spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of the change made by the "
         "contacts), and the residual of the method's impulses: the largest change of a contact's velocity by one more "
-        "sweep (m/s; a method without impulses counts as impulses of 0). Then the laws of contact, each 0 where it is "
+        "sweep (m/s; a method without impulses counts as impulses of 0). The floor is the largest error of another "
+        "answer that is as right: the reference begins at other impulses, too, those of the methods among them. Errors "
+        "below it do not tell methods "
+        "apart. Then the laws of contact, each 0 where it is "
         "kept: Signorini (largest gap velocity times impulse, J), the friction cone (largest distance of an impulse "
         "from it, N s), dissipation (largest energy that friction failed to take, J); nan: the method has no "
         "impulses. Last, to compare with the method reference: the deepest penetration that the step leads to (m), "
@@ -88,17 +91,21 @@ typedef struct Result {
     const Method *methods;
     int method_count;
     Reference truth;
+    double floor;                  /* m/s; of a problem whose reference converged */
     const char *impulses;          /* path, or NULL */
     Score scores[MAX_METHODS + 1]; /* of the impulses behind the methods */
 } Result;
 
-/* Of what a method, or a table of impulses, has made of the problem. */
-static bool score_solution(const Result *result, const ContactSolution *solution, Score *score, Error *error) {
+/* Of what a method, or a table of impulses, has made of the problem. Its impulses are one more start for the floor: it
+   may have found another right answer. */
+static bool score_solution(Result *result, const ContactSolution *solution, Score *score, Error *error) {
     const ContactProblem *problem = &result->stored->problem;
     Reference work = {0};
-    const bool ok = reference_residual(&work, problem, solution->impulses, &score->residual, error);
+    bool ok = reference_residual(&work, problem, solution->impulses, &score->residual, error);
     if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
     if (ok) score->criteria = contact_criteria(problem, solution, true);
+    if (ok && reference_converged(&result->truth) && isfinite(score->residual))
+        ok = reference_raise_floor(&work, problem, &result->truth, solution->impulses, &result->floor, error);
     reference_free(&work);
     return ok;
 }
@@ -141,6 +148,11 @@ static bool score_all(Result *result, Error *error) {
     bool ok = solution.velocities != NULL && solution.impulses != NULL;
     if (!ok) error_memory(error, "solve");
     ok = ok && reference_solve(&result->truth, problem, NULL, error);
+    if (ok && reference_converged(&result->truth)) {
+        Reference other = {0};
+        ok = reference_floor(&other, problem, &result->truth, FLOOR_STARTS, &result->floor, error);
+        reference_free(&other);
+    }
     for (int i = 0; ok && i < result->method_count; i++) {
         const Scene scene = {.iterations = 10, .accumulate_impulses = true};
         ContactSolver solver;
@@ -168,11 +180,13 @@ static const char *row_name(const Result *result, int i) {
 
 static void print_result(const Result *result) {
     const StoredProblem *stored = result->stored;
-    printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations\n", stored->scene,
+    printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations", stored->scene,
            stored->frame, stored->problem.body_count, stored->problem.contact_count, result->truth.residual,
            result->truth.factorizations);
-    if (!reference_converged(&result->truth))
-        printf("The reference did not converge (tolerance: %g m/s); nothing is scored against it.\n",
+    if (reference_converged(&result->truth))
+        printf("; floor %.2g m/s\n", result->floor);
+    else
+        printf("\nThe reference did not converge (tolerance: %g m/s); nothing is scored against it.\n",
                REFERENCE_TOLERANCE);
     printf("%-40s %12s %12s %12s %12s %10s %14s %14s %10s\n", "method", "error m/s", "right  ", "residual m/s",
            "signorini J", "cone N s", "dissipation J", "penetration m", "energy J");
@@ -198,6 +212,7 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_number(json, "residual", result->truth.residual);
     json_put_int(json, "factorizations", result->truth.factorizations);
     json_put_bool(json, "converged", reference_converged(&result->truth));
+    if (reference_converged(&result->truth)) json_put_number(json, "floor", result->floor);
     json_end(json);
     json_begin_array(json, "methods", JSON_LINES);
     for (int i = 0; i < row_count(result); i++) {

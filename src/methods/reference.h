@@ -115,3 +115,17 @@ typedef struct SolutionError {
    infinite velocity is wrong; the error is then infinite. */
 SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *velocities,
                              const ReferenceVelocity *reference);
+
+/* The floor of a contact problem is the largest error, SolutionError.rms in m/s, of an answer that satisfies the laws of
+   contact to REFERENCE_TOLERANCE, as the reference's does; errors below it do not tell methods apart. It is measured as
+   the largest distance from `answer`, a converged reference, of the answers to which *r converges from so many other
+   starts: no impulses, what sweeps make of these, then random ones in their cones.
+
+   Where only one answer is right it is 0 to rounding: stacks, towers, gates. It is a lower bound, as a start finds
+   half of the steps of walls and piles that have another answer. False when memory is short. */
+bool reference_floor(Reference *r, const ContactProblem *problem, const Reference *answer, int starts, double *floor,
+                     Error *error);
+
+/* Raises it by one more start. */
+bool reference_raise_floor(Reference *r, const ContactProblem *problem, const Reference *answer,
+                           const ContactImpulse *start, double *floor, Error *error);

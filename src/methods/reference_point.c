@@ -2,8 +2,10 @@
 /* The reference (methods/reference.h): packs a contact problem into groups of four contacts, solves it
    (reference_code.h), measures the error of a method, and is a method itself. */
 #include "base/base.h"
+#include "base/random.h"
 #include "engine/engine.h"
 #include "methods/block_lu.h"
+#include "methods/impulses.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
@@ -276,6 +278,70 @@ SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *
     }
     if (error.counted > 0) error.rms = isnan(sum) ? INFINITY : sqrt(sum / error.counted);
     return error;
+}
+
+static double distance(const ContactProblem *problem, const ReferenceVelocity *u, const ReferenceVelocity *v) {
+    double sum = 0;
+    int counted = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        if (problem->bodies[i].inv_mass == 0.0f) continue;
+        sum += squared_distance(&u[i], &v[i], 1.0 / 6.0);
+        counted++;
+    }
+    return counted > 0 ? sqrt(sum / counted) : 0;
+}
+
+/* What sweeps make of no impulses: a solver's way to another answer. False when memory is short. */
+static bool sweep_from_nothing(const ContactProblem *problem, ContactImpulse *impulses) {
+    enum { SWEEPS = 30 };
+    const SequentialOptions cold = {.accumulate = true};
+    ContactSolution solution = {calloc((size_t)problem->body_count + 1, sizeof *solution.velocities), impulses, 0, {0}};
+    if (solution.velocities == NULL) return false;
+    sequential_impulses_begin(problem, &cold, &solution);
+    for (int i = 0; i < SWEEPS; i++) sequential_impulses_visit(problem, &cold, 0, problem->contact_count, &solution);
+    free(solution.velocities);
+    return true;
+}
+
+/* N s: the largest normal impulse of the answer, or what could turn a contact's velocity back, if that is more. */
+static double largest_impulse(const ContactProblem *problem, const Reference *answer) {
+    double most = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
+        const Vec2 before = contact_relative_velocity(&(BodyVelocity){a->velocity, a->angular_velocity},
+                                                      &(BodyVelocity){b->velocity, b->angular_velocity}, contact);
+        const double speed = sqrt((double)vec2_dot(before, before));
+        most = fmax(most, fmax(answer->impulses[i].normal, (double)contact->mass_normal * speed));
+    }
+    return most;
+}
+
+bool reference_raise_floor(Reference *r, const ContactProblem *problem, const Reference *answer,
+                           const ContactImpulse *start, double *floor, Error *error) {
+    if (!reference_solve(r, problem, start, error)) return false;
+    if (reference_converged(r)) *floor = fmax(*floor, distance(problem, r->velocities, answer->velocities));
+    return true;
+}
+
+bool reference_floor(Reference *r, const ContactProblem *problem, const Reference *answer, int starts, double *floor,
+                     Error *error) {
+    const double most = largest_impulse(problem, answer);
+    ContactImpulse *start = calloc((size_t)problem->contact_count + 1, sizeof *start);
+    bool ok = start != NULL || error_memory(error, "reference");
+    uint64_t random = 1;
+    *floor = 0;
+    for (int k = 0; ok && k < starts; k++) {
+        if (k == 1) ok = sweep_from_nothing(problem, start) || error_memory(error, "reference");
+        for (int i = 0; k > 1 && i < problem->contact_count; i++) {
+            const double normal = most * random_unit(&random);
+            const double tangent = (double)problem->contacts[i].friction * normal * random_signed(&random);
+            start[i] = (ContactImpulse){(float)normal, (float)tangent};
+        }
+        ok = ok && reference_raise_floor(r, problem, answer, start, floor, error);
+    }
+    free(start);
+    return ok;
 }
 
 /* The reference (methods/reference.h) as a contact solver, for runs of converged steps. A step that does not

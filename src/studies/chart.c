@@ -125,7 +125,8 @@ typedef struct Assembly {
     const Pieces *pieces;
     const ChartScene *scene;
     SceneSolves *solves;
-    MethodScores *scores; /* [contenders] */
+    MethodScores *scores;       /* [contenders] */
+    FloorSum (*floors)[PHASES]; /* [PROTOCOLS] of all launches */
 } Assembly;
 
 /* The results of a launch; *text is to be freed. */
@@ -148,6 +149,8 @@ static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
             ChartRow *row = &rows[protocol * PHASES + phase];
             *row = scene_row(study->scene->name, study->launch_count, study->contenders[contender], protocol, phase);
             scene_row_errors(row, &scores->steps[protocol][phase]);
+            const FloorSum *floors = &assembly->floors[protocol][phase];
+            if (floors->steps > 0) row->floor = floors->sum / (double)floors->steps;
             steps[protocol] += scores->steps[protocol][phase].count;
             if (protocol != PROTOCOL_CLOSED) continue;
             row->error_worst = scores->worst[phase];
@@ -160,6 +163,16 @@ static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
     assembly->solves->closed += steps[PROTOCOL_CLOSED] + scores->unconverged;
     assembly->solves->closed_unconverged += scores->unconverged;
     method_scores_free(scores);
+}
+
+static void add_steps(const Assembly *assembly, const LaunchSteps *steps) {
+    assembly->solves->frozen_unconverged += steps->unconverged;
+    assembly->solves->runs_unconverged += steps->run_unconverged;
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            assembly->floors[protocol][phase].sum += steps->floors[protocol][phase].sum;
+            assembly->floors[protocol][phase].steps += steps->floors[protocol][phase].steps;
+        }
 }
 
 static bool add_scores(const Assembly *assembly, ChartRow *rows, Error *error) {
@@ -175,8 +188,7 @@ static bool add_scores(const Assembly *assembly, ChartRow *rows, Error *error) {
                 const double all = (double)stored.size * study->launch_count;
                 if (all > GROUP_BYTES) group = (int)fmax(1, study->contender_count * GROUP_BYTES / all);
             }
-            if (ok && first == 0) assembly->solves->frozen_unconverged += stored.unconverged;
-            if (ok && first == 0) assembly->solves->runs_unconverged += stored.run_unconverged;
+            if (ok && first == 0) add_steps(assembly, &stored.steps);
             for (int i = first; ok && i < first + group && i < study->contender_count; i++)
                 ok = method_scores_add(&assembly->scores[i], &stored, i, error);
             free(text);
@@ -269,7 +281,9 @@ static bool assemble_chart(Run *run, const Pieces *pieces, Error *error) {
         *summary = summarise(run, &scene->study);
         /* Memory: of some methods on all launches, and of one piece. */
         const size_t contenders = (size_t)scene->study.contender_count;
-        const Assembly assembly = {pieces, scene, &summary->solves, calloc(contenders + 1, sizeof(MethodScores))};
+        FloorSum floors[PROTOCOLS][PHASES] = {0};
+        const Assembly assembly = {pieces, scene, &summary->solves, calloc(contenders + 1, sizeof(MethodScores)),
+                                   floors};
         ChartRow *rows = run->rows + run->row_count;
         const bool ok = (assembly.scores != NULL || error_memory(error, "study")) &&
                         add_scores(&assembly, rows, error) && add_times(&assembly, rows, run->cpus[i], error);

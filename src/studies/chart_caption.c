@@ -98,6 +98,20 @@ static void add_curves(const Caption *caption) {
     if (hidden) text_add(caption->text, caption->size, " Switched-off variants of grey methods are in the table only.");
 }
 
+static void add_floors(const Caption *caption) {
+    static const char *const where[CHART_PANELS] = {"at the impact", "in the frames after it"};
+    const char *separator = " Line with the name floor: ";
+    for (int p = 0; p < CHART_PANELS; p++) {
+        if (!(caption->chart->floor[p] > 0)) continue;
+        text_add(caption->text, caption->size, "%s%.2g m/s %s", separator, caption->chart->floor[p], where[p]);
+        separator = ", ";
+    }
+    if (separator[0] == ',')
+        text_add(caption->text, caption->size,
+                 "; the error of other answers that satisfy the laws of contact as well. Errors below it are drawn on "
+                 "it, and are not ranked.");
+}
+
 void chart_caption(const Chart *chart, const char *title, const bool *named, char *text, size_t size) {
     const Caption caption = {chart, text, size};
     WordList words = {0};
@@ -120,6 +134,7 @@ void chart_caption(const Chart *chart, const char *title, const bool *named, cha
     add_counts(&caption, " Unstable before the impact, and left out: ", offsetof(ChartLine, lost));
     add_counts(&caption, " Without time or error: ", offsetof(ChartLine, left_out));
     add_counts(&caption, " Times here that vary: ", offsetof(ChartLine, varying));
+    add_floors(&caption);
     if (chart->floored > 0) text_add(text, size, " Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
     if (chart->times[0] != '\0') text_add(text, size, " %s", chart->times);
     for (int settings = 0; settings < 2; settings++) /* methods, then keys of settings */

@@ -284,14 +284,16 @@ static bool add_rows(Chart *chart, const CsvTable *table, const char *scene, con
             line->competes = method == NULL || method->role == METHOD_COMPETES;
         }
         if (row->protocol != protocol || row->phase == PHASE_REST) continue;
+        if (row->floor > PARETO_RESOLUTION) chart->floor[p] = row->floor;
         /* A program has no quartiles: it reports one time a step. */
         const bool own_clock = isnan(row->us_solver) && !isnan(row->us_engine);
         const ChartMark mark = {.line = k,
                                 .us = own_clock ? row->us_engine : row->us_solver,
                                 .us_q1 = own_clock ? row->us_engine : row->us_solver_q1,
                                 .us_q3 = own_clock ? row->us_engine : row->us_solver_q3,
-                                .error = fmax(row->error_mean, PARETO_RESOLUTION),
-                                .floored = row->error_mean<PARETO_RESOLUTION, .varies = row->us_varies> 0,
+                                .error = fmax(row->error_mean, chart_row_resolution(row)),
+                                .floored = row->error_mean < PARETO_RESOLUTION && !(row->floor > PARETO_RESOLUTION),
+                                .varies = row->us_varies > 0,
                                 .lost = !chart->frozen && chart_row_lost(table->rows, table->count, row),
                                 .baseline = method != NULL && method->baseline && row->setting[0] == '\0',
                                 .method = row->method,
@@ -328,6 +330,8 @@ static void fit_axes(Chart *chart) {
             const ChartMark *mark = &chart->panels[p].marks[i];
             if (chart->lines[mark->line].rank == CHART_COLOURED && !mark->beaten && !mark->lost) widen(chart, mark);
         }
+    for (int p = 0; p < CHART_PANELS; p++)
+        if (chart->floor[p] > 0) chart->error_least = fmin(chart->error_least, chart->floor[p]);
     const Chart alone = *chart;
     const bool any = alone.us_most > 0;
     for (int p = 0; p < CHART_PANELS; p++) {

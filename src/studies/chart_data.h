@@ -47,8 +47,8 @@ typedef struct ChartMark {
     int line;
     double us, us_q1,
         us_q3;    /* solver time per step: median and quartiles, microseconds; of a program what it reports */
-    double error; /* mean velocity error, m/s; at least PARETO_RESOLUTION */
-    bool floored; /* it was less */
+    double error; /* mean velocity error, m/s; at least chart_row_resolution() */
+    bool floored; /* it was less, and PARETO_RESOLUTION is that */
     bool varies;  /* ChartRow.us_varies */
     bool on_front;
     bool beaten;   /* another setting of its line beats it in both time and error */
@@ -73,6 +73,7 @@ typedef struct Chart {
     /* [front_count] the Pareto front by rising time, of all methods that compete and the reference */
     CurvePoint *front[CHART_PANELS];
     int front_count[CHART_PANELS];
+    double floor[CHART_PANELS]; /* m/s: ChartRow.floor, where it is above PARETO_RESOLUTION, else 0 */
     double us_least, us_most, error_least, error_most; /* ranges of all marks */
     char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; plain */
 } Chart;
@@ -81,7 +82,7 @@ typedef struct Chart {
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
    before the bomb came, as they were scored on another scene; of a line that the look highlights these are marks, too.
-   Errors below PARETO_RESOLUTION are drawn there. The axes show the coloured lines: other marks more than a decade away
+   Errors below chart_row_resolution() are drawn there. The axes show the coloured lines: other marks more than a decade away
    from them are left out, and counted in their line. At most CHART_LOUD lines are coloured: what the reader asks for,
    programs of others, the engine, interior, the strongest rival that learns nothing, scene-net, and the silenced twins
    of these. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */

@@ -242,14 +242,10 @@ static void draw_cross(const ChartDrawing *drawing) {
     }
 }
 
-/* In the lower left corner, where the shade is widest, if it has room there. */
-static void name_shade(ChartDrawing *drawing, int panel) {
-    static const char text[] = "no solver gets here";
-    const PlotBox *box = &drawing->plot->box;
+/* At the left edge, where the shade is widest, at most so far from y, if there is room. */
+static void name_at_edge(ChartDrawing *drawing, const char *text, double y, double farthest) {
     const double width = type_width(text, CHART_SMALL_POINTS), height = row_height(CHART_SMALL_POINTS);
-    if (drawing->chart->front_count[panel] == 0) return;
-    LabelWish wish = {
-        .x = box->left + 2, .y = box->bottom + 1.5 + height / 2, .farthest = 3, .width = width, .height = height};
+    LabelWish wish = {.x = drawing->plot->box.left + 2, .y = y, .farthest = farthest, .width = width, .height = height};
     Label label = {.ink = CHART_GREY_INK};
     PageBox at;
     Segment leader;
@@ -259,15 +255,18 @@ static void name_shade(ChartDrawing *drawing, int panel) {
 }
 
 void chart_draw_names(ChartDrawing *drawing, int panel) {
+    drawing->marks = drawing->field.box_count;
+    const double floor = drawing->chart->floor[panel], row = row_height(CHART_SMALL_POINTS);
+    if (floor > 0) name_at_edge(drawing, "floor", plot_axis_place(&drawing->plot->y, floor), 12);
     /* Tried first: where a coloured curve finds no place for its name, all that stands beside the names goes. */
     Sketch *sketch = drawing->sketch;
-    drawing->marks = drawing->field.box_count;
     drawing->tried = drawing->field;
     drawing->sketch = NULL;
     drawing->bare = !draw_names(drawing);
     drawing->field = drawing->tried;
     drawing->sketch = sketch;
     draw_names(drawing);
-    name_shade(drawing, panel);
+    if (drawing->chart->front_count[panel] > 0)
+        name_at_edge(drawing, "no solver gets here", drawing->plot->box.bottom + 1.5 + row / 2, 3);
     draw_cross(drawing);
 }

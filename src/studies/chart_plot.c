@@ -127,6 +127,15 @@ static bool draw_shade(const ChartDrawing *drawing, int panel) {
     return true;
 }
 
+static void draw_floor(ChartDrawing *drawing, double floor) {
+    const PlotBox *box = &drawing->plot->box;
+    const Pen pen = pen_line(CHART_GREY_INK, 0.8, NULL);
+    if (!(floor > 0)) return;
+    const double y = plot_axis_place(&drawing->plot->y, floor);
+    sketch_line(drawing->sketch, (Point){box->left, y}, (Point){box->left + box->width, y}, &pen);
+    label_add_segment(&drawing->field, (Segment){box->left, y, box->left + box->width, y});
+}
+
 const ChartMark *chart_find_baseline(const ChartPanel *panel) {
     for (int i = 0; i < panel->count; i++)
         if (panel->marks[i].baseline) return &panel->marks[i];
@@ -205,6 +214,7 @@ static bool draw_panel(ChartPicture *picture, int panel) {
     const bool whole = draw_shade(drawing, panel);
     if (whole) {
         chart_find_cross(drawing);
+        draw_floor(drawing, picture->chart->floor[panel]);
         draw_curves(drawing);
         chart_draw_names(drawing, panel);
         plot_panel_draw(&picture->sketch, plot);

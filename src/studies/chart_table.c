@@ -5,6 +5,7 @@
 #include "base/machine.h"
 #include "methods/methods.h"
 #include "studies/chart_table.h"
+#include "studies/error_curve.h"
 
 #include <limits.h>
 #include <math.h>
@@ -32,6 +33,8 @@ void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]) {
     chart_split_setting(row->setting, numbers, words);
     snprintf(family, CHART_FAMILY_SIZE, "%s%s%s", row->method, words[0] != '\0' ? ":" : "", words);
 }
+
+double chart_row_resolution(const ChartRow *row) { return fmax(PARETO_RESOLUTION, row->floor); }
 
 bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {
     for (int i = 0; i < count; i++) {
@@ -95,6 +98,7 @@ static const CsvColumn columns[] = {
     CSV_MEMBER(ChartRow, cone, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, dissipation, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, rollout_mse, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, floor, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
 };
 
 enum { SOLVER_MEDIAN = 6 };

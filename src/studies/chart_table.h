@@ -43,7 +43,10 @@ typedef struct ChartRow {
        has. */
     double signorini, cone, dissipation;
     double rollout_mse; /* m^2: as in RunMeasures, mean over the launches */
-    int worst_launch;   /* of error_worst, of the study's; not in the table */
+    /* m/s: that of a step (reference_floor()), mean; of the frozen steps, in closed loop of the converged runs' steps that
+       would be scored and that launches do not share. NaN: none, or not measured. The same for all methods. */
+    double floor;
+    int worst_launch; /* of error_worst, of the study's; not in the table */
 } ChartRow;
 
 /* The header is exact, but that the last columns, from cpu on, may be missing. Refused: a median time outside its
@@ -64,6 +67,9 @@ void chart_split_setting(const char *setting, char *numbers, char *words);
 /* The family of a row: its method with the words of its setting ("engine:warm=off"). Settings of one family differ in
    numbers only. */
 void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]);
+
+/* m/s: smaller errors count as equal: PARETO_RESOLUTION, or the floor if that is larger. */
+double chart_row_resolution(const ChartRow *row);
 
 /* True if the boxes drifted by half a metre before the bomb came: the method was scored on another scene. */
 bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row);

@@ -122,8 +122,8 @@ const CsvLayout equal_methods_layout = CSV_LAYOUT("equal_time_methods", method_c
                                                   .max_rows = CHART_MAX_ROWS, .header = CSV_EXACT);
 
 /* Comparisons with NaN are false. */
-static ErrorsBelow which_below(double error, double rival_error) {
-    const bool method = error < PARETO_RESOLUTION, rival = rival_error < PARETO_RESOLUTION;
+static ErrorsBelow which_below(double error, double rival_error, double resolution) {
+    const bool method = error < resolution, rival = rival_error < resolution;
     return method && rival ? BELOW_BOTH : method ? BELOW_METHOD : rival ? BELOW_RIVAL : BELOW_NONE;
 }
 
@@ -158,7 +158,7 @@ static EqualTimeRow compare_setting(const RivalCurves *curves, int i, CurveStati
                           .reach = rival.reach,
                           .rival_error = rival.error,
                           .ratio = curves->lost[i] ? NAN : positive(error) / rival.error,
-                          .below = which_below(error, rival.error),
+                          .below = which_below(error, rival.error, chart_row_resolution(row)),
                           .time_momentum_20 = momentum == NULL ? NAN : row->us_solver / momentum->us_solver,
                           .error_scene_net =
                               net == NULL ? NAN : positive(error) / positive(curve_error(net, statistic)),
@@ -188,7 +188,7 @@ static void compare_scene(EqualTime *table, const ChartRow *rows, int count) {
         row->rival = name_rival(curves, &rival);
         row->rival_error = rival.error;
         row->ratio = row->error / rival.error;
-        row->below = which_below(row->error, rival.error);
+        row->below = which_below(row->error, rival.error, chart_row_resolution(time));
     }
 }
 

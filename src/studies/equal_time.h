@@ -57,7 +57,7 @@ typedef struct BestRival {
 /* Every method's error next to the error that its best rival has in the same time: equal_time.csv for
    each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
 
-/* Whose error is below PARETO_RESOLUTION. Where both are, their ratio says nothing about what a run looks like. */
+/* Whose error is below chart_row_resolution(). Where both are, their ratio says nothing about what a run looks like. */
 typedef enum ErrorsBelow { BELOW_NONE, BELOW_METHOD, BELOW_RIVAL, BELOW_BOTH } ErrorsBelow;
 
 typedef struct EqualTimeRow {

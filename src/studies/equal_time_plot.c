@@ -24,7 +24,7 @@ enum { EQUAL_TIME_COLUMNS = 40, EQUAL_TIME_SCENES = 64 };
 typedef struct EqualTimeCell {
     bool ran;
     double ratio; /* EqualMethodRow; NaN: none */
-    bool below;   /* both errors are below PARETO_RESOLUTION */
+    bool below;   /* BELOW_BOTH */
 } EqualTimeCell;
 
 typedef struct EqualTimeGrid {
@@ -34,6 +34,7 @@ typedef struct EqualTimeGrid {
     bool joined[EQUAL_TIME_COLUMNS]; /* the column and the one before it differ only in what was learned */
     char scenes[EQUAL_TIME_SCENES][CHART_TEXT_SIZE];
     char times[CHART_TIMES_SIZE]; /* chart_times_note(), plain; set by the caller */
+    const char *floor;            /* what else than PARETO_RESOLUTION limits the comparison; set by the caller */
     NameList left_out;            /* methods and scenes without a ratio */
     WordList words;               /* methods and what sets learned ones apart from their twins */
     EqualTimeCell cells[EQUAL_TIME_SCENES][EQUAL_TIME_COLUMNS];
@@ -299,7 +300,7 @@ static void draw_scale(const Layout *layout) {
         while (type_width(names, 7) > bar_width) strcpy(names + utf8_cut(names, strlen(names) - 4), "...");
         plot_text(sketch, (Point){layout->left, bottom - 6}, TEXT_LEFT, 7, names);
     }
-    snprintf(note, sizeof note, "white: both below %g m/s", PARETO_RESOLUTION);
+    snprintf(note, sizeof note, "white: both below %g m/s%s", PARETO_RESOLUTION, layout->grid->floor);
     plot_text(sketch, (Point){right, bottom - 9}, TEXT_LEFT, 8, note);
 }
 
@@ -308,8 +309,8 @@ static bool write_caption(const EqualTimeGrid *grid, const char *stem, Error *er
     text_add(caption, sizeof caption,
              "Mean error at the impact in the time of momentum:%s, over that of the best rival in the same time. "
              "Dashes: slower "
-             "than that, or unstable before the impact. White: both errors are below %g m/s.",
-             grid->time, PARETO_RESOLUTION);
+             "than that, or unstable before the impact. White: both errors are below %g m/s%s.",
+             grid->time, PARETO_RESOLUTION, grid->floor);
     if (grid->left_out.used > 0)
         text_add(caption, sizeof caption, " Left out, as without a ratio: %s.", grid->left_out.text);
     if (grid->times[0] != '\0') text_add(caption, sizeof caption, " %s", grid->times);
@@ -352,6 +353,9 @@ bool equal_time_plot(const char *chart_csv, const char *folder, EqualTimeFigure 
         if (ok) {
             chart_times_note(grid->times, chart.rows, chart.count);
             chart_make_plain(grid->times);
+            grid->floor = "";
+            for (int i = 0; i < chart.count; i++)
+                if (chart_row_resolution(chart_row(&chart, i)) > PARETO_RESOLUTION) grid->floor = ", or the floor";
         }
         if (ok) *figure = (EqualTimeFigure){grid->columns > 0, grid->left_out};
         ok = ok && (!figure->drawn || draw(grid, folder, error));

@@ -11,13 +11,14 @@
 #include "studies/timing.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct LaunchHead {
     int64_t count; /* of methods */
-    int64_t unconverged, run_unconverged;
+    LaunchSteps steps;
 } LaunchHead;
 
 /* Followed by the errors and the shares of each protocol and phase. */
@@ -54,8 +55,8 @@ static size_t part_size(const PartHead *head) {
     return size;
 }
 
-void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged, int run_unconverged) {
-    const LaunchHead head = {count, unconverged, run_unconverged};
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, const LaunchSteps *steps) {
+    const LaunchHead head = {count, *steps};
     int64_t end = (int64_t)sizeof head + count * (int64_t)sizeof end;
     fwrite(&head, sizeof head, 1, results);
     for (int i = 0; i < count; i++) {
@@ -68,9 +69,9 @@ void launch_scores_write(FILE *results, const LaunchScores *scores, int count, i
         fwrite(&part, sizeof part, 1, results);
         for (int protocol = 0; protocol < PROTOCOLS; protocol++)
             for (int phase = 0; phase < PHASES; phase++) {
-                const StepScores *steps = &scores[i].steps[protocol][phase];
-                stream_put(results, steps->error, sizeof(double), (size_t)steps->count);
-                stream_put(results, steps->share, sizeof(double), (size_t)steps->count);
+                const StepScores *own = &scores[i].steps[protocol][phase];
+                stream_put(results, own->error, sizeof(double), (size_t)own->count);
+                stream_put(results, own->share, sizeof(double), (size_t)own->count);
             }
     }
 }
@@ -89,22 +90,30 @@ static int64_t part_begin(const StoredScores *stored, int method) {
 
 static bool is_step_count(int64_t count) { return count >= 0 && count <= SCENE_MAX_FRAMES; }
 
+static bool are_steps(const LaunchSteps *steps) {
+    bool are = is_step_count(steps->unconverged) && is_step_count(steps->run_unconverged);
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            const FloorSum *floors = &steps->floors[protocol][phase];
+            are = are && is_step_count(floors->steps) && floors->sum >= 0 && floors->sum <= DBL_MAX;
+        }
+    return are;
+}
+
 bool stored_scores_open(StoredScores *stored, const char *path, const char *bytes, size_t size, int count,
                         Error *error) {
     LaunchHead head = {0};
     *stored = (StoredScores){.path = path, .bytes = bytes, .size = size, .count = count};
     if (size >= sizeof head) memcpy(&head, bytes, sizeof head);
     const size_t begin = sizeof head + (size_t)count * sizeof(int64_t);
-    if (size < begin || head.count != count || !is_step_count(head.unconverged) || !is_step_count(head.run_unconverged))
-        return refuse(stored, error);
+    if (size < begin || head.count != count || !are_steps(&head.steps)) return refuse(stored, error);
     for (int i = 0; i < count; i++) {
         const int64_t end = part_begin(stored, i + 1);
         if (end > (int64_t)size || end < part_begin(stored, i) + (int64_t)sizeof(PartHead))
             return refuse(stored, error);
     }
     if (part_begin(stored, count) != (int64_t)size) return refuse(stored, error);
-    stored->unconverged = head.unconverged;
-    stored->run_unconverged = head.run_unconverged;
+    stored->steps = head.steps;
     return true;
 }
 
@@ -239,7 +248,8 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .signorini = NAN,
                       .cone = NAN,
                       .dissipation = NAN,
-                      .rollout_mse = NAN};
+                      .rollout_mse = NAN,
+                      .floor = NAN};
 }
 
 void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {

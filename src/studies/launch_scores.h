@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scores of the methods on the launches of a scene, and the rows of chart.csv that are made of them. The scores
-   of one launch are stored as bytes of this machine: the number of methods, the frozen steps that were left out,
+   of one launch are stored as bytes of this machine: the number of methods, what holds for all of them (LaunchSteps),
    where each method's part ends, then the parts; so those of one method are found at once. */
 #pragma once
 #include "base/base.h"
@@ -24,18 +24,24 @@ typedef struct LaunchScores {
 
 void launch_scores_free(LaunchScores *scores);
 
-/* Writes those of all methods, scores[count]. unconverged: frozen steps, as in SnapshotList. run_unconverged: as in
-   RunLog, of the converged run. */
-void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged, int run_unconverged);
+/* What a launch says about its steps, whatever the methods. */
+typedef struct LaunchSteps {
+    int64_t unconverged;     /* frozen steps, as in SnapshotList */
+    int64_t run_unconverged; /* as in RunLog, of the converged run */
+    /* of the frozen steps, and in closed loop of the steps of the converged run */
+    FloorSum floors[PROTOCOLS][PHASES];
+} LaunchSteps;
+
+/* Writes those of all methods, scores[count]. */
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, const LaunchSteps *steps);
 
 /* What is stored of a launch. */
 typedef struct StoredScores {
     const char *path; /* for messages */
     const char *bytes;
     size_t size;
-    int count;               /* methods */
-    int64_t unconverged;     /* frozen steps */
-    int64_t run_unconverged; /* steps of the converged run */
+    int count; /* methods */
+    LaunchSteps steps;
 } StoredScores;
 
 /* Looks at stored results with so many methods. ERROR_INPUT if they are damaged. The bytes must outlive *stored. */

@@ -19,6 +19,7 @@
 /* Zero-initialise; free with converged_step_free. */
 typedef struct ConvergedStep {
     Reference reference; /* of the last solve: velocities, residual */
+    Reference other;     /* from other starts */
     ContactPoint *contacts;
     size_t contact_capacity;
 } ConvergedStep;
@@ -33,6 +34,12 @@ bool converged_step_solve(ConvergedStep *converged, const ContactProblem *proble
 static inline bool converged_step_found(const ConvergedStep *converged) {
     return converged->reference.residual <= REFERENCE_TOLERANCE;
 }
+
+/* The floors (methods/reference.h) of the steps of a phase that converged. */
+typedef struct FloorSum {
+    double sum; /* m/s */
+    int64_t steps;
+} FloorSum;
 
 /* Log of a run, for comparison with another run of the same launch. */
 
@@ -127,11 +134,12 @@ typedef struct Rollout {
     RunLog log;
     int unconverged;                  /* steps that are not scored (converged_step_found()) */
     const struct SharedSteps *shared; /* set by the caller: how the run begins; or NULL */
+    FloorSum *floors; /* [PHASES] set by the caller: of the sampled steps that it does not share; NULL: not measured */
 } Rollout;
 
 void rollout_free(Rollout *rollout);
 
-/* Runs a launched scene and adds the sampled steps to scores[PHASES] (NULL: none). If the state becomes NaN or
+/* Runs a launched scene and adds the sampled steps to scores[PHASES] (NULL: none) and to its floors. If the state becomes NaN or
    infinite, the run ends early and its log is shorter. False with error set if out of memory. */
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error);
@@ -166,6 +174,7 @@ typedef struct SnapshotList {
     size_t capacity;
     bool no_push_out; /* set by the caller: methods of that description will be scored, too */
     int unconverged;  /* steps that were left out (converged_step_found()) */
+    FloorSum *floors; /* [PHASES] set by the caller; NULL: not measured */
 } SnapshotList;
 
 /* Adds sampled steps of the engine's run of a launched scene; the scene must outlive the list. */

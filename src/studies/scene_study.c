@@ -127,6 +127,7 @@ typedef struct LaunchPiece {
     Scene launched;
     Rollout converged;
     SnapshotList snapshots;
+    LaunchSteps steps;
     int first;            /* contender that is tried first */
     bool *chosen;         /* [contenders] */
     LaunchScores *scores; /* [contenders] */
@@ -169,7 +170,8 @@ static bool run_converged(LaunchPiece *piece, Error *error) {
         ok = shared_steps_run(&study->converged, stepper, &piece->launched, study->shared_steps, NULL, error);
         piece->converged.shared = &study->converged;
     }
-    ok = ok && rollout_run(&piece->converged, stepper, &piece->launched, NULL, NULL, error);
+    piece->converged.floors = piece->steps.floors[PROTOCOL_CLOSED];
+    ok = ok && rollout_run(&piece->converged, stepper, &piece->launched, &study->size.closed, NULL, error);
     stepper_destroy(stepper);
     return ok;
 }
@@ -184,15 +186,16 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
                          .first = (int)(fmod(launch * golden, 1) * study->contender_count),
                          .chosen = calloc(count, sizeof *piece.chosen),
                          .scores = calloc(count, sizeof *piece.scores)};
+    piece.snapshots.floors = piece.steps.floors[PROTOCOL_FROZEN];
     ProgressStage stage = {progress, converged_share, 1 - converged_share, false};
     bool ok = (piece.chosen != NULL && piece.scores != NULL) || error_memory(error, "study");
     ok = ok && run_converged(&piece, error) &&
          snapshots_add(&piece.snapshots, &piece.launched, &study->size.frozen, error) &&
          parallel_for(&(ParallelWork){score, &piece}, study->contender_count, study->scene->name,
                       &(Progress){progress_stage, &stage}, error);
-    if (ok)
-        launch_scores_write(results, piece.scores, study->contender_count, piece.snapshots.unconverged,
-                            piece.converged.log.unconverged);
+    piece.steps.unconverged = piece.snapshots.unconverged;
+    piece.steps.run_unconverged = piece.converged.log.unconverged;
+    if (ok) launch_scores_write(results, piece.scores, study->contender_count, &piece.steps);
     for (int i = 0; piece.scores != NULL && i < study->contender_count; i++) launch_scores_free(&piece.scores[i]);
     rollout_free(&piece.converged);
     snapshots_free(&piece.snapshots);

@@ -179,3 +179,67 @@ TEST(nothing_that_touches_is_solved_at_once) {
 }
 
 RUN_TESTS(NULL, NULL)
+
+/* The floor of the world's next step. */
+static double floor_of(World *world) {
+    Error error = {0};
+    double floor;
+    OWN(Reference) answer = {0}, other = {0};
+    const ContactProblem *problem = solve_next(world, &answer);
+    assert_ok(reference_floor(&other, problem, &answer, 8, &floor, &error), error);
+    return floor;
+}
+
+/* Its two contacts share friction as they like, but it rests. */
+TEST(a_box_on_ground_has_no_floor) {
+    OWN(World) *world = make_world();
+    add_ground(world, 0.6f);
+    add_box(world, 2, 0.6f, vec2(0, 0.5f));
+    assert_near(floor_of(world), 0, 1e-9);
+}
+
+/* Nothing says how hard two walls press on a box that fits between them. With friction it hangs, or falls freely by
+   g dt, or anything between. */
+static double floor_between_walls(float friction) {
+    OWN(World) *world = make_world();
+    for (int side = -1; side <= 1; side += 2)
+        add_body(
+            world,
+            &(BodyDef){.size = {1, 10}, .fixed = true, .friction = friction, .position = {0.999f * (float)side, 0}});
+    add_box(world, 2, friction, vec2(0, 0));
+    return floor_of(world);
+}
+
+TEST(a_box_between_walls_hangs_or_falls) {
+    const double fall = g * (double)world_dt;
+    assert_near(floor_between_walls(0), 0, 1e-9);
+    const double floor = floor_between_walls(0.8f);
+    assert_true(floor > fall / 4 && floor < fall * (1 + 1e-6));
+}
+
+/* The corner r = (1/2, -1/2) of a box of 1 kg and 1 m leaves ground of friction 3 at 1 m/s and slides at 4 m/s. Normal
+   and tangent velocity change by 5/2 p + 3/2 q and 3/2 p + 5/2 q (Painleve). So it is right to leave, p = 0; to slide on
+   at 1 m/s, p = 1/2 and q = -3/2; and to stick, p = 7/8 and q = -17/8. */
+TEST(a_corner_leaves_or_slides_or_sticks) {
+    const ProblemBody bodies[] = {{.inv_mass = 0}, {.velocity = {4, 1}, .inv_mass = 1, .inv_inertia = 6}};
+    const ContactPoint contact = {.a = 0,
+                                  .b = 1,
+                                  .normal = {0, 1},
+                                  .arm_b = {0.5f, -0.5f},
+                                  .mass_normal = 0.4f,
+                                  .mass_tangent = 0.4f,
+                                  .friction = 3};
+    const ContactProblem problem = {
+        .body_count = 2, .contact_count = 1, .bomb = -1, .dt = world_dt, .bodies = bodies, .contacts = &contact};
+    OWN(Reference) answer = {0}, other = {0};
+    double floor;
+    assert_ok(reference_solve(&answer, &problem, NULL, &error), error);
+    assert_true(reference_converged(&answer));
+    assert_near(answer.velocities[1].y, 1, 1e-9); /* it leaves; so it slides from its free velocity by (3/2, 1/2, 3), */
+    assert_ok(reference_floor(&other, &problem, &answer, 16, &floor, &error), error);
+    assert_near(floor, sqrt(17 * 17 + 7 * 7 + 30 * 30 / 6.0) / 8, 1e-9); /* and sticks by (17/8, 7/8, 15/4) */
+    const ContactImpulse slides = {0.5f, -1.5f};
+    floor = 0;
+    assert_ok(reference_raise_floor(&other, &problem, &answer, &slides, &floor, &error), error);
+    assert_near(floor, sqrt(1.5 * 1.5 + 0.5 * 0.5 + 3 * 3 / 6.0), 1e-9);
+}

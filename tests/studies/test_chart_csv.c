@@ -30,6 +30,7 @@ static const ChartRow full = {"stack",
                               0.25,
                               0.75,
                               0.125,
+                              0.0625,
                               0};
 
 static ChartRow bare(void) {
@@ -39,19 +40,19 @@ static ChartRow bare(void) {
                       NAN,          NAN,        NAN, NAN,
                       NAN,          NAN,        NAN, "",
                       1.25,         NAN,        NAN, NAN,
-                      NAN,          NAN,        0};
+                      NAN,          NAN,        NAN, 0};
 }
 
 TEST(rows_are_written_in_the_order_of_the_header) {
     const ChartRow rows[] = {full, bare()};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &chart_layout, rows, 2, &error), error);
-    assert_file(
-        path, CHART_HEADER
-        ",cpu,us_engine,us_varies,signorini,cone,dissipation,rollout_mse\nstack,momentum,\"k=20,warm=off\",closed,"
-        "after,40,10.5,9.25,11.75,52.5,"
-        "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC,,1,0.5,0.25,0.75,0.125\n"
-        "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,1.25,,,,,\n");
+    assert_file(path, CHART_HEADER
+                ",cpu,us_engine,us_varies,signorini,cone,dissipation,rollout_mse,floor\nstack,momentum,\"k=20,warm="
+                "off\",closed,"
+                "after,40,10.5,9.25,11.75,52.5,"
+                "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC,,1,0.5,0.25,0.75,0.125,0.0625\n"
+                "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,1.25,,,,,,\n");
 }
 
 static void assert_same_figure(double found, double expected) {
@@ -72,7 +73,7 @@ static void assert_same_row(const ChartRow *found, const ChartRow *expected) {
     for (const double *end = &found->moved; a <= end; a++, b++) assert_same_figure(*a, *b);
     assert_string_equal(found->cpu, expected->cpu);
     const double *c = &found->us_engine, *d = &expected->us_engine;
-    for (const double *end = &found->rollout_mse; c <= end; c++, d++) assert_same_figure(*c, *d);
+    for (const double *end = &found->floor; c <= end; c++, d++) assert_same_figure(*c, *d);
 }
 
 TEST(written_tables_are_read_back) {

@@ -169,6 +169,39 @@ TEST(a_target_without_push_out_is_noted) {
     expect_caption(write_rows(engine), "Velocity error", "error against");
 }
 
+/* Above what is drawn at all, the floor is a line, and errors below it are drawn on it: neither is ranked. */
+TEST(the_floor_is_a_line_below_which_nothing_is_ranked) {
+    static const char head[] = CHART_HEADER ",cpu,us_engine,us_varies,signorini,cone,dissipation,rollout_mse,floor\n";
+    static const char row[] = "stack,%s,,closed,impact,40,%d,%d,%d,,%g,,,,,,,,,,,,,,,,%g\n";
+    for (int k = 0; k < 2; k++) {
+        const double floor = k == 0 ? 1e-5 : 0.003;
+        const char *path = temporary_path("chart.csv");
+        FILE *file = fopen(path, "wb");
+        assert_non_null(file);
+        fputs(head, file);
+        fprintf(file, row, "engine", 5, 5, 5, 1.0, floor);
+        fprintf(file, row, "momentum", 9, 9, 9, 0.0025, floor);
+        fprintf(file, row, "interior", 20, 20, 20, 0.0005, floor);
+        assert_int_equal(fclose(file), 0);
+        OWN(CsvTable) table;
+        Chart chart;
+        assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
+        assert_ok(chart_gather(&chart, &table, "stack", path, &page, &error), error);
+        const ChartMark *marks = chart.panels[0].marks;
+        assert_int_equal(chart.panels[0].count, 3);
+        assert_near(marks[1].error, k == 0 ? 0.0025 : 0.003, 1e-12);
+        assert_near(marks[2].error, k == 0 ? 0.0005 : 0.003, 1e-12);
+        assert_int_equal(marks[2].on_front, k == 0); /* else momentum is as right in less time */
+        assert_near(chart.floor[0], k == 0 ? 0 : 0.003, 1e-12);
+        chart_free(&chart);
+        expect_caption(path, "Velocity error", k == 0 ? "floor" : NULL);
+        if (k == 1) expect_caption(path, "Line with the name floor: 0.003 m/s at the impact; the error of other", NULL);
+        size_t size;
+        FREED char *svg = read_drawn("stack", "svg", &size);
+        assert_int_equal(strstr(svg, ">floor<") != NULL, k == 1);
+    }
+}
+
 TEST(texts_become_plain) {
     char plain[CHART_TEXT_SIZE];
     chart_plain(plain, "engine, warm=off (k=10)");

@@ -129,6 +129,22 @@ TEST(errors_below_the_resolution_are_compared_as_they_are) {
     assert_near(table.methods[0].ratio, 4, 1e-9);
 }
 
+/* The ratio stays. */
+TEST(errors_below_the_floor_are_marked) {
+    static const struct {
+        double floor;
+        ErrorsBelow below;
+    } wanted[] = {{NAN, BELOW_NONE}, {0.005, BELOW_NONE}, {0.3, BELOW_RIVAL}, {0.9, BELOW_BOTH}};
+    for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
+        OWN(CsvTable) rows = read_chart();
+        OWN(EqualTime) table;
+        for (int i = 0; i < rows.count; i++) ((ChartRow *)rows.rows + i)->floor = wanted[k].floor;
+        assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
+        assert_int_equal(table.methods[3].below, wanted[k].below); /* 0.5 m/s, its rival's 0.01 */
+        assert_near(table.methods[3].ratio, 50, 1e-7);
+    }
+}
+
 /* The most of 20, 50 and 100 sweeps that the chart has. */
 TEST(the_time_is_that_of_the_most_sweeps) {
     static const char *const renamed[] = {"k=50", "k=50", "k=20"}, *const settings[] = {"k=100", "k=20", "k=100"};

@@ -52,7 +52,9 @@ static char *write_launch(int launch, size_t *size) {
     FILE *stream = memory_stream(&bytes, size);
     assert_non_null(stream);
     for (int i = 0; i < METHODS; i++) scores[i] = make_scores(launch, i);
-    launch_scores_write(stream, scores, METHODS, 5 + launch, 3 * launch);
+    LaunchSteps steps = {.unconverged = 5 + launch, .run_unconverged = 3 * launch};
+    steps.floors[PROTOCOL_FROZEN][PHASE_AFTER] = (FloorSum){0.25 + launch, 4};
+    launch_scores_write(stream, scores, METHODS, &steps);
     assert_int_equal(fclose(stream), 0);
     for (int i = 0; i < METHODS; i++) launch_scores_free(&scores[i]);
     return bytes;
@@ -86,8 +88,10 @@ TEST(launches_are_put_together) {
         StoredScores stored;
         FREED char *bytes = write_launch(launch, &size);
         assert_ok(stored_scores_open(&stored, "launch", bytes, size, METHODS, &error), error);
-        assert_int_equal(stored.unconverged, 5 + launch);
-        assert_int_equal(stored.run_unconverged, 3 * launch);
+        assert_int_equal(stored.steps.unconverged, 5 + launch);
+        assert_int_equal(stored.steps.run_unconverged, 3 * launch);
+        assert_true(stored.steps.floors[PROTOCOL_FROZEN][PHASE_AFTER].sum == 0.25 + launch);
+        assert_int_equal(stored.steps.floors[PROTOCOL_FROZEN][PHASE_AFTER].steps, 4);
         for (int i = 0; i < METHODS; i++) assert_ok(method_scores_add(&scores[i], &stored, i, &error), error);
     }
     for (int i = 0; i < METHODS; i++) {
@@ -142,11 +146,11 @@ TEST(damaged_results_are_refused) {
     assert_false(are_read(bytes, 0, METHODS));
     for (size_t cut = 1; cut < size; cut++) assert_false(are_read(bytes, cut, METHODS));
     /* The number of methods, the index and the head of the first part; a few more steps may have been left out. */
-    const size_t index = 3 * sizeof(int64_t), part = index + METHODS * sizeof(int64_t), counts = part + sizeof(int64_t),
-                 criteria = counts + sizeof(int32_t[PROTOCOLS][PHASES]),
+    const size_t steps = sizeof(int64_t), index = steps + sizeof(LaunchSteps), part = index + METHODS * sizeof(int64_t),
+                 counts = part + sizeof(int64_t), criteria = counts + sizeof(int32_t[PROTOCOLS][PHASES]),
                  values = criteria + sizeof(CriteriaSum[PROTOCOLS][PHASES]) + sizeof(RunMeasures);
     for (size_t at = 0; at < criteria; at++) {
-        if ((at >= sizeof(int64_t) && at < index) || (at >= part && at < part + 3)) continue;
+        if ((at >= steps && at < index) || (at >= part && at < part + 3)) continue;
         for (int bit = 0; bit < 8; bit++) {
             bytes[at] = (char)(bytes[at] ^ 1 << bit);
             if (are_read(bytes, size, METHODS)) fail_msg("bit %d of byte %d", bit, (int)at);
@@ -159,6 +163,14 @@ TEST(damaged_results_are_refused) {
         char *at = bytes + values + (size_t)i * 2 * sizeof(double); /* two errors, two shares */
         memcpy(kept, at, sizeof kept);
         memcpy(at, &wrong[i], sizeof kept);
+        assert_false(are_read(bytes, size, METHODS));
+        memcpy(at, kept, sizeof kept);
+    }
+    const FloorSum floors[] = {{-1, 1}, {NAN, 1}, {INFINITY, 1}, {0, -1}};
+    for (size_t i = 0; i < sizeof floors / sizeof *floors; i++) {
+        char kept[sizeof *floors], *at = bytes + steps + offsetof(LaunchSteps, floors);
+        memcpy(kept, at, sizeof kept);
+        memcpy(at, &floors[i], sizeof kept);
         assert_false(are_read(bytes, size, METHODS));
         memcpy(at, kept, sizeof kept);
     }

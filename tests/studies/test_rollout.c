@@ -97,6 +97,33 @@ TEST(methods_rank_as_expected_on_frozen_steps) {
     assert_true(reference < 1e-5);
 }
 
+/* One answer is right for a falling and a resting box; a box between walls that just touch it hangs or falls. */
+TEST(floors_are_of_the_sampled_steps_in_their_phases) {
+    OWN(Scene) *scene = scene_named("single");
+    BodyDef wedged[] = {{.size = {1, 9}, .fixed = true, .friction = 0.8f, .position = {-0.999f, 0}},
+                        {.size = {1, 9}, .fixed = true, .friction = 0.8f, .position = {0.999f, 0}},
+                        {.size = {1, 1}, .mass = 1, .friction = 0.8f}};
+    const Scene between = scene_of_bodies(wedged, 3, 2);
+    const Scene *const scenes[] = {scene, &between};
+    scene->frames = 120;
+    for (int i = 0; i < 2; i++) {
+        FloorSum floors[PROTOCOLS][PHASES] = {0};
+        OWN(SnapshotList) list = {.floors = floors[PROTOCOL_FROZEN]};
+        OWN(Stepper) *stepper = stepper_by(scenes[i], "engine");
+        OWN(Rollout) rollout = {.floors = floors[PROTOCOL_CLOSED]};
+        assert_ok(snapshots_add(&list, scenes[i], &every, &error), error);
+        assert_ok(rollout_run(&rollout, stepper, scenes[i], &every, NULL, &error), error);
+        for (int p = 0; p < PROTOCOLS; p++) {
+            int64_t steps = 0;
+            for (int phase = 0; phase < PHASES; phase++) steps += floors[p][phase].steps;
+            assert_int_equal(steps, scenes[i]->frames);
+            assert_int_equal(floors[p][PHASE_IMPACT].steps, i == 0 ? 6 : 0);
+            if (i == 0) assert_near(floors[p][PHASE_IMPACT].sum + floors[p][PHASE_REST].sum, 0, 1e-7);
+            if (i == 1) assert_true(floors[p][PHASE_REST].sum > 0.05);
+        }
+    }
+}
+
 /* A box between walls that are closer to each other than it is wide: nothing keeps it out of both. */
 TEST(steps_without_a_solution_are_not_scored) {
     OWN(Scene) *scene = scene_named("stack");
