@@ -102,18 +102,22 @@ static double gap_above(const VerdictWatch *watch, const WatchedBody *body, cons
     return span.from < span.to && span.to >= 0 ? larger(span.from, 0) : INFINITY;
 }
 
-/* What carries the bodies at the start. On what nothing carries, nothing is carried either. */
-static bool find_carriers(VerdictWatch *watch, Error *error) {
-    const double way = unit_sizes * watch->mean; /* m: what starts at rest falls so far in a unit */
+/* What carries the bodies that nothing has carried so far, from their poses of now on. What starts at rest may move down
+   by `way`, m. On what nothing carries, nothing is carried either. */
+static bool find_carriers(VerdictWatch *watch, double way, Error *error) {
     if (watch->pull == 0) return true;
     if (!find_near(watch, larger(way, fall_share * watch->largest), error)) return false;
+    for (int i = 0; i < watch->body_count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        if (isinf(body->gaps)) body->start = body->last, body->carrier = -1, body->gap = INFINITY;
+    }
     for (size_t k = 0; k < 2 * watch->finder.pairs.count; k++) {
         const BodyPair pair = watch->finder.pairs.pairs[k / 2];
         const int i = k % 2 == 0 ? pair.a : pair.b, j = k % 2 == 0 ? pair.b : pair.a;
         WatchedBody *body = &watch->bodies[i];
         const WatchedBody *other = &watch->bodies[j];
         const bool lower = other->is_static || height_of(watch, &other->last) < height_of(watch, &body->last);
-        if (body->is_static || body->is_bomb || other->is_bomb || !lower) continue;
+        if (isfinite(body->gaps) || body->is_static || body->is_bomb || other->is_bomb || !lower) continue;
         const double gap = gap_above(watch, body, other);
         if (gap > larger(body->starts ? 0 : way, fall_share * body->side) || gap >= body->gap) continue;
         body->gap = gap;
@@ -210,7 +214,8 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
     if (!add_bodies(watch, bodies, count, 0, error)) return false;
     for (int i = 0; i < count; i++) starting += watch->bodies[i].starts;
     watch->struck = (run->bomb >= 0 && moving > 0) || (starting > 0 && starting < moving);
-    return find_carriers(watch, error) &&
+    const double way = unit_sizes * watch->mean; /* m: what starts at rest falls so far in a unit */
+    return find_carriers(watch, way, error) &&
            (!run->finds_contacts || contact_finder_find(&watch->finder, bodies, count, run->skin, error));
 }
 
@@ -286,6 +291,7 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *er
         if (body->is_static || body == bomb || !bodies_touch(watch, body, bomb)) continue;
         watch->met = step.frame - 1;
         count_energy(watch, bomb);
+        if (!find_carriers(watch, 0, error)) return false;
     }
     if (farthest > pass_share / 2 * watch->smallest && !check_passes(watch, error)) return false;
     check_energy(watch, &step);

@@ -29,7 +29,8 @@
    need not.
 
    Carrier. A body's carrier is what it touches first if it moves down from its start by up to half its side or, if it
-   starts at rest, as far as it would fall in a unit. What has none is judged by rest and leaving only.
+   starts at rest, as far as it would fall in a unit. For a body that nothing carries then, the strike of the bomb is
+   the start. What has none is judged by rest and leaving only.
 
    Fell, at the end: a body is lower than at the start by more than half its side and the gaps below it, and so relative
    to its carrier, beside how deep it is in that; or its carrier fell, too: neither sag nor pressing in is a fall. Or it

@@ -261,6 +261,24 @@ TEST(a_carrier_is_below_by_half_a_side_or_by_the_fall_of_a_unit) {
     assert_true(is_carried(0.49f, 3) && !is_carried(0.51f, 3));
 }
 
+/* A box that nothing carries at the start gets its carrier, and its reference, when the bomb strikes. */
+TEST(what_has_no_carrier_gets_it_when_the_bomb_strikes) {
+    for (int i = 0; i < 2; i++) {
+        Trial trial = trial_on_ground();
+        add_box(&trial, 0, 9);
+        trial.run.bomb = 2;
+        go(&trial, 10);
+        trial.bodies[1].position.y = i == 0 ? 0.99f : 1.01f; /* 0.49 m or 0.51 m above the ground */
+        trial.bodies[1].angle = 1.5708f;                     /* no fall */
+        go(&trial, 40);
+        add_box(&trial, -0.99f, 0.5f);
+        go(&trial, 42);
+        trial.bodies[1].angle = 1;
+        go(&trial, 100);
+        assert_int_equal(end(&trial).count.fell, i == 0);
+    }
+}
+
 /* Of four boxes on the ground, which some leave in the frame after the bomb has touched one. */
 static VerdictReading struck(int falling, bool touched) {
     Trial trial = trial_on_ground();
