@@ -155,6 +155,13 @@ TEST(sag_is_no_fall) {
     const VerdictReading reading = end(&trial);
     assert_int_equal(reading.count.fell, 0);
     assert_near(reading.deepest, 0.151, 1e-5);
+    trial = stack_of(2); /* the lower one sags by 0.3 m, and the upper one falls beside it, 0.55 m further */
+    go(&trial, 10);
+    trial.bodies[1].position.y -= 0.3f;
+    trial.bodies[2].position = vec2(1.2f, trial.bodies[2].position.y - 0.85f);
+    go(&trial, 30);
+    const VerdictCount count = end(&trial).count;
+    assert_true(count.fell == 1 && count.body == 2);
 }
 
 /* A stack of three beside another box: what stands on a box that fell has fallen, what stands on another has not. */
