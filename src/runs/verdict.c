@@ -22,9 +22,8 @@ static const double touch_share = 0.03; /* of a side: less is not seen */
 static const double unit_sizes = 5;     /* a box of 1 m: one second */
 
 const char *const verdict_words[VERDICTS + 2] = {
-    "settles", "agrees",    "stands",       "moves",          "too short",     "undecided",
-    "falls",   "collapses", "too few fall", "too many fall",  "hangs",         "sinks",
-    "tunnels", "explodes",  "non-finite",   "adapter failed", "not applicable"};
+    "settles", "stands", "moves",   "too short", "undecided",  "falls",          "collapses",
+    "hangs",   "sinks",  "tunnels", "explodes",  "non-finite", "adapter failed", "not applicable"};
 
 const char *verdict_name(Verdict verdict) { return verdict_words[verdict]; }
 

@@ -51,15 +51,12 @@
 /* From the best to the worst. */
 typedef enum Verdict {
     VERDICT_SETTLES,
-    VERDICT_AGREES, /* as are undecided, too few, too many: only in studies of struck scenes (studies/stability.h) */
     VERDICT_STANDS,
     VERDICT_MOVES,
     VERDICT_TOO_SHORT, /* nothing moved, and the run is shorter than half a unit */
-    VERDICT_UNDECIDED,
+    VERDICT_UNDECIDED, /* only in studies of struck scenes (studies/stability.h) */
     VERDICT_FALLS,
     VERDICT_COLLAPSES, /* at least half of the bodies that could fall */
-    VERDICT_TOO_FEW,
-    VERDICT_TOO_MANY,
     VERDICT_HANGS,
     VERDICT_SINKS,
     VERDICT_TUNNELS,
@@ -73,7 +70,7 @@ typedef enum Verdict {
 extern const char *const verdict_words[VERDICTS + 2];
 const char *verdict_name(Verdict verdict);
 
-/* Settles, agrees, stands or moves. */
+/* Settles, stands or moves. */
 bool verdict_holds(Verdict verdict);
 
 /* Nothing hangs, sinks, tunnels or explodes, or is NaN. What falls may be sound. */

@@ -64,7 +64,6 @@ typedef struct Borders {
     BorderStudy studies[BORDERS_MAX_STUDIES];  /* those that are not struck first; what most methods hold first */
     BorderMethod methods[BORDERS_MAX_METHODS]; /* what holds most first */
     bool used[VERDICT_LOOKS], rigid, hatched;
-    bool compares;               /* struck studies of a table of before */
     bool few;                    /* a column for each study and a row for each method, instead of the reverse */
     double width, label, column; /* mm: of the page, of the names of rows, of a column */
     int tiers, lines;            /* of the methods' names above columns: heights, and lines of the longest */
@@ -105,7 +104,6 @@ static bool gather(Borders *borders, Error *error) {
     for (int i = 0; i < table->count; i++) {
         const BorderRow *row = border_row(table, i);
         bool new_study = true, new_method = true, applies = false;
-        borders->compares |= verdict_compares(row->verdict);
         for (int k = 0; k < table->count; k++) {
             const BorderRow *other = border_row(table, k);
             if (k < i && border_same_study(other, row)) new_study = false;
@@ -161,14 +159,14 @@ static bool next_difference(const BorderCell *cell, const BorderCell *reference,
 /* The reference of a struck study, with which its methods are compared. No spans: nothing is. */
 static BorderCell compared_with(const Borders *borders, int study, int method) {
     const int reference = find_reference(borders);
-    const bool none = !borders->studies[study].struck || borders->compares || reference < 0 || method == reference;
+    const bool none = !borders->studies[study].struck || reference < 0 || method == reference;
     return none ? (BorderCell){0} : cell_at(borders, study, reference);
 }
 
 /* Without the reference it is the whole range that counts; of a struck study, that nothing differs from it. */
 static bool holds_as_far(const Borders *borders, int study, int method, const BorderCell *cell) {
     const int reference = find_reference(borders);
-    if (borders->studies[study].struck && !borders->compares && reference >= 0) {
+    if (borders->studies[study].struck && reference >= 0) {
         const BorderCell other = compared_with(borders, study, method);
         double differing = 0;
         BorderSpan part;
@@ -406,18 +404,13 @@ static void draw_heading(const Borders *borders, bool struck, double y) {
     sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
     fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_MOVES].fill);
     plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
-              !struck             ? "holds"
-              : borders->compares ? "as many boxes fall as with the reference"
-                                  : "struck: no box falls");
+              struck ? "struck: no box falls" : "holds");
 }
 
 static int legend_columns(const Borders *borders) { return (int)((borders->width - edge) / legend_item); }
 
 static void draw_legend(const Borders *borders, double foot, int rows) {
     const LegendPlace place = {edge, foot + LEGEND_ROW * (rows - 0.5), legend_item, legend_columns(borders)};
-    const char *blue = borders->struck_count == 0 || !borders->compares ? "holds"
-                       : borders->struck_count == borders->study_count  ? "as the reference"
-                                                                        : "holds, or agrees";
     int next = verdict_draw_legend(borders->sketch, borders->used, &place);
     const bool shown[] = {borders->few, borders->rigid, borders->hatched};
     for (int sample = 0; sample < 3; sample++) {
@@ -430,7 +423,7 @@ static void draw_legend(const Borders *borders, double foot, int rows) {
         else
             sketch_line(borders->sketch, (Point){at.x + 1.4, at.y - 1.5}, (Point){at.x + 1.4, at.y + 1.5}, &rigid_pen);
         plot_text(borders->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS,
-                  sample == 0   ? blue
+                  sample == 0   ? "holds"
                   : sample == 1 ? "rigid boxes"
                                 : HATCHED_WORDS);
         next++;
@@ -489,9 +482,7 @@ static void write_caption(const Borders *borders, PlotPage *page) {
         "is pale. The number is the last value that holds, rounded. A stroke: the method does not apply; an empty "
         "cell: not in the study. Sorted by what holds, the reference first.%s",
         borders->rigid ? " Ticks: rigid boxes hold up to here, in closed form." : "");
-    if (borders->struck_count > 0)
-        text_add(page->caption, sizeof page->caption, " %s",
-                 borders->compares ? stability_compared_words : stability_struck_words);
+    if (borders->struck_count > 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
     for (int i = 0; i < borders->study_count; i++)
         if (stability_unconverged(borders->unconverged, borders->studies[i].row->study,
                                   (char[UNCONVERGED_TEXT_SIZE]){0})) {

@@ -205,15 +205,11 @@ static inline const BorderRow *border_row(const CsvTable *table, int i) { return
 
 bool border_same_method(const BorderRow *a, const BorderRow *b);
 
-/* What studies of struck scenes show, for captions and pages; and what they showed in tables of before, whose rows
-   compare (border_compares()): agrees, too few or too many fall. */
-extern const char stability_struck_words[], stability_compared_words[];
+/* What studies of struck scenes show, for captions and pages. */
+extern const char stability_struck_words[];
 
 /* The study of row i is one of a struck scene, of `own` or, if it is NULL, of the table of studies. */
 bool border_is_struck(const CsvTable *table, int i, const StabilityOwn *own);
-
-/* Whether the verdict is one of a comparison with the reference. */
-bool verdict_compares(int verdict);
 
 /* Writes at which values of a study or map the reference did not converge, by unconverged.csv, into text: "at rows 22,
    26 (12 of 900 steps, residual up to 3e-07 m/s)". Names the first twelve values. False, and "", if there are none. */

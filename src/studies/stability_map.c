@@ -144,19 +144,15 @@ static bool holds(const MapPanels *map, int panel, int x, int y) {
     return look < VERDICTS && verdict_holds((Verdict)look);
 }
 
-/* Blues, then orange to red to black: hues that the colour-blind can distinguish. In studies of struck scenes what
-   agrees is green, and a bar or a cross says that too few or too many fall. */
+/* Blues, then orange to red to black: hues that the colour-blind can distinguish. */
 const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_SETTLES] = {"settles", 0xEAF3FA, 0x7FA6BF, METHOD_CIRCLE, false, 0.35},
-    [VERDICT_AGREES] = {"agrees", 0xDDEBE0, 0x4F7D5E, METHOD_SQUARE, false, 0.35},
     [VERDICT_STANDS] = {"stands", 0xE6F1F9, 0x4E7A96, METHOD_DIAMOND, false, 0.35},
     [VERDICT_MOVES] = {"moves", 0xA3CBE5, 0x14486B, METHOD_CIRCLE, false, 0.8},
     [VERDICT_TOO_SHORT] = {"too short", 0xE4E0D0, 0x5A543C, METHOD_PENTAGON, false, 0.8},
     [VERDICT_UNDECIDED] = {"undecided", 0xF2F0E6, 0x6E6850, METHOD_PENTAGON, true, 0.8},
     [VERDICT_FALLS] = {"falls", 0xEE9A2E, 0x3D2000, METHOD_INVERTED_TRIANGLE, false, 0.9},
     [VERDICT_COLLAPSES] = {"collapses", 0xDF7F20, 0x3D2000, METHOD_TRIANGLE, false, 0.9},
-    [VERDICT_TOO_FEW] = {"too few fall", 0xE3B23C, 0x3D2000, PLOT_LEVEL, false, 1},
-    [VERDICT_TOO_MANY] = {"too many fall", 0xDE8128, 0x2A1400, PLOT_PLUS, false, 1.1},
     [VERDICT_HANGS] = {"hangs", 0xD9773C, 0x3D2000, METHOD_CIRCLE, true, 0.9},
     [VERDICT_SINKS] = {"sinks", 0xCF6414, 0xFFFFFF, METHOD_SQUARE, true, 0.9},
     [VERDICT_TUNNELS] = {"tunnels", 0xA83232, 0xFFFFFF, METHOD_DIAMOND, true, 0.95},
@@ -356,14 +352,6 @@ typedef struct Layout {
     int reference; /* its panel is the first, and others are hatched where they differ; -1: none */
 } Layout;
 
-/* Whether verdicts are those of tables of before. */
-static bool compares(const MapPanels *map) {
-    for (int panel = 0; panel < map->panel_count; panel++)
-        for (int cell = 0; cell < map->x_count * map->y_count; cell++)
-            if (verdict_compares(map->looks[panel][cell % map->x_count][cell / map->x_count])) return true;
-    return false;
-}
-
 /* The title of a panel, in lines. */
 static int wrap_title(char title[STABILITY_TEXT_SIZE], const MapPanels *map, int panel, double width) {
     stability_method_text(title, map->methods[panel]->method, map->methods[panel]->setting);
@@ -373,7 +361,7 @@ static int wrap_title(char title[STABILITY_TEXT_SIZE], const MapPanels *map, int
 /* A single panel is one column of a printed page wide; several fill the page. */
 static Layout lay_out(const MapPanels *map, const LeftOut *left_out, Sketch *sketch) {
     int panels = map->panel_count;
-    Layout layout = {.map = map, .sketch = sketch, .reference = compares(map) ? -1 : reference_of(map)};
+    Layout layout = {.map = map, .sketch = sketch, .reference = reference_of(map)};
     int used = layout.reference >= 0;
     for (int p = 0; p < panels; p++)
         for (int x = 0; x < map->x_count; x++)
@@ -508,9 +496,7 @@ static void write_caption(const MapPanels *map, bool converged, PlotPage *page) 
         "worse. Settling and moving count as holding; the black line separates them from failing. All "
         "cells have the same size, whatever their values.",
         map->first->map, x, y);
-    if (compares(map) || reference_of(map) >= 0)
-        text_add(page->caption, sizeof page->caption, " %s",
-                 compares(map) ? stability_compared_words : stability_struck_words);
+    if (reference_of(map) >= 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
     if (!converged) text_add(page->caption, sizeof page->caption, " %s", stability_unconverged_words);
 }
 

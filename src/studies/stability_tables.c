@@ -34,12 +34,6 @@ const char stability_struck_words[] =
     "maps also where only one of the two collapses. "
     "Undecided: a micrometre decides, or the reference did not converge.";
 
-const char stability_compared_words[] =
-    "Where a bomb or a moving body strikes, a method holds where it agrees with the "
-    "reference: as there, no box falls, fewer "
-    "than half of the boxes, or at least half; the reference itself holds where it "
-    "stands. Undecided: a micrometre decides, or the reference did not converge.";
-
 const char stability_unconverged_words[] =
     "From a step on that did not converge no run is judged by the reference, and "
     "what a strike must do is undecided.";
@@ -87,19 +81,13 @@ bool stability_unconverged(const CsvTable *table, const char *study, char text[U
     return places > 0;
 }
 
-bool verdict_compares(int verdict) {
-    return verdict == VERDICT_AGREES || verdict == VERDICT_TOO_FEW || verdict == VERDICT_TOO_MANY;
-}
-
 bool border_is_struck(const CsvTable *table, int i, const StabilityOwn *own) {
     const StabilityStudy *known = border_study(own, border_row(table, i));
     if (known != NULL) return !known->stands;
     for (int k = 0; k < table->count; k++) {
         const int verdict = border_row(table, k)->verdict;
         if (!border_same_study(border_row(table, k), border_row(table, i))) continue;
-        if (verdict_compares(verdict) || verdict == VERDICT_STANDS || verdict == VERDICT_UNDECIDED ||
-            verdict == VERDICT_COLLAPSES)
-            return true;
+        if (verdict == VERDICT_STANDS || verdict == VERDICT_UNDECIDED || verdict == VERDICT_COLLAPSES) return true;
     }
     return false;
 }

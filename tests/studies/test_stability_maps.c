@@ -8,7 +8,7 @@
 
 /* One cell of each verdict, and one sample in the legend. */
 TEST(each_verdict_has_its_tile) {
-    char *maps = make_map(1, 17, 1);
+    char *maps = make_map(1, VERDICTS + 1, 1);
     start_afresh(maps, BORDERS ONE_BORDER);
     free(maps);
     draw();
@@ -157,7 +157,7 @@ TEST(invalid_maps_are_refused_with_their_place) {
     static const struct {
         const char *rows, *message;
     } cases[] = {
-        {START "1,dances,,,,\n", "maps.csv:2:25: error: verdict: 'dances' is not one of settles, agrees"},
+        {START "1,dances,,,,\n", "maps.csv:2:25: error: verdict: 'dances' is not one of settles, stands"},
         {"stack,\"engine';system('x')\",,a,,1,b,,1,falls,,,,\n",
          "maps.csv:2:7: error: method: 'engine';system('x')' may only have"},
         {"../stack,engine,,a,,1,b,,1,falls,,,,\n", "maps.csv:2:1: error: map: '../stack' is not a file name"},
