@@ -93,6 +93,7 @@ TEST(ellipsoids_grow_by_right_answers_and_shrink_by_wrong_ones) {
     HybridTraining training = training_of(&counts);
     training.tolerance = 0.3f; /* a check finds an answer that is wrong by more */
     OWN(HybridMemory) *memory = learn(scene, &training, NULL);
+    assert_non_null(memory);
     assert_true(counts.worst > 0.3 && counts.shrunk > 0);
     assert_true(counts.grown_error > 0.15f && counts.grown_error <= training.tolerance);
 }
