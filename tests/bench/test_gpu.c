@@ -49,10 +49,9 @@ static void compare_pairs(const Gpu *gpu, const char *name, Network *network, si
     network_destroy(network);
 }
 
-/* Worlds with any state, and some of the network's slots. */
+/* Inputs within the range of the training, and some of the network's slots. */
 static void compare_scene(const Gpu *gpu, const char *path) {
-    static float numbers[SLOT_BODY_NUMBERS * SCENE_NET_BODIES_MAX], ones[SLOTS_MAX], warm[2 * SLOTS_MAX],
-        outputs[2 * SLOTS_MAX];
+    static float outputs[2 * SLOTS_MAX];
     static float inputs[4 * SCENE_NET_WIDTH_MAX], first[SCENE_NET_WIDTH_MAX], second[SCENE_NET_WIDTH_MAX];
     static int32_t slots[SLOTS_MAX], impulses[2 * SLOTS_MAX];
     Error error = {0};
@@ -62,17 +61,11 @@ static void compare_scene(const Gpu *gpu, const char *path) {
     assert_ok(layers != NULL && gpu_network(&net, gpu, layers, false, &error), error);
     for (size_t i = 0; i < WORLDS * net.outputs; i++) expected[i] = NAN;
     for (size_t w = 0; w < WORLDS; w++) {
-        SceneNetView view = {numbers, numbers + SLOT_BODY_NUMBERS, 0, slots, impulses, ones, warm};
-        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) numbers[i] = number_of(w * 7919 + i);
-        for (int s = (int)w % 7; s < network->slot_count; s += 1 + (int)w % 5) {
-            slots[view.slot_count] = s;
-            ones[view.slot_count++] = 1;
-        }
-        for (int k = 0; k < 2 * view.slot_count; k++) {
-            impulses[k] = 2 * slots[k / 2] + k % 2;
-            warm[k] = number_of(w * 4001 + (size_t)k);
-        }
-        scene_net_look(network, &view, inputs);
+        SceneNetView view = {.slots = slots, .impulses = impulses};
+        for (int s = (int)w % 7; s < network->slot_count; s += 1 + (int)w % 5) slots[view.slot_count++] = s;
+        for (int k = 0; k < 2 * view.slot_count; k++) impulses[k] = 2 * slots[k / 2] + k % 2;
+        for (size_t i = 0; i < net.inputs; i++)
+            inputs[i] = network->low[i] + (number_of(w * 7919 + i) + 2) / 4 * (network->high[i] - network->low[i]);
         scene_net_predict(network, inputs, &view, first, second, outputs);
         for (size_t i = 0; i < net.inputs; i++) in[i * WORLDS + w] = inputs[i];
         for (int k = 0; k < 2 * view.slot_count; k++) expected[(size_t)impulses[k] * WORLDS + w] = outputs[k];
