@@ -20,8 +20,8 @@ static inline double random_unit(uint64_t *state) { return (double)(split_mix(st
 static inline double random_signed(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-52 - 1; }
 static inline int random_below(uint64_t *state, int count) { return (int)(split_mix(state) % (uint64_t)count); }
 
-/* The first weights of a layer, uniform with the variance size^2 / inputs, so that a layer keeps the size of its numbers
-   (LeCun, Bottou, Orr, Mueller, "Efficient BackProp", 1998), then its biases, 0. Returns what follows them. */
+/* The first weights of a layer, uniform with the variance size^2 / inputs, so that a layer keeps the size of its
+   numbers (LeCun, Bottou, Orr, Mueller, "Efficient BackProp", 1998), then its biases, 0. Returns what follows them. */
 static inline double *weights_of_layer(double *weights, int inputs, int units, double size, uint64_t *state) {
     const double bound = size * sqrt(3.0 / inputs);
     for (int i = 0; i < inputs * units; i++) *weights++ = bound * random_signed(state);

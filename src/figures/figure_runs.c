@@ -248,8 +248,8 @@ static int step_of(const Strip *strip, int row, int column) {
     return next < frames ? next : frames - 1;
 }
 
-/* "2 out of view; 41 of 66 contacts as the reference", in lines as wide as a cell; empty if all are there. Of the bodies
-   in question, if some are: that others are cut off is meant. */
+/* "2 out of view; 41 of 66 contacts as the reference", in lines as wide as a cell; empty if all are there. Of the
+   bodies in question, if some are: that others are cut off is meant. */
 static WrappedText note_of(const Strip *strip, int row, int column) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;

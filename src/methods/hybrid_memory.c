@@ -64,8 +64,8 @@ static int place_of(const HybridMemory *memory, const HybridList *list, float x)
     return low;
 }
 
-/* Takes in the next entry, whose numbers are in their arrays: its impulses are those behind the last entry's, and it has
-   its place in the list of its set by its first number. False when memory is short. */
+/* Takes in the next entry, whose numbers are in their arrays: its impulses are those behind the last entry's, and it
+   has its place in the list of its set by its first number. False when memory is short. */
 static bool take_entry(HybridMemory *memory) {
     const int e = memory->entry_count, set = memory->entry_set[e];
     HybridList *list = &memory->set_lists[set];

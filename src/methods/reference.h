@@ -116,9 +116,9 @@ typedef struct SolutionError {
 SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *velocities,
                              const ReferenceVelocity *reference);
 
-/* The floor of a contact problem is the largest error, SolutionError.rms in m/s, of an answer that satisfies the laws of
-   contact to REFERENCE_TOLERANCE, as the reference's does; errors below it do not tell methods apart. It is measured as
-   the largest distance from `answer`, a converged reference, of the answers to which *r converges from so many other
+/* The floor of a contact problem is the largest error, SolutionError.rms in m/s, of an answer that satisfies the laws
+   of contact to REFERENCE_TOLERANCE, as the reference's does; errors below it do not tell methods apart. It is measured
+   as the largest distance from `answer`, a converged reference, of the answers to which *r converges from so many other
    starts: no impulses, what sweeps make of these, then random ones in their cones.
 
    Where only one answer is right it is 0 to rounding: stacks, towers, gates. It is a lower bound, as a start finds

@@ -50,8 +50,9 @@ typedef enum LookLabels { LOOK_NO_LABELS, LOOK_NUMBERS, LOOK_MASSES, LOOK_NAMES 
 
 /* What --show and the check boxes of a page add to the bodies, a line each: name, what --help says after it, what it
    needs ("others": a second run; else runs that have "contacts", "velocities" or both), and the script in
-   src/pictures/player that draws it in a page; NULL: a page has no such box. A new one has its line at the end, its entry in legend.c and
-   player/legend.js, and is drawn where the others are: in marks.c, below or above the bodies, and in its script. */
+   src/pictures/player that draws it in a page; NULL: a page has no such box. A new one has its line at the end, its
+   entry in legend.c and player/legend.js, and is drawn where the others are: in marks.c, below or above the bodies, and
+   in its script. */
 #define SHOW_MARKS(MARK)                                                                   \
     MARK(GHOSTS, "ghosts", " (outlines of the first run)", "others", "layout.js")          \
     MARK(DISTANCE, "distance", " (colours)", "others", "boxes.js")                         \

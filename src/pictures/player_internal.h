@@ -67,8 +67,9 @@ static inline float player_dt(const PlayerFrames *frames, const Trajectory *run)
 
    A number per frame: of contacts. Then columns with a number per contact: bodies a and b, feature; and, as differences
    from the same contact in the frame before, the point's x and y from the centre of b in units of `length`, the
-   normal's x and y in 1/256, the logarithm of the normal impulse, the tangent impulse in 1/64 of the normal one and
-   a unit, and the mode. In a pile that rests, friction keeps its share of the normal impulse: so most differences are small. */
+   normal's x and y in 1/256, the logarithm of the normal impulse, the tangent impulse in 1/64 of the normal one and a
+   unit, and the mode. In a pile that rests, friction keeps its share of the normal impulse: so most differences are
+   small. */
 
 /* What is rounded away. */
 typedef struct ContactUnits {

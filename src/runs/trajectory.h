@@ -109,9 +109,9 @@ bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 /* The first step in which the bomb touches a dynamic body; -1: none. */
 int trajectory_impact(const Trajectory *trajectory);
 
-/* What a contact does in a step: it does not push; or it pushes, and its bodies do not slide along it; or they slide. Its
-   normal impulse and the velocities after the step decide, alike for every method. Runs have no friction, and none is
-   needed: what slides is at the cone's bound, and what does not slide sticks, also at the bound. */
+/* What a contact does in a step: it does not push; or it pushes, and its bodies do not slide along it; or they slide.
+   Its normal impulse and the velocities after the step decide, alike for every method. Runs have no friction, and none
+   is needed: what slides is at the cone's bound, and what does not slide sticks, also at the bound. */
 typedef enum ContactMode { CONTACT_OPEN, CONTACT_STICKS, CONTACT_SLIPS, CONTACT_MODES } ContactMode;
 
 /* m/s: slower is creep, which methods leave that do not converge. */

@@ -101,8 +101,8 @@ static double gap_above(const VerdictWatch *watch, const WatchedBody *body, cons
     return span.from < span.to && span.to >= 0 ? larger(span.from, 0) : INFINITY;
 }
 
-/* What carries the bodies that nothing has carried so far, from their poses of now on. What starts at rest may move down
-   by `way`, m. On what nothing carries, nothing is carried either. */
+/* What carries the bodies that nothing has carried so far, from their poses of now on. What starts at rest may move
+   down by `way`, m. On what nothing carries, nothing is carried either. */
 static bool find_carriers(VerdictWatch *watch, double way, Error *error) {
     if (watch->pull == 0) return true;
     if (!find_near(watch, larger(way, fall_share * watch->largest), error)) return false;

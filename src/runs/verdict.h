@@ -34,8 +34,8 @@
 
    Fell, at the end: a body is lower than at the start by more than half its side and the gaps below it, and so relative
    to its carrier, beside how deep it is in that; or its carrier fell, too: neither sag nor pressing in is a fall. Or it
-   has turned by 30 degrees; or it left: it is below all static bodies. Moved: has not fallen, and is a tenth of its size
-   beside its start, or above it. */
+   has turned by 30 degrees; or it left: it is below all static bodies. Moved: has not fallen, and is a tenth of its
+   size beside its start, or above it. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"

@@ -78,14 +78,14 @@ typedef struct Chart {
     char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; plain */
 } Chart;
 
-/* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
-   letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
-   Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
-   before the bomb came, as they were scored on another scene; of a line that the look highlights these are marks, too.
-   Errors below chart_row_resolution() are drawn there. The axes show the coloured lines: other marks more than a decade away
-   from them are left out, and counted in their line. At most CHART_LOUD lines are coloured: what the reader asks for,
-   programs of others, the engine, interior, the strongest rival that learns nothing, scene-net, and the silenced twins
-   of these. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
+/* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to letters, digits, spaces and
+   -_.,:=+/()*[]; other characters become '?'. Left out and counted: rows without time or error, and rows of a method
+   that let the boxes drift half a metre before the bomb came, as they were scored on another scene; of a line that the
+   look highlights these are marks, too. Errors below chart_row_resolution() are drawn there. The axes show the coloured
+   lines: other marks more than a decade away from them are left out, and counted in their line. At most CHART_LOUD
+   lines are coloured: what the reader asks for, programs of others, the engine, interior, the strongest rival that
+   learns nothing, scene-net, and the silenced twins of these. False with error set if nothing remains, or for more than
+   CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const ChartLook *look,
                   Error *error);
 void chart_free(Chart *chart);

@@ -43,8 +43,8 @@ typedef struct ChartRow {
        has. */
     double signorini, cone, dissipation;
     double rollout_mse; /* m^2: as in RunMeasures, mean over the launches */
-    /* m/s: that of a step (reference_floor()), mean; of the frozen steps, in closed loop of the converged runs' steps that
-       would be scored and that launches do not share. NaN: none, or not measured. The same for all methods. */
+    /* m/s: that of a step (reference_floor()), mean; of the frozen steps, in closed loop of the converged runs' steps
+       that would be scored and that launches do not share. NaN: none, or not measured. The same for all methods. */
     double floor;
     int worst_launch; /* of error_worst, of the study's; not in the table */
 } ChartRow;

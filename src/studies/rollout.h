@@ -139,8 +139,8 @@ typedef struct Rollout {
 
 void rollout_free(Rollout *rollout);
 
-/* Runs a launched scene and adds the sampled steps to scores[PHASES] (NULL: none) and to its floors. If the state becomes NaN or
-   infinite, the run ends early and its log is shorter. False with error set if out of memory. */
+/* Runs a launched scene and adds the sampled steps to scores[PHASES] (NULL: none) and to its floors. If the state
+   becomes NaN or infinite, the run ends early and its log is shorter. False with error set if out of memory. */
 bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
                  StepScores scores[PHASES], Error *error);
 

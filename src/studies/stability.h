@@ -306,8 +306,8 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
 /* The study's scene, in this folder, with a value of its parameter. The caller frees it. */
 Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error);
 
-/* Whether the study shows what the converged run does, beside what methods do: the scene is struck (runs/verdict.h), and its table
-   does not say that it stands. */
+/* Whether the study shows what the converged run does, beside what methods do: the scene is struck (runs/verdict.h),
+   and its table does not say that it stands. */
 bool stability_is_struck(const StabilityPlace *place, const Scene *scene, bool stands);
 
 /* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those

@@ -67,8 +67,9 @@ TEST(a_box_at_rest_carries_its_weight) {
     }
 }
 
-/* Overlap at rest: at most 15 mm a contact, also by two passes of avbd, thanks to its warm start. Not with kept contacts, the last method: without a skin, boxes that drop
-   may land up to 0.2 m askew, as the engine's do. That their stacks stand is a test of kept_contacts. */
+/* Overlap at rest: at most 15 mm a contact, also by two passes of avbd, thanks to its warm start. Not with kept
+   contacts, the last method: without a skin, boxes that drop may land up to 0.2 m askew, as the engine's do. That their
+   stacks stand is a test of kept_contacts. */
 TEST(a_stack_of_ten_stands_for_ten_seconds) {
     BodyDef bodies[11];
     const Scene scene = stack_of_ten(bodies);

@@ -218,8 +218,8 @@ TEST(a_box_between_walls_hangs_or_falls) {
 }
 
 /* The corner r = (1/2, -1/2) of a box of 1 kg and 1 m leaves ground of friction 3 at 1 m/s and slides at 4 m/s. Normal
-   and tangent velocity change by 5/2 p + 3/2 q and 3/2 p + 5/2 q (Painleve). So it is right to leave, p = 0; to slide on
-   at 1 m/s, p = 1/2 and q = -3/2; and to stick, p = 7/8 and q = -17/8. */
+   and tangent velocity change by 5/2 p + 3/2 q and 3/2 p + 5/2 q (Painleve). So it is right to leave, p = 0; to slide
+   on at 1 m/s, p = 1/2 and q = -3/2; and to stick, p = 7/8 and q = -17/8. */
 TEST(a_corner_leaves_or_slides_or_sticks) {
     const ProblemBody bodies[] = {{.inv_mass = 0}, {.velocity = {4, 1}, .inv_mass = 1, .inv_inertia = 6}};
     const ContactPoint contact = {.a = 0,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What contacts do, by closed forms: a box on a slope below and above the friction, on level ground, in the air; the same
-   for every method. And how many contacts of two runs do the same, counted in another way. */
+/* What contacts do, by closed forms: a box on a slope below and above the friction, on level ground, in the air; the
+   same for every method. And how many contacts of two runs do the same, counted in another way. */
 #include "made.h"
 
 static const char *const methods[] = {"engine", "momentum", "interior", "reference", "soft-step"};
