@@ -169,7 +169,7 @@ bool launches_observe(const LaunchWatch *watch, RecordedSteps *steps, const Prog
     World *past = NULL;
     Observing observing = {watch, watch->past, calloc((size_t)watch->count + 1, sizeof *observing.steps)};
     bool ok = observing.steps != NULL || error_memory(error, "launches");
-    if (ok && !watch->from_start && watch->method == NULL && watch->past == NULL) {
+    if (ok && !watch->from_start && watch->make != NULL && watch->past == NULL) {
         ContactSolver solver = {0};
         past = watch->make(watch->context, 0, &solver, error) ? launches_past(watch->scene, &solver, error) : NULL;
         solver_destroy(&solver);

@@ -263,7 +263,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         }
         Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
-        const bool used = scores != NULL || rollout->floors != NULL;
+        const bool used = sampling != NULL && (scores != NULL || rollout->floors != NULL);
         if (!used || !sampling_takes(sampling, phase, &tracker, frame)) continue;
         const ContactProblem *problem = world_problem(rollout->world);
         if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
