@@ -242,10 +242,8 @@ static WorldWindow window_of_bodies(const Strip *strip) {
                          all.top - all.bottom + 2 * margin};
 }
 
-/* The step whose contacts a cell shows: they result from its poses. */
 static int step_of(const Strip *strip, int row, int column) {
-    const int next = strip->frames[column] + 1, frames = strip->spec->runs[row]->frames;
-    return next < frames ? next : frames - 1;
+    return trajectory_contact_step(strip->spec->runs[row], strip->frames[column]);
 }
 
 /* "2 out of view; 41 of 66 contacts as the reference", in lines as wide as a cell; empty if all are there. Of the

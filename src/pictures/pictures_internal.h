@@ -39,11 +39,8 @@ static inline Pose pose_at(const Trajectory *run, Moment moment, int body) {
                   pose.angle + fraction * (next.angle - pose.angle)};
 }
 
-/* The step whose contacts a picture shows: they result from the poses shown; in the last frame, those of the last
-   step. */
 static inline int pose_step(const Trajectory *run, Moment moment) {
-    moment = pose_moment(run, moment);
-    return moment.frame + 1 < run->frames ? moment.frame + 1 : moment.frame;
+    return trajectory_contact_step(run, pose_moment(run, moment).frame);
 }
 
 /* m. sqrt is correctly rounded on every machine; hypot is not. */

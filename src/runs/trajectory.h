@@ -106,6 +106,11 @@ double trajectory_number(const Trajectory *trajectory, size_t i, int column);
 /* True if the body exists in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 
+/* The step whose contacts a picture of a frame shows: they result from its poses; in the last frame, the last step. */
+static inline int trajectory_contact_step(const Trajectory *trajectory, int frame) {
+    return frame + 1 < trajectory->frames ? frame + 1 : frame;
+}
+
 /* The first step in which the bomb touches a dynamic body; -1: none. */
 int trajectory_impact(const Trajectory *trajectory);
 
