@@ -45,14 +45,8 @@ static bool panels_add(Panels *panels, Trajectory *run, const char *input, Error
 }
 
 bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error) {
-    return panels_add_watched(panels, scene, method_name, input, NULL, error);
-}
-
-bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_name, const char *input,
-                        const Progress *progress, Error *error) {
     Method method;
     if (!method_parse(&method, method_name, error)) return false;
-    if (progress != NULL) return panels_add(panels, simulate_judged(scene, &method, progress, error), input, error);
     char what[2 * SCENE_NAME_SIZE + 8];
     snprintf(what, sizeof what, "%s by %s", scene->name, method_name);
     Trajectory *run = simulate_judged(scene, &method, progress_bar_begin(what), error);

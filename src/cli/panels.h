@@ -49,10 +49,6 @@ void panels_free(Panels *panels);
 /* Simulates a scene with a method, with a progress bar, and adds the run. Errors name `input`. */
 bool panels_add_run(Panels *panels, const Scene *scene, const char *method_name, const char *input, Error *error);
 
-/* The same with another progress; NULL: the bar. */
-bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_name, const char *input,
-                        const Progress *progress, Error *error);
-
 /* 1920 x 1080, all frames, one process per core, the descriptions of all methods. */
 RenderOptions render_defaults(const char *directory);
 

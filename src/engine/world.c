@@ -229,14 +229,10 @@ double body_energy(const Body *body, Vec2 gravity) {
     return (0.5 * (x * x + y * y) - potential) / body->inv_mass + 0.5 * spin * spin / body->inv_inertia;
 }
 
-double bodies_energy(const Body *bodies, int count, Vec2 gravity) {
-    double sum = 0;
-    for (int i = 0; i < count; i++) sum += body_energy(&bodies[i], gravity);
-    return sum;
-}
-
 double world_energy(const World *world, Vec2 gravity) {
-    return bodies_energy(world_bodies(world), world_body_count(world), gravity);
+    double sum = 0;
+    for (int i = 0; i < world_body_count(world); i++) sum += body_energy(&world_bodies(world)[i], gravity);
+    return sum;
 }
 
 double world_penetration(const World *world) {

@@ -82,7 +82,6 @@ typedef struct RunName {
     char text[CAPTION_TEXT_SIZE];
 } RunName;
 RunName run_name(const FigureSpec *spec, const Trajectory *run);
-RunName run_method_name(const FigureSpec *spec, const Trajectory *run);
 
 /* The runs' colours, FIGURE_RUNS_MAX of them. */
 bool run_colours(const FigureSpec *spec, RunColours *colours, Error *error);

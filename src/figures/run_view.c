@@ -199,19 +199,14 @@ static int index_of(const FigureSpec *spec, const Trajectory *run) {
     return i;
 }
 
-RunName run_method_name(const FigureSpec *spec, const Trajectory *run) {
-    RunName name;
-    const char *methods[FIGURE_RUNS_MAX];
-    for (int i = 0; i < spec->run_count; i++) methods[i] = spec->runs[i]->method;
-    method_name_among(name.text, sizeof name.text, methods, spec->run_count, index_of(spec, run));
-    return name;
-}
-
 RunName run_name(const FigureSpec *spec, const Trajectory *run) {
     RunName name;
-    const char *caption = spec->captions[index_of(spec, run)];
-    if (caption == NULL || caption[0] == '\0') return run_method_name(spec, run);
-    snprintf(name.text, sizeof name.text, "%s", caption);
+    const char *caption = spec->captions[index_of(spec, run)], *methods[FIGURE_RUNS_MAX];
+    for (int i = 0; i < spec->run_count; i++) methods[i] = spec->runs[i]->method;
+    if (caption != NULL && caption[0] != '\0')
+        snprintf(name.text, sizeof name.text, "%s", caption);
+    else
+        method_name_among(name.text, sizeof name.text, methods, spec->run_count, index_of(spec, run));
     return name;
 }
 

@@ -27,7 +27,8 @@ static GnsMlp make_mlp(int *next, int inputs, int width, int outputs, bool norma
     return mlp;
 }
 
-GnsLayout gns_layout(int width, int rounds) {
+/* width: a multiple of GNS_WIDTH_STEP up to GNS_MAX_WIDTH; rounds: 1 to GNS_MAX_ROUNDS. */
+static GnsLayout lay_out(int width, int rounds) {
     GnsLayout layout = {.width = width, .rounds = rounds};
     int next = 0;
     layout.nodes = make_mlp(&next, GNS_NODE_INPUTS, width, width, true);
@@ -42,7 +43,7 @@ GnsLayout gns_layout(int width, int rounds) {
 }
 
 bool gns_net_create(GnsNet *net, int width, int rounds, Error *error) {
-    *net = (GnsNet){.layout = gns_layout(width, rounds)};
+    *net = (GnsNet){.layout = lay_out(width, rounds)};
     net->parameters = calloc((size_t)net->layout.parameters, sizeof *net->parameters);
     return net->parameters != NULL || error_memory(error, "gns");
 }
@@ -78,7 +79,7 @@ static bool read_sizes(void *of, NpzFile *file, Error *error) {
                            GNS_WIDTH_STEP, GNS_MAX_WIDTH);
     if (rounds < 1 || rounds > GNS_MAX_ROUNDS)
         return error_input(error, npz_path(file), "there are %d rounds; expected 1 to %d", rounds, GNS_MAX_ROUNDS);
-    ((GnsNet *)of)->layout = gns_layout(width, rounds);
+    ((GnsNet *)of)->layout = lay_out(width, rounds);
     return true;
 }
 

@@ -53,9 +53,6 @@ typedef struct GnsLayout {
     GnsMlp decoder;
 } GnsLayout;
 
-/* width: a multiple of GNS_WIDTH_STEP up to GNS_MAX_WIDTH; rounds: 1 to GNS_MAX_ROUNDS. */
-GnsLayout gns_layout(int width, int rounds);
-
 typedef struct GnsNet {
     GnsLayout layout;
     GnsScales scales;

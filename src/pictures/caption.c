@@ -46,7 +46,8 @@ void caption_distance(char *text, size_t size, double metres) {
         snprintf(text, size, ">999");
 }
 
-CaptionItem caption_distance_item(const char *label, double metres) {
+/* Numbers have the width of the longest one of the sequence, so that text does not move between frames. */
+static CaptionItem distance_item(const char *label, double metres) {
     CaptionItem item = {.unit = " m"};
     char text[32];
     snprintf(item.label, sizeof item.label, "%s", label);
@@ -55,12 +56,12 @@ CaptionItem caption_distance_item(const char *label, double metres) {
     return item;
 }
 
-int caption_item_width(const Font *font, const CaptionItem *item) {
+static int item_width(const Font *font, const CaptionItem *item) {
     return font_width(font, item->label) + font_width(font, item->number) + font_width(font, item->unit);
 }
 
-void caption_item_draw(const Picture *picture, const Font *font, const CaptionItem *item, int x, int baseline,
-                       Drawing *drawing) {
+static void draw_item(const Picture *picture, const Font *font, const CaptionItem *item, int x, int baseline,
+                      Drawing *drawing) {
     const Theme *theme = picture->theme;
     x = font_add(drawing, font, item->label, x, baseline, theme->ink_soft);
     x = font_add(drawing, font, item->number, x, baseline, theme->ink);
@@ -161,7 +162,8 @@ void caption_title(const Picture *picture, char title[CAPTION_TEXT_SIZE]) {
     if (title[0] >= 'a' && title[0] <= 'z') title[0] = (char)(title[0] - 'a' + 'A');
 }
 
-bool caption_is_pair(const Picture *picture) { return picture->count == 2 && picture->panel_count == 2; }
+/* Two panels side by side: the header shows their distance, the only one. */
+static bool is_pair(const Picture *picture) { return picture->count == 2 && picture->panel_count == 2; }
 
 enum { HEADER_ITEMS = 3 };
 
@@ -177,7 +179,7 @@ static HeaderItems header_items(const Picture *picture, Moment moment) {
     HeaderItems header = {.left = layout->right,
                           .items = {{.label = "t = ", .unit = " s"},
                                     {.label = "frame "},
-                                    caption_distance_item("distance ", picture_distance(picture, moment))}};
+                                    distance_item("distance ", picture_distance(picture, moment))}};
     char text[64], longest[64];
     snprintf(text, sizeof text, "%.3f", (moment.frame + moment_fraction(moment)) * dt);
     snprintf(longest, sizeof longest, "%.3f", (picture->frames - 1) * dt);
@@ -186,9 +188,9 @@ static HeaderItems header_items(const Picture *picture, Moment moment) {
     snprintf(longest, sizeof longest, "%d", picture->frames - 1);
     pad(header.items[1].number, sizeof header.items[1].number, text, longest);
 
-    const int count = caption_is_pair(picture) ? HEADER_ITEMS : HEADER_ITEMS - 1, gap = layout->status.pixels * 5 / 4;
+    const int count = is_pair(picture) ? HEADER_ITEMS : HEADER_ITEMS - 1, gap = layout->status.pixels * 5 / 4;
     for (int i = 0; i < count; i++) {
-        const int left = header.left - caption_item_width(&layout->status, &header.items[i]);
+        const int left = header.left - item_width(&layout->status, &header.items[i]);
         if (left < layout->left) break;
         header.lefts[header.count++] = left;
         header.left = left - gap;
@@ -210,8 +212,7 @@ void caption_header(const Picture *picture, Moment moment, Drawing *drawing) {
     if (layout->scene.glyphs == NULL) return;
     const HeaderItems header = header_items(picture, moment);
     for (int i = 0; i < header.count; i++)
-        caption_item_draw(picture, &layout->status, &header.items[i], header.lefts[i], layout->header_baseline,
-                          drawing);
+        draw_item(picture, &layout->status, &header.items[i], header.lefts[i], layout->header_baseline, drawing);
     const TextLines title = caption_header_title(picture);
     int baseline = layout->header_baseline, right = header.left, end = layout->left;
     for (int i = 0; i < layout->header_lines; i++) {
@@ -257,13 +258,13 @@ static int panel_width(const Picture *picture) {
     return picture->layout.panels[0].right - picture->layout.panels[0].left;
 }
 
-static bool has_distance(const Picture *picture, int run) { return run > 0 && !caption_is_pair(picture); }
+static bool has_distance(const Picture *picture, int run) { return run > 0 && !is_pair(picture); }
 
 /* Of a run's distance, with its word, and the space before it. */
 static int distance_width(const Picture *picture, int run) {
-    const CaptionItem distance = caption_distance_item("distance ", 0);
+    const CaptionItem distance = distance_item("distance ", 0);
     const Font *font = &picture->layout.method;
-    return has_distance(picture, run) ? caption_item_width(font, &distance) + font->pixels : 0;
+    return has_distance(picture, run) ? item_width(font, &distance) + font->pixels : 0;
 }
 
 /* Whether distances have a line of their own, nearest to the panels: beside the name of some run there is no room. */
@@ -443,8 +444,8 @@ static void draw_overlay(const Picture *picture, Moment moment, const Rect *rect
         const int room = rect->right - x - distance_width(picture, run);
         x = caption_name_draw(picture, &layout->title, name, x, line, room, drawing) + gap;
         if (run > 0) {
-            const CaptionItem distance = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
-            caption_item_draw(picture, &layout->method, &distance, x, line, drawing);
+            const CaptionItem distance = distance_item("distance ", picture_run_distance(picture, run, moment));
+            draw_item(picture, &layout->method, &distance, x, line, drawing);
             x += distance_width(picture, run);
         }
         if (notes && font_width(&layout->method, text) <= rect->right - x)
@@ -518,11 +519,11 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
         if (notes.beside) beside.left = end + layout->title.pixels / 2;
     }
     if (has_distance(picture, run)) {
-        const CaptionItem item = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
-        const int width = caption_item_width(&layout->method, &item);
+        const CaptionItem item = distance_item("distance ", picture_run_distance(picture, run, moment));
+        const int width = item_width(&layout->method, &item);
         if (width <= rect->right - rect->left)
-            caption_item_draw(picture, &layout->method, &item, below ? x : rect->right - width,
-                              below ? lowest.baseline : baseline, drawing);
+            draw_item(picture, &layout->method, &item, below ? x : rect->right - width,
+                      below ? lowest.baseline : baseline, drawing);
         if (below)
             lowest.left += distance_width(picture, run);
         else

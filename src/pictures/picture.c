@@ -24,12 +24,6 @@ static int pixels(double value) { return (int)rint(value); }
 static int width_of(const Rect *rect) { return rect->right - rect->left; }
 static int height_of(const Rect *rect) { return rect->bottom - rect->top; }
 
-/* One row up to three panels, otherwise two. In portrait, columns instead of rows. */
-int layout_columns(int width, int height, int panels) {
-    const int few = panels > 3 ? 2 : 1, many = (panels + few - 1) / few;
-    return height > width ? few : many;
-}
-
 static Rect panel_size(const Layout *layout) {
     const Rect *area = &layout->area;
     return (Rect){0, 0, (width_of(area) - (layout->columns - 1) * layout->gap) / layout->columns,
@@ -45,12 +39,6 @@ static void place_panels(Layout *layout, int panels, int left, int top, int widt
         const int y = top + i / layout->columns * (height + layout->row_gap);
         layout->panels[i] = (Rect){x, y, x + width, y + height};
     }
-}
-
-void layout_shrink_panels(Layout *layout, int panels, int width, int height) {
-    const Rect whole = panel_size(layout);
-    place_panels(layout, panels, layout->area.left + layout->columns * (whole.right - width) / 2,
-                 layout->area.top + layout->rows * (whole.bottom - height) / 2, width, height);
 }
 
 Layout layout_make(int width, int height, int panels, int columns, LayoutRows rows) {
@@ -120,9 +108,11 @@ static double scale_in(const Layout *layout, const CameraFrame *frame) {
     return sqrt(fmin(width / (held->right - held->left), high) * fmin(width / (room->right - room->left), high));
 }
 
-/* A moving camera comes closer than the fixed view: it has the usual panels. */
+/* The usual panels: one row up to three of them, otherwise two; in portrait, columns instead of rows. A fixed view may
+   have others. A moving camera comes closer. */
 static Layout choose_grid(const Picture *picture, const CameraFrame *frame, int width, int height, LayoutRows rows) {
-    const int count = picture->panel_count, usual = layout_columns(width, height, count);
+    const int count = picture->panel_count, few = count > 3 ? 2 : 1;
+    const int usual = height > width ? few : (count + few - 1) / few;
     Layout best = layout_make(width, height, count, usual, rows);
     const double usual_scale = scale_in(&best, frame);
     if (picture->look.camera != LOOK_FIT) return best;
@@ -146,7 +136,10 @@ static int shrink(int whole, double needed, double share, double least) {
     return (int)fmin(whole, ceil(fmax(needed / FULL_SHARE, least)));
 }
 
-void panels_arrange(Picture *picture, int width, int height, int legend) {
+/* Sets the panels, from the look and the title, and the fixed camera; `legend`: its rows. Panels that a long or high
+   scene would leave almost empty have its shape. Three panels are in a row or a column; only of five, a cell is
+   empty. */
+static void panels_arrange(Picture *picture, int width, int height, int legend) {
     const RenderLook *look = &picture->look;
     const int count = picture->count;
     picture->panel_count = look->compare == LOOK_OVERLAY ? 1 : look->compare == LOOK_DIFFERENCE ? count - 1 : count;
@@ -172,7 +165,11 @@ void panels_arrange(Picture *picture, int width, int height, int legend) {
                                    ? whole
                                    : shrink(whole, scale * (double)needs.x, LEAST_SHARE_X, LEAST_PANEL_WIDTH * em);
             const int low = shrink(high, scale * (double)needs.y, LEAST_SHARE_Y, LEAST_PANEL_HEIGHT * em);
-            if (narrow < whole || low < high) layout_shrink_panels(layout, picture->panel_count, narrow, low);
+            const Rect size = panel_size(layout);
+            if (narrow < whole || low < high) /* in the middle of their area */
+                place_panels(layout, picture->panel_count,
+                             layout->area.left + layout->columns * (size.right - narrow) / 2,
+                             layout->area.top + layout->rows * (size.bottom - low) / 2, narrow, low);
         }
         if (caption_lines(picture) <= rows.caption) break;
     }

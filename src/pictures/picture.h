@@ -216,14 +216,8 @@ typedef struct LayoutRows {
     bool timeline;
 } LayoutRows;
 
-/* Columns of the grid of 1 to RENDER_PANELS_MAX panels that a picture has unless its scene needs another. */
-int layout_columns(int width, int height, int panels);
-
 /* The panels fill their area. */
 Layout layout_make(int width, int height, int panels, int columns, LayoutRows rows);
-
-/* Makes the panels smaller, in the middle of their area; width and height in pixels. */
-void layout_shrink_panels(Layout *layout, int panels, int width, int height);
 
 /* A moment is what one picture of a video shows: a stored frame, a time between two frames, or a card. A video is a
    list of moments; without slow motion, hold and cards these are the stored frames in order. */

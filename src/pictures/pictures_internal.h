@@ -154,11 +154,6 @@ void marks_draw_mode(const Picture *picture, const ModeMark *mark, const Rect *c
 
 /* The grid of panels in which the scene is largest, and their camera. */
 
-/* Sets the panels, from the look and the title, and the fixed camera; `legend`: its rows. Panels that a long or high
-   scene would leave almost empty have its shape. Three panels are in a row or a column; only of five, a cell is
-   empty. */
-void panels_arrange(Picture *picture, int width, int height, int legend);
-
 /* The texts of the picture. They depend only on the trajectories and options, not on the machine or the time. */
 
 /* The title, on up to TEXT_LINES_MAX lines, and the slow motion; at the right the frame, the simulated time and, for
@@ -182,9 +177,6 @@ TextLines caption_header_title(const Picture *picture);
 
 /* Pixels that a panel needs for the shortest form of any run's name; or for the whole name beside a distance. */
 int caption_least_width(const Picture *picture, bool whole);
-
-/* Two panels side by side: the header shows their distance, the only one. */
-bool caption_is_pair(const Picture *picture);
 
 /* Draws a name in at most `room` pixels: in the font if it fits, otherwise in the small one, there cut if need be.
    Returns the x where it ends. */
@@ -213,13 +205,6 @@ void caption_distance(char *text, size_t size, double metres);
 typedef struct CaptionItem {
     char label[16], number[CAPTION_TEXT_SIZE], unit[8];
 } CaptionItem;
-
-/* Numbers have the width of the longest one of the sequence, so that text does not move between frames. */
-CaptionItem caption_distance_item(const char *label, double metres);
-
-int caption_item_width(const Font *font, const CaptionItem *item);
-void caption_item_draw(const Picture *picture, const Font *font, const CaptionItem *item, int x, int baseline,
-                       Drawing *drawing);
 
 /* The title card before a run and the end card with its results. */
 

@@ -68,11 +68,9 @@ typedef struct PngSource {
 
 void png_source_of(PngSource *source, const uint8_t *data, size_t size);
 
-/* False if there is no such file, or memory is short. png_source_close() must follow. */
-bool png_source_open(PngSource *source, const char *path);
 void png_source_close(PngSource *source);
 
-/* Begins a pass. png_source_open() has begun the first. */
+/* Begins a pass. The first has begun. */
 bool png_source_rewind(PngSource *source);
 
 /* The next bytes, at least one and at most `most`, which last until the next call; 0: there are none, or reading
@@ -120,9 +118,6 @@ typedef struct PngRows {
    closes the source, must follow. */
 bool png_rows_open(PngRows *rows, int64_t max_pixels);
 void png_rows_close(PngRows *rows);
-
-/* Bytes of all filtered rows. */
-size_t png_rows_size(const PngRows *rows);
 
 /* Begins to decompress. */
 bool png_rows_start(PngRows *rows);

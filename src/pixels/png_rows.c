@@ -133,17 +133,16 @@ bool png_rows_open(PngRows *rows, int64_t max_pixels) {
     if (!png_source_end(&rows->source)) return false;
 
     /* Before memory is allocated for pixels that the file cannot hold. */
-    if (rows->bytes >= UINT32_MAX / 2 || !png_can_hold(rows->compressed, (double)png_rows_size(rows))) return false;
+    if (rows->bytes >= UINT32_MAX / 2) return false;
+    const size_t filtered = (rows->bytes + 1) * rows->layout.height;
+    if (!png_can_hold(rows->compressed, (double)filtered)) return false;
     /* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the
        stream is cut into calls. */
     const uint8_t *zlib = rows->zlib;
     const int window_bits = (zlib[0] >> 4) + 8;
     return (zlib[0] & 0x0F) == Z_DEFLATED && (zlib[0] << 8 | zlib[1]) % 31 == 0 && (zlib[1] & 0x20) == 0 &&
-           window_bits <= MAX_WINDOW_BITS &&
-           (window_bits == MAX_WINDOW_BITS || png_rows_size(rows) >> window_bits == 0);
+           window_bits <= MAX_WINDOW_BITS && (window_bits == MAX_WINDOW_BITS || filtered >> window_bits == 0);
 }
-
-size_t png_rows_size(const PngRows *rows) { return (rows->bytes + 1) * rows->layout.height; }
 
 typedef struct PngStream {
 #ifdef TWINBOX_ISAL

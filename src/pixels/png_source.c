@@ -16,7 +16,8 @@ void png_source_of(PngSource *source, const uint8_t *data, size_t size) {
     *source = (PngSource){.file = -1, .data = data, .held = size, .size = size};
 }
 
-bool png_source_open(PngSource *source, const char *path) {
+/* False if there is no such file, or memory is short. png_source_close() must follow. */
+static bool open_source(PngSource *source, const char *path) {
     Error ignored = {0};
     *source = (PngSource){.file = -1};
     source->file = file_open(path, PNG_MAX_FILE_SIZE, &source->size, &ignored);
@@ -87,7 +88,7 @@ bool png_file_open(PngFile *file, const char *path, int64_t max_pixels, Error *e
     PngRows *rows = calloc(1, sizeof *rows);
     *file = (PngFile){.path = path, .max_pixels = max_pixels, .rows = rows};
     if (rows == NULL) return error_memory(error, path);
-    if (!png_source_open(&rows->source, path) || !png_rows_open(rows, max_pixels)) return png_file_load(file, error);
+    if (!open_source(&rows->source, path) || !png_rows_open(rows, max_pixels)) return png_file_load(file, error);
     file->hash = rows->source.hash;
     file->data = rows->rest;
     file->size = rows->rest_size;

@@ -49,11 +49,12 @@ bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, f
     return true;
 }
 
-int trajectory_bodies(const Trajectory *run, int frame, Body *bodies, int *numbers) {
+/* The contacts of a step follow from the poses before it. */
+static bool find_step(Trajectory *run, int step, ContactFinder *finder, Body *bodies, int *numbers, Error *error) {
     int count = 0;
     for (int i = 0; i < run->bodies; i++) {
-        const size_t at = trajectory_at(run, frame, i);
-        if (!trajectory_has(run, frame, i)) continue;
+        const size_t at = trajectory_at(run, step - 1, i);
+        if (!trajectory_has(run, step - 1, i)) continue;
         const float mass = run->fixed[i] ? 0 : 1;
         bodies[count] = (Body){.position = run->position[at],
                                .angle = run->angle[at],
@@ -62,12 +63,6 @@ int trajectory_bodies(const Trajectory *run, int frame, Body *bodies, int *numbe
                                .inv_inertia = mass};
         numbers[count++] = i;
     }
-    return count;
-}
-
-/* The contacts of a step follow from the poses before it. */
-static bool find_step(Trajectory *run, int step, ContactFinder *finder, Body *bodies, int *numbers, Error *error) {
-    const int count = trajectory_bodies(run, step - 1, bodies, numbers);
     if (!contact_finder_find(finder, bodies, count, 0, error)) return false;
     const ContactSet *set = &finder->set;
     TrajectoryContact *found = trajectory_add_contacts(run, step, set->contact_count, error);

@@ -230,8 +230,6 @@ static const StudySize quick_size = {.launches = 5,
                                      .timed_launches = 1,
                                      .repetitions = 3};
 
-const StudySize *speed_accuracy_size(bool quick) { return quick ? &quick_size : &full_size; }
-
 typedef struct Run {
     const SpeedAccuracyOptions *options;
     ContenderList contenders;
@@ -371,7 +369,7 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
     if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
         return false;
     bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders, &options->launches,
-                              speed_accuracy_size(options->quick), error);
+                              options->quick ? &quick_size : &full_size, error);
     for (int i = 0; ok && options->begin != NULL && i < run.plan.count; i++) {
         const SpeedAccuracyScene summary = summarise(&run, &run.plan.scenes[i].study);
         options->begin(&summary);

@@ -50,8 +50,6 @@ struct SpeedAccuracyScene {
     SceneSolves solves;
 };
 
-const StudySize *speed_accuracy_size(bool quick);
-
 /* Does the pieces of the study, then writes folder/chart.csv, fills scenes[scene_count] and draws; a shard does its
    pieces only. An interrupted study continues if options, files and program are the same. ERROR_INPUT for an invalid
    option, scene or launch, ERROR_INTERRUPTED if progress stops the study. *pieces tells what was done; it has no plan

@@ -38,7 +38,7 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
 }
 
 /* "scene-net:scene-stack" of "scene-net:network=scenes/networks/scene-stack.npz"; of a program its setting `name`. */
-void chart_line_name(const char *key, char name[CHART_TEXT_SIZE]) {
+static void name_line(const char *key, char name[CHART_TEXT_SIZE]) {
     char text[CHART_FAMILY_SIZE] = "";
     const MethodDescription *method = method_describe(key);
     const char *given = method != NULL && method->external ? strstr(key, ",name=") : NULL;
@@ -142,7 +142,7 @@ bool chart_highlight_check(const char *highlight, const ChartRow *rows, int coun
         for (int i = 0; i < count; i++) {
             ChartLine line = {.method = rows[i].method};
             chart_row_family(&rows[i], line.key);
-            chart_line_name(line.key, line.name);
+            name_line(line.key, line.name);
             name_list_add(&known, line.name);
             found |= is_named(&line, name) || strcmp(line.method, name) == 0;
         }
@@ -280,7 +280,7 @@ static bool add_rows(Chart *chart, const CsvTable *table, const char *scene, con
             chart->line_count++;
             *line = (ChartLine){.method = row->method, .description = method};
             strcpy(line->key, key);
-            chart_line_name(key, line->name);
+            name_line(key, line->name);
             line->competes = method == NULL || method->role == METHOD_COMPETES;
         }
         if (row->protocol != protocol || row->phase == PHASE_REST) continue;

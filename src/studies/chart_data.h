@@ -99,10 +99,6 @@ const char *chart_twin_word(const ChartLine *line);
 /* Whether each number in its setting is what the key's help calls the default. */
 bool chart_mark_is_default(const ChartMark *mark);
 
-/* What a picture calls a line: its key, plain and truncated, without the folders of a network; of a program its setting
-   `name`. */
-void chart_line_name(const char *key, char name[CHART_TEXT_SIZE]);
-
 /* Writes what the picture shows and what it leaves out. named[line]: whether the picture had room for its name. */
 void chart_caption(const Chart *chart, const char *title, const bool *named, char *text, size_t size);
 

@@ -15,14 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-void converged_step_free(ConvergedStep *converged) {
+static void converged_step_free(ConvergedStep *converged) {
     reference_free(&converged->reference);
     reference_free(&converged->other);
     free(converged->contacts);
     *converged = (ConvergedStep){0};
 }
 
-bool converged_step_solve(ConvergedStep *converged, const ContactProblem *problem, bool push_out, Error *error) {
+/* Solves to REFERENCE_TOLERANCE. push_out: with the bias of overlapping contacts. False when memory is short. */
+static bool converged_step_solve(ConvergedStep *converged, const ContactProblem *problem, bool push_out, Error *error) {
     ContactProblem solved = *problem;
     if (!push_out) { /* a negative bias lets a gap close; it stays */
         const size_t count = (size_t)problem->contact_count;
@@ -171,8 +172,9 @@ static bool reserve_scores(StepScores *scores, size_t count) {
            array_reserve((void **)&scores->place, &scores->place_capacity, count, sizeof *scores->place);
 }
 
-bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                     const ReferenceVelocity *reference, bool push_out) {
+/* Adds the step to `frame`, given its solution. push_out: as contact_criteria(). False if out of memory. */
+static bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem,
+                            const ContactSolution *solution, const ReferenceVelocity *reference, bool push_out) {
     if (!reserve_scores(scores, (size_t)scores->count + 1)) return false;
     const SolutionError found = solution_error(problem, solution->velocities, reference);
     const ContactCriteria criteria = contact_criteria(problem, solution, push_out);
@@ -189,7 +191,7 @@ bool step_scores_add(StepScores *scores, int frame, const ContactProblem *proble
     return true;
 }
 
-bool sampling_takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
+static bool takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
     if (phase == PHASE_IMPACT) return true;
     if (phase == PHASE_AFTER) return (frame - tracker->touch - tracker->impact_frames) % sampling->after == 0;
     return frame % sampling->rest == 0;
@@ -264,7 +266,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
         run_log_step(&rollout->log, launched, rollout->world, frame, phase);
         const bool used = sampling != NULL && (scores != NULL || rollout->floors != NULL);
-        if (!used || !sampling_takes(sampling, phase, &tracker, frame)) continue;
+        if (!used || !takes(sampling, phase, &tracker, frame)) continue;
         const ContactProblem *problem = world_problem(rollout->world);
         if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
         const bool found = converged_step_found(&rollout->converged);
@@ -335,7 +337,7 @@ bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sa
         ok = world_copy(before, world, error) && simulate_step(engine, world, &step, error);
         if (!ok) break;
         const Phase phase = phase_next(&tracker, world_problem(world), frame);
-        if (!sampling_takes(sampling, phase, &tracker, frame)) continue;
+        if (!takes(sampling, phase, &tracker, frame)) continue;
         /* The state before the step, and the step's converged velocities, if there are any. */
         ok = array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items) ||
              error_memory(error, "study");

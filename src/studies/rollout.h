@@ -16,18 +16,13 @@
    method that moves overlapping bodies apart without giving them a velocity (no_push_out in its description) solves
    another problem: the same one without the bias that pushes bodies apart. */
 
-/* Zero-initialise; free with converged_step_free. */
+/* Zero-initialise. */
 typedef struct ConvergedStep {
     Reference reference; /* of the last solve: velocities, residual */
     Reference other;     /* from other starts */
     ContactPoint *contacts;
     size_t contact_capacity;
 } ConvergedStep;
-
-void converged_step_free(ConvergedStep *converged);
-
-/* Solves to REFERENCE_TOLERANCE. push_out: with the bias of overlapping contacts. False when memory is short. */
-bool converged_step_solve(ConvergedStep *converged, const ContactProblem *problem, bool push_out, Error *error);
 
 /* Whether the last solve converged. What a bad method made explode does not, and neither do some impacts on hundreds of
    boxes; against that no error is measured. */
@@ -115,17 +110,12 @@ typedef struct StepScores {
     size_t error_capacity, share_capacity, place_capacity;
 } StepScores;
 
-/* Adds the step to `frame`, given its solution. push_out: as contact_criteria(). False if out of memory. */
-bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const ContactSolution *solution,
-                     const ReferenceVelocity *reference, bool push_out);
 void step_scores_free(StepScores *scores);
 
 /* All impact frames are scored; of the frames after and at rest, every n-th: reference solves dominate the run time. */
 typedef struct Sampling {
     int after, rest;
 } Sampling;
-
-bool sampling_takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame);
 
 /* One thread's run in progress; zero-initialise, free with rollout_free. */
 typedef struct Rollout {

@@ -19,7 +19,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error) {
+/* The launches of a scene with a bomb; *count is `standard` if the choice leaves it open. To be freed by the caller.
+   NULL with error set for a table or a family that does not fit the scene, and for launches that launches_check()
+   refuses. */
+static Launch *choose_launches(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error) {
     LaunchTable table = {0};
     if (choice->table != NULL && !launches_read(&table, choice->table, error)) return NULL;
     *count = choice->table != NULL      ? table.count
@@ -61,7 +64,7 @@ static StudySize size_for(const StudySize *full, const Scene *scene) {
 
 static bool try_launch(void *context, int i, Error *error) {
     SceneStudy *study = context;
-    const Scene launched = scene_study_launch(study, i);
+    const Scene launched = launch_scene(study->scene, &study->launches[i]);
     return launch_find_touch(&launched, "engine", &study->striking[i], error);
 }
 
@@ -75,7 +78,7 @@ static bool begin(SceneStudy *study, const char *path, const ContenderList *cont
     for (int i = 0; i < study->contender_count; i++)
         study->no_push_out |= study->contenders[i]->method.kind->description->no_push_out;
     if (!stepper_pool_begin(&study->steppers, study->contender_count, error)) return false;
-    study->launches = launch_choice_make(launches, scene, study->size.launches, &study->launch_count, error);
+    study->launches = choose_launches(launches, scene, study->size.launches, &study->launch_count, error);
     if (study->launches == NULL) return false;
     study->shared_steps = scene->frames;
     for (int i = 0; i < study->launch_count; i++)
@@ -109,10 +112,6 @@ void scene_study_end(SceneStudy *study) {
     free(study->contenders);
     scene_destroy(study->scene);
     *study = (SceneStudy){0};
-}
-
-Scene scene_study_launch(const SceneStudy *study, int launch) {
-    return launch_scene(study->scene, &study->launches[launch]);
 }
 
 int scene_study_timed(const SceneStudy *study) {
@@ -181,7 +180,7 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
     const double converged_share = 0.2;       /* about that of the piece that its converged run takes */
     const double golden = 0.6180339887498949; /* neighbouring launches, which run at once, begin far apart */
     LaunchPiece piece = {.study = study,
-                         .launched = scene_study_launch(study, launch),
+                         .launched = launch_scene(study->scene, &study->launches[launch]),
                          .snapshots = {.no_push_out = study->no_push_out},
                          .first = (int)(fmod(launch * golden, 1) * study->contender_count),
                          .chosen = calloc(count, sizeof *piece.chosen),
@@ -214,7 +213,8 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
         ok = (costs[p] = calloc((size_t)contenders + 1, sizeof *costs[p])) != NULL && ok;
     if (!ok) error_memory(error, "study");
     for (int i = 0; ok && i < count; i++) {
-        launches[i] = scene_study_launch(study, study->striking[(2 * i + 1) * study->striking_count / (2 * count)]);
+        const int launch = study->striking[(2 * i + 1) * study->striking_count / (2 * count)];
+        launches[i] = launch_scene(study->scene, &study->launches[launch]);
         ok = snapshots_add(&frozen, &launches[i], &study->size.frozen, error);
     }
     const TimingOptions options = {.launches = launches,

@@ -23,11 +23,6 @@ typedef struct LaunchChoice {
     int count;         /* of the scene's family; 0: not given */
 } LaunchChoice;
 
-/* The launches of a scene with a bomb; *count is `standard` if the choice leaves it open. To be freed by the caller.
-   NULL with error set for a table or a family that does not fit the scene, and for launches that launches_check()
-   refuses. */
-Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error);
-
 /* One scene of the speed-accuracy study: its launches and the methods that are scored on them. */
 
 typedef struct StudySize {
@@ -55,9 +50,6 @@ typedef struct SceneStudy {
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
                        const LaunchChoice *launches, const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
-
-/* The scene with a launch of the study, as launch_scene(). */
-Scene scene_study_launch(const SceneStudy *study, int launch);
 
 /* The number of launches whose times are measured, spread evenly over those that strike. */
 int scene_study_timed(const SceneStudy *study);

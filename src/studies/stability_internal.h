@@ -47,9 +47,6 @@ typedef struct Tile {
 /* The tile's symbol alone, `width` mm wide. */
 void verdict_draw_symbol(Sketch *sketch, const Tile *tile, double width);
 
-/* Draws all fills, then all symbols. */
-void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size);
-
 /* The grid of a legend's items, row by row; rows are LEGEND_ROW apart. */
 typedef struct LegendPlace {
     double left, top, width; /* mm: left edge and centre height of the first item; column width */

@@ -203,7 +203,8 @@ void verdict_hatch(Sketch *sketch, Point low, Point high, uint32_t ink) {
                     (Point){low.x + fmin(at, wide), low.y + fmax(at - wide, 0)}, &pen);
 }
 
-void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size) {
+/* Draws all fills, then all symbols. */
+static void fill_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size) {
     const double inside = fmin(size.width, size.height) < least_with_seam ? -overlap : seam;
     const double x = size.width / 2 - inside, y = size.height / 2 - inside;
     for (int i = 0; i < count; i++) {
@@ -242,7 +243,7 @@ int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const Le
         plot_text(sketch, (Point){left + legend_tile + name_gap, at.y}, TEXT_LEFT, LEGEND_POINTS,
                   verdict_looks[look].name);
     }
-    verdict_draw_tiles(sketch, tiles, count, (TileSize){.width = legend_tile, .height = legend_tile});
+    fill_tiles(sketch, tiles, count, (TileSize){.width = legend_tile, .height = legend_tile});
     return count;
 }
 
@@ -419,8 +420,8 @@ static void draw_tiles(const Layout *layout, int panel, const PlotPanel *plot) {
                                     .fell = reference >= 0 ? map->fell[panel][x][y] : 0,
                                     .hatched = reference >= 0 &&
                                                verdict_differs(map->looks[panel][x][y], map->looks[reference][x][y])};
-    verdict_draw_tiles(layout->sketch, tiles, count,
-                       (TileSize){layout->cell_x, layout->cell_y, fmin(across * layout->cell_x, up * layout->cell_y)});
+    fill_tiles(layout->sketch, tiles, count,
+               (TileSize){layout->cell_x, layout->cell_y, fmin(across * layout->cell_x, up * layout->cell_y)});
     free(tiles);
 }
 
