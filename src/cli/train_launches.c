@@ -65,9 +65,8 @@ static const Option sain_options[] = {
 static void sain_print_score(void *context, const SainScore *score) {
     (void)context;
     progress_bar_clear();
-    printf("%-8s  %5d  %8zu  %11zu  %7zu  %7.4f  %8.4f  %7.4f  %8.4f\n", sain_form_names[score->form], score->round,
-           score->problems, score->unconverged, score->bodies, score->loss, score->held_out.with,
-           score->held_out.without, score->held_out.constant);
+    printf("%5d  %8zu  %11zu  %7zu  %7.4f  %8.4f  %7.4f  %8.4f\n", score->round, score->problems, score->unconverged,
+           score->bodies, score->loss, score->held_out.with, score->held_out.without, score->held_out.constant);
     fflush(stdout);
 }
 
@@ -76,21 +75,19 @@ static bool sain_run(const TrainRequest *request, Error *error) {
     SainOptions given = {
         .training = {.scenes = scenes, .batch = SAIN_PARTS * BLOCK_ROWS, .on_score = sain_print_score}};
     SainTraining *training = &given.training;
-    SainNetworks networks = {0};
+    SainNetwork network = {0};
     bool ok = train_read(request, &given, error) &&
               read_scenes(request->input, given.more, "--with", scenes, SAIN_SCENES_MAX, &training->scene_count, error);
     if (ok) {
         printf("held-out impacts, velocity error in m/s\n"
-               "engine    round  problems  unconverged   bodies     loss      sain   engine  constant\n");
-        ok = sain_training_run(training, &networks, progress_bar_begin("training"), error);
+               "round  problems  unconverged   bodies     loss      sain   engine  constant\n");
+        ok = sain_training_run(training, &network, progress_bar_begin("training"), error);
         progress_bar_end();
-        train_describe(request, networks.command, sizeof networks.command);
-        ok = ok && sain_networks_write(&networks, request->output, error);
+        train_describe(request, network.command, sizeof network.command);
+        ok = ok && sain_network_write(&network, request->output, error);
     }
-    if (ok)
-        printf("%s%d networks of %d weights -> %s\n", stopped_early(), (int)SAIN_FORMS,
-               sain_weight_count(&networks.forms[0]), request->output);
-    sain_networks_destroy(&networks);
+    if (ok) printf("%s%d weights -> %s\n", stopped_early(), sain_weight_count(&network), request->output);
+    sain_network_destroy(&network);
     for (int i = 0; i < SAIN_SCENES_MAX; i++) scene_destroy(scenes[i]);
     return ok;
 }
@@ -98,8 +95,7 @@ static bool sain_run(const TrainRequest *request, Error *error) {
 const TrainKind train_sain = {
     .name = "sain",
     .input = "SCENE",
-    .summary = "the networks of sain, on launches of one or more scenes: with the engine, without it, and "
-               "with its output shuffled. Prints held-out errors after each round",
+    .summary = "the network of sain, on launches of one or more scenes. Prints held-out errors after each round",
     .file_kind = "sain",
     .options = sain_options,
     .train = sain_run};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fit of a form of sain: the loss and its gradient, normalisation and ranges, steps, errors on other samples. */
+/* The fit of sain: the loss and its gradient, normalisation and ranges, steps, errors on other samples. */
 #include "learning/sain_fit.h"
 
 #include "base/base.h"
@@ -44,15 +44,10 @@ static int block_count(const SainPart *part) {
     return (rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
 }
 
-/* Normalised numbers to row `row` of a block. The form without an engine moves its inputs into the ranges, as at run
-   time; samples that are trained on are within them anyway. */
-static void fill_row(double *values, int row, const float *numbers, int count, const Normalisation *by, bool moves,
-                     const float *low, const float *high) {
-    for (int i = 0; i < count; i++) {
-        float x = numbers[i];
-        if (moves) x = x < low[i] ? low[i] : x > high[i] ? high[i] : x;
-        values[i * BLOCK_ROWS + row] = ((double)x - (double)by->offset[i]) * (double)by->scale[i];
-    }
+/* Normalised numbers to row `row` of a block. */
+static void fill_row(double *values, int row, const float *numbers, int count, const Normalisation *by) {
+    for (int i = 0; i < count; i++)
+        values[i * BLOCK_ROWS + row] = ((double)numbers[i] - (double)by->offset[i]) * (double)by->scale[i];
 }
 
 /* The effects of row r of the part. */
@@ -65,7 +60,6 @@ static double *effects_of(const SainLoss *loss, int r) {
 static bool forward(SainLoss *loss, const SainPart *part, const double *weights) {
     const SainNetwork *network = loss->network;
     const SainSamples *samples = part->samples;
-    const bool moves = samples->form == SAIN_ALONE;
     const int blocks = block_count(part);
     Error error = {0};
     if (!array_reserve((void **)&loss->relation, &loss->block_capacity, (size_t)blocks, sizeof *loss->relation))
@@ -77,8 +71,7 @@ static bool forward(SainLoss *loss, const SainPart *part, const double *weights)
         const SainSample *sample = &samples->items[part->items[i]];
         for (int k = 0; k < sample->rows; k++, r++)
             fill_row(loss->relation[r / BLOCK_ROWS]->values[0], r % BLOCK_ROWS,
-                     samples->rows[sample->first + k].numbers, SAIN_PAIR_INPUTS, &network->relation->input, moves,
-                     network->pair_low, network->pair_high);
+                     samples->rows[sample->first + k].numbers, SAIN_PAIR_INPUTS, &network->relation->input);
     }
     for (int b = 0; b < blocks; b++) network_forward(loss->relation[b], weights);
 
@@ -87,7 +80,7 @@ static bool forward(SainLoss *loss, const SainPart *part, const double *weights)
     double *values = loss->object->values[0];
     for (int i = 0, r = 0; i < part->count; i++) {
         const SainSample *sample = &samples->items[part->items[i]];
-        fill_row(values, i, sample->body, SAIN_BODY_INPUTS, by, moves, network->body_low, network->body_high);
+        fill_row(values, i, sample->body, SAIN_BODY_INPUTS, by);
         for (int e = 0; e < SAIN_EFFECTS; e++) {
             const int at = SAIN_BODY_INPUTS + e;
             double sum = 0;
@@ -284,7 +277,6 @@ static bool is_used(const SainNetwork *network, const SainSamples *samples, cons
                     const double *outputs) {
     bool used = true;
     for (int o = 0; o < SAIN_OUTPUTS; o++) used = used && fabs(outputs[o * BLOCK_ROWS]) <= (double)network->limit[o];
-    if (samples->form == SAIN_ALONE) return used;
     for (int i = 0; i < SAIN_BODY_INPUTS; i++)
         used = used && sample->body[i] >= network->body_low[i] && sample->body[i] <= network->body_high[i];
     for (int r = sample->first; r < sample->first + sample->rows; r++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fit of a form of sain: samples, the loss and its slopes, steps of Adam, errors on other samples.
+/* The fit of sain: samples, the loss and its slopes, steps of Adam, errors on other samples.
 
        sain_normalise(network, &samples), sain_set_ranges(network, &samples);
        sain_first_weights(network, seed, adam.weights);
@@ -26,7 +26,6 @@ typedef struct SainRowInputs {
 
 /* Zero-initialise. */
 typedef struct SainSamples {
-    SainForm form;
     SainSample *items;
     SainRowInputs *rows;
     size_t count, row_count, problems;
@@ -42,7 +41,7 @@ void sain_normalise(SainNetwork *network, const SainSamples *samples);
 /* Sets ranges and limits to those of the samples, a little widened. */
 void sain_set_ranges(SainNetwork *network, const SainSamples *samples);
 
-/* Weights of a form as one vector: those of the relation network, then of the object network. */
+/* Weights as one vector: those of the relation network, then of the object network. */
 int sain_weight_count(const SainNetwork *network);
 
 /* First weights: small random ones; an object network that answers almost 0. */

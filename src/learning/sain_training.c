@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of sain: recorded steps, samples of them, and the rounds of each form. */
+/* Training of sain: recorded steps, samples of them, and the rounds. */
 #include "learning/sain_training.h"
 
 #include "base/base.h"
@@ -26,7 +26,7 @@ static const double first_rate = 0.003;
 
 static bool make_solver(void *context, int i, ContactSolver *solver, Error *error) {
     const SainLaunches *launches = context;
-    if (launches->network != NULL) return sain_make(solver, launches->network, launches->form, error);
+    if (launches->network != NULL) return sain_make(solver, launches->network, error);
     return i % 2 == 0 ? solver_with(solver, &solver_engine, SAIN_ENGINE_SETTINGS, error)
                       : solver_with(solver, &solver_momentum, "k=50", error);
 }
@@ -68,7 +68,7 @@ bool sain_launches_record(const SainLaunches *launches, RecordedSteps *steps, co
 void sain_samples_free(SainSamples *samples) {
     free(samples->items);
     free(samples->rows);
-    *samples = (SainSamples){.form = samples->form};
+    *samples = (SainSamples){.count = 0};
 }
 
 /* The receivers in a view, and their corrections to the converged velocities. */
@@ -108,7 +108,7 @@ bool sain_samples_add(SainSamples *samples, const RecordedSteps *steps, bool imp
         if (!ok) break;
         ContactSolution solution = pair_moment_solution(&moment);
         ok = solver_engine.solve(engine.state, &step->problem, &solution, error) &&
-             ((sain_view_make(&view, &step->problem, solution.velocities, samples->form) &&
+             ((sain_view_make(&view, &step->problem, solution.velocities) &&
                add_view(samples, &view, step->velocities)) ||
               error_memory(error, "sain"));
     }
@@ -122,54 +122,56 @@ enum { REPORT_EVERY = 100 }; /* steps */
 
 typedef struct Trainer {
     const SainTraining *training;
-    SainNetworks *networks;
-    Adam adam;                     /* of the form in training */
-    RecordedSteps first, held_out; /* of the first round */
-    SainSamples samples, held_out_samples;
+    SainNetwork *network;
+    Adam adam;
+    SainSamples samples, held_out;
     SainFit batches;
     ProgressStage stage;
     Progress progress; /* of the stage */
 } Trainer;
 
-/* Adds the samples of a round; ranges, and in the first round the normalisation, follow from the samples. */
-static bool record_round(Trainer *trainer, SainForm form, int round, Error *error) {
+/* Records a round and adds its samples; ranges, and in the first round the normalisation, follow from the samples. */
+static bool record_round(Trainer *trainer, int round, Error *error) {
     const SainTraining *training = trainer->training;
-    SainNetwork *network = &trainer->networks->forms[form];
-    RecordedSteps steps = {0};
-    bool ok;
-    if (round == 0) {
-        sain_samples_free(&trainer->samples);
-        sain_samples_free(&trainer->held_out_samples);
-        trainer->samples.form = trainer->held_out_samples.form = form;
-        ok = sain_samples_add(&trainer->held_out_samples, &trainer->held_out, true, error) &&
-             sain_samples_add(&trainer->samples, &trainer->first, false, error);
-        if (ok) sain_normalise(network, &trainer->samples);
-    } else {
-        const SainLaunches launches = {
-            training->scenes, training->scene_count, training->launches, training->rounds, round, false, network, form};
-        ok = sain_launches_record(&launches, &steps, &trainer->progress, error) &&
-             sain_samples_add(&trainer->samples, &steps, false, error);
-    }
+    SainNetwork *network = trainer->network;
+    RecordedSteps steps = {0}, held_out = {0};
+    const SainLaunches launches = {.scenes = training->scenes,
+                                   .scene_count = training->scene_count,
+                                   .launches = training->launches,
+                                   .rounds = training->rounds,
+                                   .round = round,
+                                   .network = round > 0 ? network : NULL},
+                       others = {.scenes = training->scenes,
+                                 .scene_count = training->scene_count,
+                                 .launches = training->launches / 4 + 1,
+                                 .rounds = 1,
+                                 .held_out = true};
+    bool ok = sain_launches_record(&launches, &steps, &trainer->progress, error);
+    if (round == 0)
+        ok = ok && sain_launches_record(&others, &held_out, &trainer->progress, error) &&
+             sain_samples_add(&trainer->held_out, &held_out, true, error);
+    ok = ok && sain_samples_add(&trainer->samples, &steps, false, error);
     recorded_steps_free(&steps);
+    recorded_steps_free(&held_out);
+    if (ok && trainer->samples.count == 0) return error_input(error, "sain", "no box is touched: more launches needed");
+    if (ok && round == 0) sain_normalise(network, &trainer->samples);
     if (ok) sain_set_ranges(network, &trainer->samples);
     return ok;
 }
 
 /* Fits the samples so far, and scores the result. The rate falls from the first to 0 in equal steps; each round begins
    with half that of the round before, and without moments, as its loss is another. */
-static bool fit_round(Trainer *trainer, SainForm form, int round, Error *error) {
+static bool fit_round(Trainer *trainer, int round, Error *error) {
     const SainTraining *training = trainer->training;
-    SainNetwork *network = &trainer->networks->forms[form];
+    SainNetwork *network = trainer->network;
     Adam *adam = &trainer->adam;
-    const uint64_t seed = training->seed + (uint64_t)((int)form * training->rounds + round + 1) * 1000003;
+    const uint64_t seed = training->seed + (uint64_t)(round + 1) * 1000003;
     double loss, sum = 0;
     int in_sum = 0;
-    if (trainer->samples.count == 0) return error_input(error, "sain", "no box is touched: more launches needed");
-    SainScore score = {.form = form,
-                       .round = round,
+    SainScore score = {.round = round,
                        .problems = trainer->samples.problems,
                        .bodies = trainer->samples.count,
-                       .unconverged = trainer->samples.unconverged + trainer->held_out_samples.unconverged};
+                       .unconverged = trainer->samples.unconverged + trainer->held_out.unconverged};
     bool ok = sain_fit_begin(&trainer->batches, network, &trainer->samples, training->batch, error);
     adam_restart(adam);
     for (int done = 0, all = training->steps; ok && done < all; done++) {
@@ -184,7 +186,7 @@ static bool fit_round(Trainer *trainer, SainForm form, int round, Error *error) 
     }
     sain_set_weights(network, adam->weights);
     if (ok && !trainer->stage.stopped && training->on_score != NULL) {
-        ok = sain_fit_errors(&trainer->batches, adam->weights, &trainer->held_out_samples, &score.held_out, error);
+        ok = sain_fit_errors(&trainer->batches, adam->weights, &trainer->held_out, &score.held_out, error);
         score.loss = sum / in_sum;
         if (ok) training->on_score(training->context, &score);
     }
@@ -192,55 +194,31 @@ static bool fit_round(Trainer *trainer, SainForm form, int round, Error *error) 
     return ok;
 }
 
-static bool begin(Trainer *trainer, Error *error) {
-    const SainTraining *training = trainer->training;
-    for (int f = 0; f < SAIN_FORMS; f++)
-        if (!sain_network_create(&trainer->networks->forms[f], error)) return false;
-    const SainLaunches first = {.scenes = training->scenes,
-                                .scene_count = training->scene_count,
-                                .launches = training->launches,
-                                .rounds = training->rounds},
-                       others = {.scenes = training->scenes,
-                                 .scene_count = training->scene_count,
-                                 .launches = training->launches / 4 + 1,
-                                 .rounds = 1,
-                                 .held_out = true};
-    progress_next_stage(&trainer->stage, 0.05);
-    return adam_create(&trainer->adam, sain_weight_count(&trainer->networks->forms[0]), error) &&
-           sain_launches_record(&first, &trainer->first, &trainer->progress, error) &&
-           sain_launches_record(&others, &trainer->held_out, &trainer->progress, error);
-}
-
 static bool run(Trainer *trainer, Error *error) {
-    if (!begin(trainer, error)) return false;
     const int rounds = trainer->training->rounds;
-    const double share = 0.95 / (SAIN_FORMS * rounds);
-    for (int form = 0; form < SAIN_FORMS; form++) {
-        sain_first_weights(&trainer->networks->forms[form], trainer->training->seed, trainer->adam.weights);
-        for (int round = 0; round < rounds; round++) {
-            progress_next_stage(&trainer->stage, 0.2 * share);
-            bool ok = record_round(trainer, (SainForm)form, round, error);
-            progress_next_stage(&trainer->stage, 0.8 * share);
-            ok = ok && fit_round(trainer, (SainForm)form, round, error);
-            if (!ok && error->kind != ERROR_INTERRUPTED) return false;
-            if (!trainer->stage.stopped) continue;
-            *error = (Error){0};
-            return (form == SAIN_FORMS - 1 && (ok || round > 0)) ||
-                   error_interrupted(error, "sain", "stopped before each of its %d forms had a network", SAIN_FORMS);
-        }
+    if (!sain_network_create(trainer->network, error) ||
+        !adam_create(&trainer->adam, sain_weight_count(trainer->network), error))
+        return false;
+    sain_first_weights(trainer->network, trainer->training->seed, trainer->adam.weights);
+    for (int round = 0; round < rounds; round++) {
+        progress_next_stage(&trainer->stage, 0.2 / rounds);
+        bool ok = record_round(trainer, round, error);
+        progress_next_stage(&trainer->stage, 0.8 / rounds);
+        ok = ok && fit_round(trainer, round, error);
+        if (!ok && (error->kind != ERROR_INTERRUPTED || round == 0)) return false;
+        if (trainer->stage.stopped) break;
     }
+    *error = (Error){0}; /* a later round that was stopped leaves the network of the one before */
     return true;
 }
 
-bool sain_training_run(const SainTraining *training, SainNetworks *networks, const Progress *progress, Error *error) {
-    Trainer trainer = {.training = training, .networks = networks, .stage = {.whole = progress}};
+bool sain_training_run(const SainTraining *training, SainNetwork *network, const Progress *progress, Error *error) {
+    Trainer trainer = {.training = training, .network = network, .stage = {.whole = progress}};
     trainer.progress = (Progress){progress_stage, &trainer.stage};
-    *networks = (SainNetworks){0};
+    *network = (SainNetwork){0};
     const bool ok = run(&trainer, error);
     adam_free(&trainer.adam);
     sain_samples_free(&trainer.samples);
-    sain_samples_free(&trainer.held_out_samples);
-    recorded_steps_free(&trainer.first);
-    recorded_steps_free(&trainer.held_out);
+    sain_samples_free(&trainer.held_out);
     return ok;
 }

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of the networks of sain on launches of scenes. The target is the converged solution of a step minus the
-   engine's, or minus the velocities before the step for the form without engine. The first round records launches run
-   by the engine and, every second, by sweeps with momentum, which stay near the converged motion. Later rounds record
+/* Training of the network of sain on launches of scenes. The target is the converged solution of a step minus the
+   engine's. The first round records launches run by the engine and, every second, by sweeps with momentum, which stay near the converged motion. Later rounds record
    launches run by sain with the network so far, and fit all problems so far. Sources: Ajay et al., "Combining Physical
    Simulators and Object-Based Networks for Control" (2019); Ross, Gordon, Bagnell, "A Reduction of Imitation Learning
    and Structured Prediction to No-Regret Online Learning" (2011).
 
-       SainNetworks networks;
-       bool ok = sain_training_run(&training, &networks, progress, error) &&
-                 sain_networks_write(&networks, "net.npz", error); ... sain_networks_destroy(&networks); */
+       SainNetwork network;
+       bool ok = sain_training_run(&training, &network, progress, error) &&
+                 sain_network_write(&network, "net.npz", error); ... sain_network_destroy(&network); */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -20,7 +19,6 @@
 enum { SAIN_ROUNDS_MAX = 4, SAIN_SCENES_MAX = 8 };
 
 typedef struct SainScore {
-    SainForm form;
     int round;
     size_t problems, bodies; /* trained on */
     size_t unconverged;      /* problems left out of the training and of the score, as the reference did not converge */
@@ -41,10 +39,10 @@ typedef struct SainTraining {
     void *context;
 } SainTraining;
 
-/* Fills networks, which are destroyed by the caller in any case. False with error set if a scene has no family, memory
-   is short, or nothing was recorded. If progress requests a stop, the networks are those so far; ERROR_INTERRUPTED if
-   one of the forms has none. Same bits for any number of threads. */
-bool sain_training_run(const SainTraining *training, SainNetworks *networks, const Progress *progress, Error *error);
+/* Fills the network, which is destroyed by the caller in any case. False with error set if a scene has no family, memory
+   is short, or nothing was recorded. If progress requests a stop, the network is that so far; ERROR_INTERRUPTED if
+   there is none. Same bits for any number of threads. */
+bool sain_training_run(const SainTraining *training, SainNetwork *network, const Progress *progress, Error *error);
 
 /* The launches that a round records, of several scenes: all impact frames, and some of those after and of those at
    rest. */
@@ -54,9 +52,7 @@ typedef struct SainLaunches {
     int launches;               /* of each scene */
     int rounds, round;          /* rounds have different launches, each over the whole family */
     bool held_out;              /* other launches than those of any round */
-    const SainNetwork *network; /* that runs them, in its form; NULL: the engine and, every second launch, sweeps with
-                                   momentum */
-    SainForm form;
+    const SainNetwork *network; /* that runs them; NULL: the engine and, every second launch, sweeps with momentum */
 } SainLaunches;
 
 /* Appends to the steps. Omits those whose reference does not converge (to 1e-6 m/s), and counts them. A launch ends 60

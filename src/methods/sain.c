@@ -6,14 +6,11 @@
 
    for each receiver r and each sender s that touches it (methods/sain_view.h). It is trained on the converged
    solution minus the engine's (learning/sain_training.h). Impulses, the warm start of the next step, stay
-   those of the engine. Two ablations have networks of their own in the same file: engine=off sees the velocities before
-   the step and predicts their whole change, without impulses (an interaction network); engine=shuffled sees, and
-   corrects, what the engine did to another body. Source: Ajay, Bauza, Wu, Fazeli, Tenenbaum, Rodriguez, Kaelbling,
+   those of the engine. Source: Ajay, Bauza, Wu, Fazeli, Tenenbaum, Rodriguez, Kaelbling,
    "Combining Physical Simulators and Object-Based Networks for Control" (2019), arXiv 1904.06580. Their network
    corrects poses of two pushed discs at the rate of a controller; here velocities, as positions follow from them.
 
-   A body whose inputs are beyond those of the training data keeps what the engine did; without an engine its inputs are
-   moved to the ends of their ranges. An answer that is NaN, infinite or larger than in training is discarded.
+   A body whose inputs are beyond those of the training data keeps what the engine did. An answer that is NaN, infinite or larger than in training is discarded.
 
    Fails where a correction depends on bodies further away: a message crosses one contact in a step, an impact the whole
    stack. Corrections are no impulses: they create momentum, and may push boxes into each other. */
@@ -49,28 +46,19 @@ void sain_network_destroy(SainNetwork *network) {
     *network = (SainNetwork){0};
 }
 
-void sain_networks_destroy(SainNetworks *networks) {
-    for (int f = 0; f < SAIN_FORMS; f++) sain_network_destroy(&networks->forms[f]);
-}
-
 void sain_answers_free(SainAnswers *answers) {
     free(answers->arrays.memory);
     *answers = (SainAnswers){0};
 }
 
-/* A NaN counts as outside, and is moved to the lower end. */
-static bool into_range(float *numbers, int stride, int count, const float *low, const float *high, bool clamp) {
-    bool inside = true;
-    for (int i = 0; i < count; i++) {
-        float *x = &numbers[i * stride];
-        if (*x >= low[i] && *x <= high[i]) continue;
-        inside = false;
-        if (clamp) *x = *x > high[i] ? high[i] : low[i];
-    }
-    return inside;
+/* False for a NaN, too. */
+static bool in_range(const float *numbers, int stride, int count, const float *low, const float *high) {
+    for (int i = 0; i < count; i++)
+        if (!(numbers[i * stride] >= low[i] && numbers[i * stride] <= high[i])) return false;
+    return true;
 }
 
-bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp) {
+bool sain_answer(SainAnswers *answers, const SainNetwork *network, const SainView *view) {
     const size_t bodies = (size_t)view->body_count + 1, rows = (size_t)view->row_count + 1,
                  relation = network_batch_scratch(network->relation), object = network_batch_scratch(network->object);
     if (!ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * SAIN_OUTPUTS),
@@ -82,12 +70,10 @@ bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *vie
     const int count = view->body_count;
     for (int b = 0; b < count; b++) {
         const SainBody *body = &view->bodies[b];
-        bool known =
-            into_range(view->body_inputs + b, count, SAIN_BODY_INPUTS, network->body_low, network->body_high, clamp);
-        for (int r = body->first; r < body->first + body->rows; r++)
-            known = into_range(view->pair_inputs + r, view->row_count, SAIN_PAIR_INPUTS, network->pair_low,
-                               network->pair_high, clamp) &&
-                    known;
+        bool known = in_range(view->body_inputs + b, count, SAIN_BODY_INPUTS, network->body_low, network->body_high);
+        for (int r = body->first; known && r < body->first + body->rows; r++)
+            known = in_range(view->pair_inputs + r, view->row_count, SAIN_PAIR_INPUTS, network->pair_low,
+                             network->pair_high);
         answers->known[b] = known;
     }
     if (count == 0) return true;
@@ -110,59 +96,52 @@ bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *vie
     return true;
 }
 
-/* Files of sain: kind "sain", with F_... for each form F = on, off, shuffled. Weights and biases of a network are one
-   vector. */
+/* Files of sain: kind "sain". Weights and biases of a network are one vector. */
 
 static int list_fields(void *of, NetField *fields) {
-    SainNetworks *networks = of;
-    NetField *at = fields;
-    *at++ = (NetField){"command", NPZ_TEXT, 0, {sizeof networks->command}, .data = networks->command};
-    for (int f = 0; f < SAIN_FORMS; f++) {
-        SainNetwork *network = &networks->forms[f];
-        const Network *pair = network->relation, *body = network->object;
-        const struct {
-            const char *name;
-            int count;
-            float *data;
-            const FloatBounds *range;
-        } floats[] = {{"pair_weights", network_parameter_count(pair), pair->weights[0], &float_any},
-                      {"pair_offset", SAIN_PAIR_INPUTS, pair->input.offset, &float_any},
-                      {"pair_scale", SAIN_PAIR_INPUTS, pair->input.scale, &float_positive},
-                      {"body_weights", network_parameter_count(body), body->weights[0], &float_any},
-                      {"body_offset", SAIN_OBJECT_INPUTS, body->input.offset, &float_any},
-                      {"body_scale", SAIN_OBJECT_INPUTS, body->input.scale, &float_positive},
-                      {"pair_low", SAIN_PAIR_INPUTS, network->pair_low, &float_any},
-                      {"pair_high", SAIN_PAIR_INPUTS, network->pair_high, &float_any},
-                      {"body_low", SAIN_BODY_INPUTS, network->body_low, &float_any},
-                      {"body_high", SAIN_BODY_INPUTS, network->body_high, &float_any},
-                      {"limit", SAIN_OUTPUTS, network->limit, &float_not_negative}};
-        for (size_t i = 0; i < sizeof floats / sizeof *floats; i++, at++) {
-            *at = (NetField){"", NPZ_FLOAT32, 1, {floats[i].count}, .data = floats[i].data, .range = floats[i].range};
-            snprintf(at->name, sizeof at->name, "%s_%s", sain_form_names[f], floats[i].name);
-        }
+    SainNetwork *network = of;
+    const Network *pair = network->relation, *body = network->object;
+    const struct {
+        const char *name;
+        int count;
+        float *data;
+        const FloatBounds *range;
+    } floats[] = {{"on_pair_weights", network_parameter_count(pair), pair->weights[0], &float_any},
+                  {"on_pair_offset", SAIN_PAIR_INPUTS, pair->input.offset, &float_any},
+                  {"on_pair_scale", SAIN_PAIR_INPUTS, pair->input.scale, &float_positive},
+                  {"on_body_weights", network_parameter_count(body), body->weights[0], &float_any},
+                  {"on_body_offset", SAIN_OBJECT_INPUTS, body->input.offset, &float_any},
+                  {"on_body_scale", SAIN_OBJECT_INPUTS, body->input.scale, &float_positive},
+                  {"on_pair_low", SAIN_PAIR_INPUTS, network->pair_low, &float_any},
+                  {"on_pair_high", SAIN_PAIR_INPUTS, network->pair_high, &float_any},
+                  {"on_body_low", SAIN_BODY_INPUTS, network->body_low, &float_any},
+                  {"on_body_high", SAIN_BODY_INPUTS, network->body_high, &float_any},
+                  {"on_limit", SAIN_OUTPUTS, network->limit, &float_not_negative}};
+    const int count = sizeof floats / sizeof *floats;
+    fields[0] = (NetField){"command", NPZ_TEXT, 0, {sizeof network->command}, .data = network->command};
+    for (int i = 0; i < count; i++) {
+        fields[1 + i] =
+            (NetField){"", NPZ_FLOAT32, 1, {floats[i].count}, .data = floats[i].data, .range = floats[i].range};
+        snprintf(fields[1 + i].name, sizeof fields->name, "%s", floats[i].name);
     }
-    return (int)(at - fields);
+    return 1 + count;
 }
 
 static const NetFileKind kind = {"sain", SAIN_VERSION, list_fields, NULL, NULL, NULL};
 
-bool sain_networks_write(const SainNetworks *networks, const char *path, Error *error) {
-    return net_file_write(&kind, networks, path, error);
+bool sain_network_write(const SainNetwork *network, const char *path, Error *error) {
+    return net_file_write(&kind, network, path, error);
 }
 
-bool sain_networks_read(SainNetworks *networks, const char *path, Error *error) {
-    *networks = (SainNetworks){0};
-    bool ok = true;
-    for (int f = 0; ok && f < SAIN_FORMS; f++) ok = sain_network_create(&networks->forms[f], error);
-    ok = ok && net_file_read(&kind, networks, path, error);
-    if (!ok) sain_networks_destroy(networks);
+bool sain_network_read(SainNetwork *network, const char *path, Error *error) {
+    const bool ok = sain_network_create(network, error) && net_file_read(&kind, network, path, error);
+    if (!ok) sain_network_destroy(network);
     return ok;
 }
 
 typedef struct Sain {
-    SainNetworks own; /* empty if the network is another's */
+    SainNetwork own; /* empty if the network is another's */
     const SainNetwork *network;
-    SainForm form;
     bool predicts;
     void *engine; /* state of solver_engine */
     SainView view;
@@ -171,17 +150,13 @@ typedef struct Sain {
 
 static const SettingSpec settings[] = {
     {"network", "file of the trained networks (default: the scene's)", SETTING_OWN},
-    {"engine",
-     "on|off|shuffled: what the network knows of the engine: all, nothing, or what it did to another body (default: "
-     "on)",
-     SETTING_OWN},
     {"net", "on|off: off is the engine alone (default: on)", SETTING_BOOL(Sain, predicts)},
     {0}};
 
 static void destroy(void *state) {
     Sain *solver = state;
     if (solver == NULL) return;
-    sain_networks_destroy(&solver->own);
+    sain_network_destroy(&solver->own);
     if (solver->engine != NULL) solver_engine.destroy(solver->engine);
     sain_view_free(&solver->view);
     sain_answers_free(&solver->answers);
@@ -204,31 +179,19 @@ static Sain *make_sain(Error *error) {
 }
 
 static void *create(const Settings *chosen, Error *error) {
-    const char *path = method_network(chosen, NULL, "sain", error), *name = settings_get(chosen, "engine");
+    const char *path = method_network(chosen, NULL, "sain", error);
     Sain *solver = path != NULL ? make_sain(error) : NULL;
     if (solver == NULL) return NULL;
-    NameList known = {0};
-    bool found = name == NULL;
-    for (SainForm f = 0; f < SAIN_FORMS; f++) {
-        name_list_add(&known, sain_form_names[f]);
-        if (name == NULL || strcmp(sain_form_names[f], name) != 0) continue;
-        solver->form = f;
-        found = true;
-    }
-    if ((found || error_unknown(error, "engine", name, "a form of sain", &known)) &&
-        settings_read(chosen, settings, solver, error) && sain_networks_read(&solver->own, path, error)) {
-        solver->network = &solver->own.forms[solver->form];
-        return solver;
-    }
+    solver->network = &solver->own;
+    if (settings_read(chosen, settings, solver, error) && sain_network_read(&solver->own, path, error)) return solver;
     destroy(solver);
     return NULL;
 }
 
-bool sain_make(ContactSolver *solver, const SainNetwork *network, SainForm form, Error *error) {
+bool sain_make(ContactSolver *solver, const SainNetwork *network, Error *error) {
     Sain *state = make_sain(error);
     if (state == NULL) return false;
     state->network = network;
-    state->form = form;
     *solver = (ContactSolver){&solver_sain, state};
     return true;
 }
@@ -243,7 +206,7 @@ static void correct(Sain *solver, const ContactProblem *problem, ContactSolution
         const float *outputs = solver->answers.outputs + (ptrdiff_t)b * SAIN_OUTPUTS;
         const BodyVelocity velocity = sain_corrected(body, outputs), before = solution->velocities[body->body];
         all_known = all_known && solver->answers.known[b];
-        if (!solver->answers.known[b] && solver->form != SAIN_ALONE) continue;
+        if (!solver->answers.known[b]) continue;
         bool usable = isfinite(velocity.linear.x) && isfinite(velocity.linear.y) && isfinite(velocity.angular);
         for (int o = 0; o < SAIN_OUTPUTS; o++) usable = usable && fabsf(outputs[o]) <= solver->network->limit[o];
         if (!usable) {
@@ -260,14 +223,10 @@ static void correct(Sain *solver, const ContactProblem *problem, ContactSolution
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Sain *solver = state;
-    const bool alone = solver->form == SAIN_ALONE && solver->predicts;
-    if (alone)
-        contact_solution_begin(problem, solution);
-    else if (!solver_engine.solve(solver->engine, problem, solution, error))
-        return false;
+    if (!solver_engine.solve(solver->engine, problem, solution, error)) return false;
     if (!solver->predicts) return true;
-    if (!sain_view_make(&solver->view, problem, solution->velocities, solver->form) ||
-        !sain_answer(&solver->answers, solver->network, &solver->view, alone))
+    if (!sain_view_make(&solver->view, problem, solution->velocities) ||
+        !sain_answer(&solver->answers, solver->network, &solver->view))
         return error_memory(error, "sain");
     solution->momentum_error = 0;
     solution->fallbacks = (Fallbacks){0};
@@ -282,7 +241,7 @@ const ContactSolverKind solver_sain = {
                     .settings = settings,
                     .needs_network = true,
                     .twin = "sain:net=off",
-                    .chart = METHOD_RUNS("", "engine=off", "engine=shuffled", "net=off"),
+                    .chart = METHOD_RUNS("", "net=off"),
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create,

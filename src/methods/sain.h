@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The networks of sain, and the method with networks in memory. A relation network answers each row of a view
+/* The network of sain, and the method with a network in memory. A relation network answers each row of a view
    (methods/sain_view.h) with effects; the effects of a receiver's rows are added; an object network answers its own
    state and the sum with its outputs.
 
@@ -23,7 +23,6 @@ enum {
     SAIN_ANSWER_MAX = 100 /* times the scale: larger corrections are not trained */
 };
 
-/* The networks of one form. */
 typedef struct SainNetwork {
     Network *relation; /* SAIN_PAIR_INPUTS to SAIN_EFFECTS */
     Network *object;   /* body inputs, then the sum of effects, to SAIN_OUTPUTS */
@@ -31,24 +30,18 @@ typedef struct SainNetwork {
     float pair_low[SAIN_PAIR_INPUTS], pair_high[SAIN_PAIR_INPUTS];
     float body_low[SAIN_BODY_INPUTS], body_high[SAIN_BODY_INPUTS];
     float limit[SAIN_OUTPUTS];
+    char command[SAIN_COMMAND_SIZE]; /* that trained it */
 } SainNetwork;
-
-/* A file holds the networks of all forms. */
-typedef struct SainNetworks {
-    SainNetwork forms[SAIN_FORMS];
-    char command[SAIN_COMMAND_SIZE]; /* that trained them */
-} SainNetworks;
 
 /* Weights and ranges 0. False with error set when memory is short; destroy it in any case. */
 bool sain_network_create(SainNetwork *network, Error *error);
 void sain_network_destroy(SainNetwork *network);
 
-bool sain_networks_write(const SainNetworks *networks, const char *path, Error *error);
+bool sain_network_write(const SainNetwork *network, const char *path, Error *error);
 
 /* False with error set, and nothing to be destroyed: not such a file, of other widths, or a number that is NaN,
    infinite or out of range. */
-bool sain_networks_read(SainNetworks *networks, const char *path, Error *error);
-void sain_networks_destroy(SainNetworks *networks);
+bool sain_network_read(SainNetwork *network, const char *path, Error *error);
 
 /* Answers to a view. Zero-initialise, free with sain_answers_free. */
 typedef struct SainAnswers {
@@ -60,10 +53,9 @@ typedef struct SainAnswers {
 
 void sain_answers_free(SainAnswers *answers);
 
-/* clamp: inputs beyond the ranges are moved to their ends. False when memory is short. */
-bool sain_answer(SainAnswers *answers, const SainNetwork *network, SainView *view, bool clamp);
+/* False when memory is short. */
+bool sain_answer(SainAnswers *answers, const SainNetwork *network, const SainView *view);
 
-/* The method sain with a network in memory, for training. */
-
-/* The networks remain the caller's and must outlive the solver. False with error set when memory is short. */
-bool sain_make(ContactSolver *solver, const SainNetwork *network, SainForm form, Error *error);
+/* The method sain with a network in memory, for training: the caller's, which must outlive the solver. False with error
+   set when memory is short. */
+bool sain_make(ContactSolver *solver, const SainNetwork *network, Error *error);

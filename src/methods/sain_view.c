@@ -9,8 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *const sain_form_names[SAIN_FORMS + 1] = {"on", "off", "shuffled", NULL};
-
 /* m/s, added to each pace: gravity makes 0.17 in a step. Slower motion counts less and less. */
 static const float slowest = 0.02f;
 /* m. Of the ground, 100 m long, a box feels no more than of one twice its own size. */
@@ -48,28 +46,6 @@ static Vec2 upright_axis(float angle) {
     for (int i = 1; i < 4; i++)
         if (axes[i].x > axes[best].x) best = i;
     return axes[best];
-}
-
-/* Velocities after the engine, as far as the form shows them. */
-static void show_engine(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form) {
-    int moving = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        view->changed[i] = velocity_before(&problem->bodies[i]);
-        if (problem_body_moves(&problem->bodies[i])) view->receivers[moving++] = i;
-    }
-    if (form == SAIN_ALONE) return;
-    for (int m = 0; m < moving; m++) {
-        const int to = view->receivers[m],
-                  from = view->receivers[form == SAIN_WITH_ENGINE ? m : (m + moving / 2) % moving];
-        const BodyVelocity before = velocity_before(&problem->bodies[from]);
-        BodyVelocity *velocity = &view->changed[to];
-        if (form == SAIN_WITH_ENGINE) {
-            *velocity = engine[to];
-            continue;
-        }
-        velocity->linear = vec2_add(velocity->linear, vec2_sub(engine[from].linear, before.linear));
-        velocity->angular += engine[from].angular - before.angular;
-    }
 }
 
 /* Receivers in the order of the problem, with the numbers of their rows. */
@@ -143,10 +119,9 @@ static Change change_of(const SainView *view, const ContactProblem *problem, int
     return change_since(&before, &view->changed[i], seen_by);
 }
 
-/* Pace: of all velocities that the inputs divide by it. Scale: with an engine, only what moves between bodies that
-   touch, and what the engine did beyond the impulses of the step before. At rest neither is left, so a stack at rest
-   stays at rest. */
-static void find_pace(SainView *view, const ContactProblem *problem, SainForm form, SainBody *body) {
+/* Pace: of all velocities that the inputs divide by it. Scale: only what moves between bodies that touch, and what the
+   engine did beyond the impulses of the step before. At rest neither is left, so a stack at rest stays at rest. */
+static void find_pace(SainView *view, const ContactProblem *problem, SainBody *body) {
     const float radius = body->radius;
     float motion = square_of(change_of(view, problem, body->body, body)),
           unrest = square_of(change_since(&view->warmed[body->body], &body->base, body));
@@ -162,13 +137,12 @@ static void find_pace(SainView *view, const ContactProblem *problem, SainForm fo
             unrest += square_of(change_since(&view->warmed[row->sender], &view->changed[row->sender], body));
     }
     body->pace = slowest + sqrtf(motion);
-    const float scale = form == SAIN_WITH_ENGINE ? sqrtf(unrest) : body->pace;
-    body->scale = fastest * limited(scale, fastest);
+    body->scale = fastest * limited(sqrtf(unrest), fastest);
 }
 
 static float limited_size(float size) { return size < size_max ? size : size_max; }
 
-static void fill_pair(const SainView *view, const ContactProblem *problem, SainForm form, const SainBody *body, int r) {
+static void fill_pair(const SainView *view, const ContactProblem *problem, const SainBody *body, int r) {
     const SainViewRow *row = &view->rows[r];
     const ProblemBody *receiver = &problem->bodies[row->receiver], *sender = &problem->bodies[row->sender];
     const float pace = body->pace, radius = body->radius;
@@ -176,7 +150,6 @@ static void fill_pair(const SainView *view, const ContactProblem *problem, SainF
                velocity = sain_into_frame(body, sender->velocity), before = sain_into_frame(body, row->before),
                after = sain_into_frame(body, row->after);
     const Change own = change_of(view, problem, row->receiver, body), its = change_of(view, problem, row->sender, body);
-    const bool engine = form != SAIN_ALONE;
     const float inputs[SAIN_PAIR_INPUTS] = {
         at.x,
         at.y,
@@ -196,9 +169,9 @@ static void fill_pair(const SainView *view, const ContactProblem *problem, SainF
         before.x / pace,
         before.y / pace,
         radius * (sender->angular_velocity - receiver->angular_velocity) / pace,
-        engine ? after.x / pace : 0,
-        engine ? after.y / pace : 0,
-        engine ? radius * (view->changed[row->sender].angular - body->base.angular) / pace : 0,
+        after.x / pace,
+        after.y / pace,
+        radius * (view->changed[row->sender].angular - body->base.angular) / pace,
         its.linear.x / pace,
         its.linear.y / pace,
         its.spin / pace,
@@ -230,15 +203,18 @@ static void fill_body(const SainView *view, const ContactProblem *problem, int b
     for (int i = 0; i < SAIN_BODY_INPUTS; i++) view->body_inputs[i * view->body_count + b] = inputs[i];
 }
 
-bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form) {
+bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine) {
     const size_t bodies = (size_t)problem->body_count + 1, rows = 2 * (size_t)problem->contact_count + 1;
     if (!ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->bodies, bodies), ARRAY_PART(view->changed, bodies),
                              ARRAY_PART(view->warmed, bodies), ARRAY_PART(view->receivers, bodies),
                              ARRAY_PART(view->rows, rows), ARRAY_PART(view->pair_inputs, rows * SAIN_PAIR_INPUTS),
                              ARRAY_PART(view->body_inputs, bodies * SAIN_BODY_INPUTS)))
         return false;
-    show_engine(view, problem, engine, form);
-    for (int i = 0; i < problem->body_count; i++) view->warmed[i] = velocity_before(&problem->bodies[i]);
+    for (int i = 0; i < problem->body_count; i++) {
+        const BodyVelocity before = velocity_before(&problem->bodies[i]);
+        view->changed[i] = problem_body_moves(&problem->bodies[i]) ? engine[i] : before;
+        view->warmed[i] = before;
+    }
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         contact_push(view->warmed, contact, problem->bodies,
@@ -254,11 +230,11 @@ bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVel
         add_row(view, problem, first, points, true);
         add_row(view, problem, first, points, false);
     }
-    for (int b = 0; b < view->body_count; b++) find_pace(view, problem, form, &view->bodies[b]);
+    for (int b = 0; b < view->body_count; b++) find_pace(view, problem, &view->bodies[b]);
     for (int b = 0; b < view->body_count; b++) {
         const SainBody *body = &view->bodies[b];
         fill_body(view, problem, b);
-        for (int r = body->first; r < body->first + body->rows; r++) fill_pair(view, problem, form, body, r);
+        for (int r = body->first; r < body->first + body->rows; r++) fill_pair(view, problem, body, r);
     }
     return true;
 }

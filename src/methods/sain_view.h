@@ -20,17 +20,7 @@
 
 #include <stddef.h>
 
-/* What a network knows of the engine. */
-typedef enum SainForm {
-    SAIN_WITH_ENGINE, /* its change of each body's velocity */
-    SAIN_ALONE,       /* nothing: an interaction network; the inputs on the engine are 0 */
-    SAIN_SHUFFLED,    /* its change of another body's velocity: that of the moving body half a list further on */
-    SAIN_FORMS
-} SainForm;
-
 #define SAIN_ENGINE_SETTINGS "k=10" /* of the method engine: as Box2D's own standard */
-
-extern const char *const sain_form_names[SAIN_FORMS + 1]; /* "on", "off", "shuffled"; ends in NULL */
 
 enum { SAIN_PAIR_INPUTS = 27, SAIN_BODY_INPUTS = 10, SAIN_OUTPUTS = 3 };
 
@@ -51,7 +41,7 @@ typedef struct SainView {
     float *pair_inputs; /* [SAIN_PAIR_INPUTS, row_count] */
     float *body_inputs; /* [SAIN_BODY_INPUTS, body_count] */
     /* while it is made: */
-    BodyVelocity *changed; /* [bodies of the problem] after what the engine did, as far as the form shows it */
+    BodyVelocity *changed; /* [bodies of the problem] after what the engine did */
     BodyVelocity *warmed;  /* [bodies of the problem] after the impulses of the step before */
     int *receivers;        /* [bodies of the problem] index in bodies, or -1 */
     struct SainViewRow *rows;
@@ -60,9 +50,9 @@ typedef struct SainView {
 
 void sain_view_free(SainView *view);
 
-/* Looks at a problem. engine: its velocities [problem->body_count] after the step; not used by SAIN_ALONE. False
-   when memory is short. Allocates nothing for a problem that is not larger than one before. */
-bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine, SainForm form);
+/* Looks at a problem. engine: its velocities [problem->body_count] after the step. False when memory is short.
+   Allocates nothing for a problem that is not larger than one before. */
+bool sain_view_make(SainView *view, const ContactProblem *problem, const BodyVelocity *engine);
 
 /* A vector of the world in the receiver's frame, and back. */
 static inline Vec2 sain_into_frame(const SainBody *body, Vec2 v) {

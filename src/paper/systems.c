@@ -25,8 +25,6 @@ static const struct {
               {"rival", "momentum:k=20"},
               {"rival", "interior"},
               {"sain", "sain"},
-              {"sain", "sain:engine=off"},
-              {"sain", "sain:engine=shuffled"},
               {"sain", "sain:net=off"},
               {"hybrid", "hybrid"},
               {"hybrid", "hybrid:net=off"},

@@ -215,7 +215,7 @@ static bool rank(Chart *chart, const ChartLook *look) {
     colour(chart, first_of(chart, "scene-net"));
     for (int i = 0; i < chart->line_count; i++)
         if (chart->lines[i].rank == CHART_COLOURED) colour(chart, find_twin(chart, &chart->lines[i]));
-    /* Lines of a learned method with a word in its setting, "sain:engine=off", are there to be compared with it. */
+    /* Lines of a learned method with a word in its setting, "gns:net=off", are there to be compared with it. */
     for (int i = 0; i < chart->line_count; i++) {
         ChartLine *line = &chart->lines[i];
         const int first = first_of(chart, line->method);

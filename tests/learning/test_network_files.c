@@ -23,11 +23,8 @@ static bool copy_scene_net(const char *from, const char *to, Error *error) {
 }
 
 static bool copy_sain(const char *from, const char *to, Error *error) {
-    SainNetworks networks;
-    if (!sain_networks_read(&networks, from, error)) return false;
-    const bool ok = to == NULL || sain_networks_write(&networks, to, error);
-    sain_networks_destroy(&networks);
-    return ok;
+    OWN(SainNetwork) network;
+    return sain_network_read(&network, from, error) && (to == NULL || sain_network_write(&network, to, error));
 }
 
 static bool copy_hybrid(const char *from, const char *to, Error *error) {
@@ -151,8 +148,8 @@ TEST(what_no_network_has_is_refused) {
         {SCENE_NET, "slot_a", .shape = {SLOTS_MAX + 1}, .text = "20001 slots"},
         {SCENE_NET, "warm_rows", .shape = {0, 24}, .text = "a width"},
         {SCENE_NET, "scene", .word = "\33[2J", .text = "control character U+001B"},
-        {SAIN, "shuffled_body_scale", 1, 0, .text = "shuffled_body_scale"},
-        {SAIN, "off_limit", 0, -1, .text = "off_limit"},
+        {SAIN, "on_body_scale", 1, 0, .text = "on_body_scale"},
+        {SAIN, "on_limit", 0, -1, .text = "on_limit"},
         {HYBRID, "tolerance", 0, 0, .text = "tolerance"},
         {HYBRID, "reach", 1, -1, .text = "reach: number 1 is -1"},
         {HYBRID, "launches", 0, -1, .text = "launches is -1; expected at least 0"},

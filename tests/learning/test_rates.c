@@ -58,22 +58,22 @@ TEST(the_rate_of_subspace_falls_faster) {
 }
 
 typedef struct Biases {
-    const SainNetworks *networks;
+    const SainNetwork *network;
     int rounds;
-    float last[2][SAIN_OUTPUTS]; /* of the form with the engine, after each round */
+    float last[2][SAIN_OUTPUTS]; /* after each round */
 } Biases;
 
 static void keep_biases(void *context, const SainScore *score) {
     Biases *biases = context;
-    const Network *object = biases->networks->forms[0].object;
-    if (score->form == 0)
-        memcpy(biases->last[biases->rounds++], object->biases[object->layers - 1], sizeof *biases->last);
+    const Network *object = biases->network->object;
+    (void)score;
+    memcpy(biases->last[biases->rounds++], object->biases[object->layers - 1], sizeof *biases->last);
 }
 
 TEST(each_round_of_sain_begins_with_half_the_rate) {
     OWN(Scene) *scene = scene_named("single");
-    OWN(SainNetworks) networks;
-    Biases biases = {.networks = &networks};
+    OWN(SainNetwork) network;
+    Biases biases = {.network = &network};
     const SainTraining training = {.scenes = &scene,
                                    .scene_count = 1,
                                    .launches = 2,
@@ -84,7 +84,7 @@ TEST(each_round_of_sain_begins_with_half_the_rate) {
                                    .on_score = keep_biases,
                                    .context = &biases};
     static const float none[SAIN_OUTPUTS];
-    assert_ok(sain_training_run(&training, &networks, NULL, &error), error);
+    assert_ok(sain_training_run(&training, &network, NULL, &error), error);
     assert_int_equal(biases.rounds, 2);
     const double first = largest_change(biases.last[0], none, SAIN_OUTPUTS),
                  second = largest_change(biases.last[1], biases.last[0], SAIN_OUTPUTS);

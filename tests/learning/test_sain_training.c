@@ -8,14 +8,14 @@
 
 static Scene *scene;
 
-/* Of the form with the engine in the first round. */
+/* Of the first round. */
 static void keep_score(void *context, const SainScore *score) {
-    if (score->form == 0 && score->round == 0) *(SainScore *)context = *score;
+    if (score->round == 0) *(SainScore *)context = *score;
 }
 
 static SainScore scored;
 
-static bool train(SainNetworks *networks, const Progress *progress, Error *error) {
+static bool train(SainNetwork *network, const Progress *progress, Error *error) {
     const SainTraining training = {.scenes = &scene,
                                    .scene_count = 1,
                                    .launches = 2,
@@ -25,7 +25,7 @@ static bool train(SainNetworks *networks, const Progress *progress, Error *error
                                    .seed = 4,
                                    .on_score = keep_score,
                                    .context = &scored};
-    return sain_training_run(&training, networks, progress, error);
+    return sain_training_run(&training, network, progress, error);
 }
 
 static int reports;
@@ -36,31 +36,31 @@ static bool count_reports(void *context, double done, double total) {
     return true;
 }
 
-/* In the last report each form has a network. */
-TEST(a_stopped_training_keeps_its_networks_once_each_form_has_one) {
-    OWN(SainNetworks) networks;
+/* In the last report there is a network; in the first, launches are recorded. */
+TEST(a_stopped_training_keeps_its_network_once_it_has_one) {
+    OWN(SainNetwork) network;
     scene = scene_named("single");
-    assert_ok(train(&networks, &(Progress){count_reports, NULL}, &error), error);
-    sain_networks_destroy(&networks);
+    assert_ok(train(&network, &(Progress){count_reports, NULL}, &error), error);
+    sain_network_destroy(&network);
     int left = reports;
-    assert_ok(train(&networks, &(Progress){stop_at, &left}, &error), error);
-    sain_networks_destroy(&networks);
-    left = reports / 2;
-    assert_false(train(&networks, &(Progress){stop_at, &left}, &error));
-    assert_error(error, ERROR_INTERRUPTED, "sain: error: stopped before each of its 3 forms had a network");
+    assert_ok(train(&network, &(Progress){stop_at, &left}, &error), error);
+    sain_network_destroy(&network);
+    left = 1;
+    assert_false(train(&network, &(Progress){stop_at, &left}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "launches: error: stopped after");
     scene_destroy(scene);
 }
 
 TEST(scores_are_of_held_out_launches) {
-    OWN(SainNetworks) networks;
+    OWN(SainNetwork) network;
     scene = scene_named("single");
-    assert_ok(train(&networks, NULL, &error), error);
+    assert_ok(train(&network, NULL, &error), error);
     /* Without a correction its error is the correction itself: that of launches which were not trained on. */
     for (int held_out = 0; held_out < 2; held_out++) {
         const SainLaunches launches = {
             .scenes = &scene, .scene_count = 1, .launches = 1, .rounds = held_out ? 1 : 2, .held_out = held_out == 1};
         OWN(RecordedSteps) steps = {0};
-        SainSamples samples = {.form = scored.form};
+        SainSamples samples = {0};
         assert_ok(sain_launches_record(&launches, &steps, NULL, &error), error);
         assert_ok(sain_samples_add(&samples, &steps, true, &error), error);
         double sum = 0;

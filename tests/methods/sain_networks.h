@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Networks of sain with any weights, which know all states. */
+/* A network of sain with any weights, which knows all states. */
 #pragma once
 #include "testing.h"
 
@@ -22,9 +22,4 @@ static inline void make_sain_network(SainNetwork *network, uint32_t *seed, float
     for (int i = 0; i < relation; i++) network->relation->weights[0][i] = uniform(seed, -size, size);
     for (int i = 0; i < object; i++) network->object->weights[0][i] = uniform(seed, -size, size);
     let_know_everything(network);
-}
-
-static inline void make_sain_networks(SainNetworks *networks, uint32_t *seed, float size) {
-    *networks = (SainNetworks){.command = "test"};
-    for (int f = 0; f < SAIN_FORMS; f++) make_sain_network(&networks->forms[f], seed, size);
 }

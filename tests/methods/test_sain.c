@@ -13,11 +13,10 @@ static void fill_heap(RandomProblem *random, uint32_t *seed, int run) {
     for (int i = 0; i < random->problem.body_count; i++) random->bodies[i].size = vec2(1, 1);
 }
 
-static void solve_by(const SainNetwork *network, SainForm form, const ContactProblem *problem,
-                     ContactSolution *solution) {
+static void solve_by(const SainNetwork *network, const ContactProblem *problem, ContactSolution *solution) {
     Error error = {0};
     ContactSolver solver;
-    assert_ok(sain_make(&solver, network, form, &error), error);
+    assert_ok(sain_make(&solver, network, &error), error);
     assert_ok(solver.kind->solve(solver.state, problem, solution, &error), error);
     free_solver(&solver);
 }
@@ -32,23 +31,21 @@ static bool is_finite(const ContactProblem *problem, const ContactSolution *solu
 
 TEST(without_its_network_it_is_the_engine) {
     static RandomProblem random;
-    static const char *const forms[] = {"on", "off", "shuffled"};
     uint32_t seed = 5;
-    OWN(SainNetworks) networks;
+    OWN(SainNetwork) network;
     const char *path = temporary_path("sain.npz");
-    make_sain_networks(&networks, &seed, 1);
-    assert_ok(sain_networks_write(&networks, path, &error), error);
+    make_sain_network(&network, &seed, 1);
+    assert_ok(sain_network_write(&network, path, &error), error);
     for (int run = 0; run < RUNS; run++) {
         fill_heap(&random, &seed, run);
         OWN(ContactSolution) found = make_solution(&random.problem), engine = make_solution(&random.problem);
         solve_with(&solver_engine, "k=10", &random.problem, &engine);
-        const char *settings = printed("network=%s,net=off,engine=%s", path, forms[run % 3]);
-        solve_with(&solver_sain, settings, &random.problem, &found);
+        solve_with(&solver_sain, printed("network=%s,net=off", path), &random.problem, &found);
         assert_same_bits(&random.problem, &found, &engine, "net=off");
     }
 }
 
-/* Impulses stay those of the engine, velocities do not; without an engine there are no impulses. */
+/* Impulses stay those of the engine, velocities do not. */
 TEST(a_network_corrects_velocities_only) {
     static RandomProblem random;
     uint32_t seed = 6;
@@ -58,19 +55,13 @@ TEST(a_network_corrects_velocities_only) {
     OWN(ContactSolution) engine = make_solution(&random.problem), found = make_solution(&random.problem);
     solve_with(&solver_engine, "k=10", &random.problem, &engine);
     const size_t impulses = (size_t)random.problem.contact_count * sizeof *engine.impulses;
-    for (SainForm form = 0; form < SAIN_FORMS; form++) {
-        solve_by(&network, form, &random.problem, &found);
-        assert_true(memcmp(found.velocities, engine.velocities,
-                           (size_t)random.problem.body_count * sizeof *found.velocities) != 0);
-        assert_true(found.momentum_error > 0);
-        if (form == SAIN_ALONE)
-            for (int i = 0; i < random.problem.contact_count; i++)
-                assert_true(found.impulses[i].normal == 0 && found.impulses[i].tangent == 0);
-        else
-            assert_memory_equal(found.impulses, engine.impulses, impulses);
-        assert_int_equal(found.fallbacks.not_finite, 0);
-        assert_int_equal(found.fallbacks.beyond_training, 0);
-    }
+    solve_by(&network, &random.problem, &found);
+    assert_true(
+        memcmp(found.velocities, engine.velocities, (size_t)random.problem.body_count * sizeof *found.velocities) != 0);
+    assert_true(found.momentum_error > 0);
+    assert_memory_equal(found.impulses, engine.impulses, impulses);
+    assert_int_equal(found.fallbacks.not_finite, 0);
+    assert_int_equal(found.fallbacks.beyond_training, 0);
 }
 
 /* Closed form: the sum of mass times correction. */
@@ -82,7 +73,7 @@ TEST(created_momentum_is_that_of_the_corrections) {
     fill_heap(&random, &seed, 9);
     OWN(ContactSolution) engine = make_solution(&random.problem), found = make_solution(&random.problem);
     solve_with(&solver_engine, "k=10", &random.problem, &engine);
-    solve_by(&network, SAIN_WITH_ENGINE, &random.problem, &found);
+    solve_by(&network, &random.problem, &found);
     double sum = 0;
     for (int i = 0; i < random.problem.body_count; i++) {
         if (random.bodies[i].inv_mass == 0.0f) continue;
@@ -104,12 +95,9 @@ TEST(states_beyond_training_are_left_to_the_engine) {
         if (random.problem.contact_count == 0) continue;
         OWN(ContactSolution) engine = make_solution(&random.problem), found = make_solution(&random.problem);
         solve_with(&solver_engine, "k=10", &random.problem, &engine);
-        solve_by(&network, SAIN_WITH_ENGINE, &random.problem, &found);
+        solve_by(&network, &random.problem, &found);
         assert_same_bits(&random.problem, &found, &engine, "beyond training");
         assert_int_equal(found.fallbacks.beyond_training, 1);
-        solve_by(&network, SAIN_ALONE, &random.problem, &found);
-        assert_int_equal(found.fallbacks.beyond_training, 1);
-        assert_true(is_finite(&random.problem, &found));
     }
     sain_network_destroy(&network);
 }
@@ -124,18 +112,15 @@ TEST(useless_answers_are_discarded) {
     for (int run = 0; run < RUNS; run++) {
         fill_heap(&random, &seed, run);
         OWN(ContactSolution) found = make_solution(&random.problem);
-        for (SainForm form = 0; form < SAIN_FORMS; form++) {
-            solve_by(&network, form, &random.problem, &found);
-            assert_true(is_finite(&random.problem, &found));
-            discarded += found.fallbacks.not_finite;
-        }
+        solve_by(&network, &random.problem, &found);
+        assert_true(is_finite(&random.problem, &found));
+        discarded += found.fallbacks.not_finite;
     }
     assert_true(discarded > 20);
 }
 
 TEST(settings_are_checked) {
     assert_settings_refused(&solver_sain, "", "names no network");
-    assert_settings_refused(&solver_sain, "network=x.npz,engine=shufled", "did you mean 'shuffled'");
     assert_settings_refused(&solver_sain, "network=/nowhere/x.npz", "/nowhere/x.npz");
 }
 

@@ -86,13 +86,13 @@ static void renumber(Problem *to, const Problem *from) {
 }
 
 /* Velocities of all bodies, the answers added. */
-static void answer(const Problem *p, const SainNetwork *network, SainForm form, BodyVelocity *velocities) {
+static void answer(const Problem *p, const SainNetwork *network, BodyVelocity *velocities) {
     OWN(SainView) view = {0};
     SainAnswers answers = {0};
     for (int i = 0; i < BODIES; i++) velocities[i] = p->engine[i];
-    assert_true(sain_view_make(&view, &p->problem, form == SAIN_ALONE ? NULL : p->engine, form));
+    assert_true(sain_view_make(&view, &p->problem, p->engine));
     assert_int_equal(view.body_count, BODIES - 1);
-    assert_true(sain_answer(&answers, network, &view, false));
+    assert_true(sain_answer(&answers, network, &view));
     for (int b = 0; b < view.body_count; b++) {
         assert_true(answers.known[b]);
         velocities[view.bodies[b].body] = sain_corrected(&view.bodies[b], answers.outputs + b * SAIN_OUTPUTS);
@@ -105,18 +105,15 @@ TEST(numbers_of_bodies_do_not_matter) {
     uint32_t seed = 3;
     OWN(SainNetwork) network;
     make_sain_network(&network, &seed, 0.4f);
-    /* Not shuffled: whose change a body is shown depends on the numbers. */
-    for (SainForm form = SAIN_WITH_ENGINE; form <= SAIN_ALONE; form++) {
-        BodyVelocity first[BODIES], second[BODIES];
-        fill(&problem, 7);
-        renumber(&other, &problem);
-        answer(&problem, &network, form, first);
-        answer(&other, &network, form, second);
-        for (int i = 0; i < BODIES; i++) {
-            assert_near(first[i].linear.x, second[BODIES - 1 - i].linear.x, 1e-4);
-            assert_near(first[i].linear.y, second[BODIES - 1 - i].linear.y, 1e-4);
-            assert_near(first[i].angular, second[BODIES - 1 - i].angular, 3e-4);
-        }
+    BodyVelocity first[BODIES], second[BODIES];
+    fill(&problem, 7);
+    renumber(&other, &problem);
+    answer(&problem, &network, first);
+    answer(&other, &network, second);
+    for (int i = 0; i < BODIES; i++) {
+        assert_near(first[i].linear.x, second[BODIES - 1 - i].linear.x, 1e-4);
+        assert_near(first[i].linear.y, second[BODIES - 1 - i].linear.y, 1e-4);
+        assert_near(first[i].angular, second[BODIES - 1 - i].angular, 3e-4);
     }
 }
 
@@ -131,18 +128,16 @@ TEST(answers_turn_with_the_scene) {
     network.body_low[0] = -FLT_MAX;
     for (int h = 0; h < SAIN_HIDDEN; h++) /* the tilt itself is an input */
         network.object->weights[0][h * SAIN_OBJECT_INPUTS] = 0;
-    for (SainForm form = 0; form < SAIN_FORMS; form++) {
-        BodyVelocity before[BODIES], after[BODIES];
-        fill(&problem, 9);
-        answer(&problem, &network, form, before);
-        turn(&problem, angle);
-        answer(&problem, &network, form, after);
-        for (int i = 1; i < BODIES; i++) {
-            const Vec2 expected = turned(before[i].linear, angle);
-            assert_near(after[i].linear.x, expected.x, 2e-4);
-            assert_near(after[i].linear.y, expected.y, 2e-4);
-            assert_near(after[i].angular, before[i].angular, 5e-4);
-        }
+    BodyVelocity before[BODIES], after[BODIES];
+    fill(&problem, 9);
+    answer(&problem, &network, before);
+    turn(&problem, angle);
+    answer(&problem, &network, after);
+    for (int i = 1; i < BODIES; i++) {
+        const Vec2 expected = turned(before[i].linear, angle);
+        assert_near(after[i].linear.x, expected.x, 2e-4);
+        assert_near(after[i].linear.y, expected.y, 2e-4);
+        assert_near(after[i].angular, before[i].angular, 5e-4);
     }
 }
 
@@ -150,41 +145,18 @@ TEST(answers_reach_their_target) {
     static Problem problem;
     OWN(SainView) view = {0};
     fill(&problem, 1);
-    for (SainForm form = 0; form < SAIN_FORMS; form++) {
-        assert_true(sain_view_make(&view, &problem.problem, problem.engine, form));
-        for (int b = 0; b < view.body_count; b++) {
-            const SainBody *body = &view.bodies[b];
-            double target[SAIN_OUTPUTS];
-            float outputs[SAIN_OUTPUTS];
-            sain_target(body, 1, -2, 3, target);
-            for (int o = 0; o < SAIN_OUTPUTS; o++) outputs[o] = (float)(target[o] / (double)body->scale);
-            const BodyVelocity velocity = sain_corrected(body, outputs);
-            assert_near(velocity.linear.x, 1, 1e-5);
-            assert_near(velocity.linear.y, -2, 1e-5);
-            assert_near(velocity.angular, 3, 1e-4);
-        }
-    }
-}
-
-/* Each moving body is shown the change of another one, and all changes are shown. */
-TEST(shuffling_permutes_changes) {
-    static Problem problem;
-    OWN(SainView) view = {0};
-    int same = 0, found = 0;
-    fill(&problem, 2);
-    assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_SHUFFLED));
+    assert_true(sain_view_make(&view, &problem.problem, problem.engine));
     for (int b = 0; b < view.body_count; b++) {
-        const int to = view.bodies[b].body;
-        const Vec2 change = vec2_sub(view.bodies[b].base.linear, problem.bodies[to].velocity);
-        for (int i = 1; i < BODIES; i++) {
-            const Vec2 off = vec2_sub(change, vec2_sub(problem.engine[i].linear, problem.bodies[i].velocity));
-            if (vec2_dot(off, off) > 1e-8f) continue;
-            found++;
-            same += i == to;
-        }
+        const SainBody *body = &view.bodies[b];
+        double target[SAIN_OUTPUTS];
+        float outputs[SAIN_OUTPUTS];
+        sain_target(body, 1, -2, 3, target);
+        for (int o = 0; o < SAIN_OUTPUTS; o++) outputs[o] = (float)(target[o] / (double)body->scale);
+        const BodyVelocity velocity = sain_corrected(body, outputs);
+        assert_near(velocity.linear.x, 1, 1e-5);
+        assert_near(velocity.linear.y, -2, 1e-5);
+        assert_near(velocity.angular, 3, 1e-4);
     }
-    assert_int_equal(found, BODIES - 1);
-    assert_int_equal(same, 0);
 }
 
 /* What touches nothing is not seen; a problem without contacts has no receivers. */
@@ -197,9 +169,9 @@ TEST(an_empty_problem_is_seen) {
     fill(&problem, 2);
     make_sain_network(&network, &seed, 1);
     problem.problem.contact_count = 0;
-    assert_true(sain_view_make(&view, &problem.problem, problem.engine, SAIN_WITH_ENGINE));
+    assert_true(sain_view_make(&view, &problem.problem, problem.engine));
     assert_int_equal(view.body_count, 0);
-    assert_true(sain_answer(&answers, &network, &view, true));
+    assert_true(sain_answer(&answers, &network, &view));
     sain_answers_free(&answers);
 }
 
@@ -219,7 +191,7 @@ TEST(a_pair_has_its_inputs_by_hand) {
     p.engine[0].linear.x = 2;
     p.engine[1].linear.x = 4;
     OWN(SainView) view = {0};
-    assert_true(sain_view_make(&view, &p.problem, p.engine, SAIN_WITH_ENGINE));
+    assert_true(sain_view_make(&view, &p.problem, p.engine));
     assert_int_equal(view.row_count, 2);
     const SainBody *body = &view.bodies[1];
     const struct {
