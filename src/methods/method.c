@@ -166,6 +166,11 @@ void stepper_destroy(Stepper *stepper) {
 
 const MethodDescription *stepper_describe(const Stepper *stepper) { return stepper->description; }
 
+bool stepper_mends(const Stepper *stepper) {
+    const MethodDescription *method = stepper->description;
+    return stepper->keep > 0 || !(method->lite_contacts || method->needs_network);
+}
+
 /* A contact solver whose cost a step meters. */
 typedef struct MeteredSolver {
     const ContactSolver *solver;
@@ -183,9 +188,8 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
 }
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
-    const MethodDescription *method = stepper->description;
-    const bool lite = (method->lite_contacts || method->needs_network) && stepper->keep == 0;
-    world_set_contacts(world, (ContactRules){.keep = stepper->keep, .mend = !lite && !step->engine_step});
+    const bool mend = stepper_mends(stepper) && !step->engine_step;
+    world_set_contacts(world, (ContactRules){.keep = stepper->keep, .mend = mend});
     if (stepper->stepping != NULL) return stepping_step(stepper->stepping, stepper->state, world, step, error);
     MeteredSolver metered = {&stepper->solver, step};
     return world_step(world, solve_metered, &metered, step->scene->dt, error);

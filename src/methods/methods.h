@@ -123,7 +123,7 @@ typedef struct StepMeter {
 typedef struct Step {
     const Scene *scene; /* with the launch of the run */
     int frame;          /* number of the step, 1 .. frames */
-    bool engine_step;   /* of the engine's run: with its contacts, so that all methods solve the same problem */
+    bool engine_step;   /* with the engine's contacts, so that all methods solve the same problem */
     StepMeter *meter;   /* or NULL */
 } Step;
 
@@ -229,7 +229,9 @@ void stepper_destroy(Stepper *stepper);
 /* The description of its method. */
 const MethodDescription *stepper_describe(const Stepper *stepper);
 
-/* Advances the world by the scene's dt; on failure the world is unchanged. Its contacts are mended, unless the method
-   has Box2D-Lite's (lite_contacts) or the step is the engine's. Afterwards world_problem() and world_solution() are
-   those of the step. */
+/* False if the contacts in its steps are Box2D-Lite's (lite_contacts). */
+bool stepper_mends(const Stepper *stepper);
+
+/* Advances the world by the scene's dt; on failure the world is unchanged. Its contacts are mended if stepper_mends(),
+   unless the step is the engine's. Afterwards world_problem() and world_solution() are those of the step. */
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error);

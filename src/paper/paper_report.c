@@ -46,9 +46,9 @@ static const struct {
      "sweeps; the network warm-start repeats the impulses of the step before.",
      "rates", "rates"},
     {"In place of the solver",
-     "Frames until a body is 0.1 m from its place in the converged run, deepest penetration (m), momentum created per "
-     "step (N s), highest energy over that put in, and time per step beside that of the engine; solvers are at the "
-     "end.",
+     "Frames until a body is 0.1 m from its place in the converged run with the same contacts, deepest penetration "
+     "(m), momentum created per step (N s), highest energy over that put in, and time per step beside that of the "
+     "engine; solvers are at the end.",
      "closed_loop", "closed-loop"},
     {"Laws in the loss",
      "Test error and mean violation of each law; the row engine has the violations of the labels themselves.", "laws",
@@ -58,9 +58,8 @@ static const struct {
      "transfer", "transfer"},
     {"The systems that the paper cites",
      "On held-out launches, each method on its own run: frames until a body is 0.1 m from its place in the engine's "
-     "and "
-     "in the converged run, boxes that moved, deepest penetration (m), energy (J) and momentum (N s) created, share of "
-     "steps solved by simpler means, and time per step beside that of the engine.",
+     "run and in the converged run with the same contacts, boxes that moved, deepest penetration (m), energy (J) and "
+     "momentum (N s) created, share of steps solved by simpler means, and time per step beside that of the engine.",
      "system_scores", NULL},
 };
 

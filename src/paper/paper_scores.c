@@ -84,10 +84,10 @@ enum { SOLVERS = sizeof solvers / sizeof *solvers };
 typedef struct Scores {
     const PaperPlan *plan;
     Launched launched;
-    int networks;       /* of all scored splits: those of the first network first */
-    PairRates *rates;   /* [networks + 1]; the last is the warm start's */
-    RunLog *converged;  /* [launches] */
-    ClosedLoop *closed; /* [networks + SOLVERS] */
+    int networks;             /* of all scored splits: those of the first network first */
+    PairRates *rates;         /* [networks + 1]; the last is the warm start's */
+    ConvergedLogs *converged; /* [launches] */
+    ClosedLoop *closed;       /* [networks + SOLVERS] */
 } Scores;
 
 static bool begin_scores(Scores *scores, const PaperPlan *plan, int scene, int launches, Error *error) {
@@ -165,7 +165,9 @@ static bool is_closed(const Scores *scores, int i) {
 
 static bool log_launch(void *context, int i, Error *error) {
     Scores *scores = context;
-    return closed_loop_log_converged(&scores->converged[i], &scores->launched.launches[i], error);
+    Scene launched = scores->launched.launches[i];
+    launched.frames = CLOSED_LOOP_FRAMES;
+    return closed_loop_log_converged(&scores->converged[i], &launched, error);
 }
 
 static bool close_method(void *context, int i, Error *error) {
@@ -211,7 +213,7 @@ bool paper_closed_loop_write(PaperPlan *plan, const PaperPart *part, FILE *lines
                                &row.us_step_engine, error));
         ok = ok && piece_tables_print(lines, &paper_closed_loop_layout, -1, &row, error);
     }
-    for (int i = 0; scores.converged != NULL && i < launches; i++) run_log_free(&scores.converged[i]);
+    for (int i = 0; scores.converged != NULL && i < launches; i++) converged_logs_free(&scores.converged[i]);
     free(scores.converged);
     free(scores.closed);
     launched_free(&scores.launched);

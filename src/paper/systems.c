@@ -48,7 +48,8 @@ typedef struct Scored {
 typedef struct Scores {
     const PaperSize *size;
     Launched launched;
-    RunLog engine[LAUNCHED_MAX], converged[LAUNCHED_MAX]; /* [launches] */
+    RunLog engine[LAUNCHED_MAX];           /* [launches] */
+    ConvergedLogs converged[LAUNCHED_MAX]; /* [launches] */
     int count;
     Scored methods[METHODS]; /* [count] */
 } Scores;
@@ -57,7 +58,7 @@ static bool log_launch(void *context, int i, Error *error) {
     Scores *scores = context;
     const Scene *launched = &scores->launched.launches[i];
     return closed_loop_log(&scores->engine[i], "engine", launched, error) &&
-           closed_loop_log(&scores->converged[i], "reference", launched, error);
+           closed_loop_log_converged(&scores->converged[i], launched, error);
 }
 
 static bool run_launch(void *context, int i, Error *error) {
@@ -144,7 +145,7 @@ bool system_scores_write(PaperPlan *plan, const PaperPart *part, FILE *lines, co
 
     for (int i = 0; i < LAUNCHED_MAX; i++) {
         run_log_free(&scores->engine[i]);
-        run_log_free(&scores->converged[i]);
+        converged_logs_free(&scores->converged[i]);
     }
     launched_free(launched);
     free(scores);

@@ -12,10 +12,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
+static bool log_run(RunLog *log, const char *method, bool engine_contacts, const Scene *launched, Error *error) {
     Method parsed;
     if (!method_parse(&parsed, method, error)) return false;
-    Rollout rollout = {.log = *log};
+    Rollout rollout = {.log = *log, .engine_contacts = engine_contacts};
     Stepper *stepper = stepper_create(&parsed, launched, error);
     const bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error);
     stepper_destroy(stepper);
@@ -28,6 +28,20 @@ bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Err
                         method, log->frames));
 }
 
+bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
+    return log_run(log, method, false, launched, error);
+}
+
+bool closed_loop_log_converged(ConvergedLogs *logs, const Scene *launched, Error *error) {
+    return log_run(&logs->with[false], "reference", true, launched, error) &&
+           log_run(&logs->with[true], "reference", false, launched, error);
+}
+
+void converged_logs_free(ConvergedLogs *logs) {
+    run_log_free(&logs->with[false]);
+    run_log_free(&logs->with[true]);
+}
+
 static const double apart_distance = 0.1; /* m */
 
 static double frames_apart(const RunLog *log, const RunLog *other, int frames) {
@@ -37,15 +51,16 @@ static double frames_apart(const RunLog *log, const RunLog *other, int frames) {
 }
 
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
-                        const RunLog *converged, LaunchLoop *result, Error *error) {
+                        const ConvergedLogs *converged, LaunchLoop *result, Error *error) {
     Stepper *stepper = stepper_create(method, launched, error);
     const bool ok = stepper != NULL && rollout_run(rollout, stepper, launched, NULL, NULL, error);
+    const RunLog *log = &rollout->log,
+                 *yardstick = ok && converged != NULL ? &converged->with[stepper_mends(stepper)] : NULL;
     stepper_destroy(stepper);
     if (!ok) return false;
-    const RunLog *log = &rollout->log;
     const int frames = launched->frames;
     *result = (LaunchLoop){.frames_engine = frames_apart(log, engine, frames),
-                           .frames_converged = frames_apart(log, converged, frames),
+                           .frames_converged = frames_apart(log, yardstick, frames),
                            .moved = run_log_moved(log, launched),
                            .momentum_error = log->momentum_error,
                            .steps = log->frames,
@@ -59,18 +74,7 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
     return true;
 }
 
-static Scene closed_loop_scene(const Scene *launched) {
-    Scene scene = *launched;
-    scene.frames = CLOSED_LOOP_FRAMES;
-    return scene;
-}
-
-bool closed_loop_log_converged(RunLog *log, const Scene *launched, Error *error) {
-    const Scene scene = closed_loop_scene(launched);
-    return closed_loop_log(log, "reference", &scene, error);
-}
-
-bool closed_loop_run(const Method *method, const Scene *launches, const RunLog *converged, int count,
+bool closed_loop_run(const Method *method, const Scene *launches, const ConvergedLogs *converged, int count,
                      ClosedLoop *result, Error *error) {
     double *frames = malloc((size_t)count * sizeof *frames), momentum = 0, steps = 0;
     if (frames == NULL) return error_memory(error, "closed loop");
@@ -79,7 +83,8 @@ bool closed_loop_run(const Method *method, const Scene *launches, const RunLog *
     bool ok = true;
     for (int i = 0; ok && i < count; i++) {
         LaunchLoop launch;
-        const Scene scene = closed_loop_scene(&launches[i]);
+        Scene scene = launches[i];
+        scene.frames = CLOSED_LOOP_FRAMES;
         ok = closed_loop_launch(&rollout, method, &scene, NULL, &converged[i], &launch, error);
         if (!ok) break;
         frames[i] = launch.frames_converged;

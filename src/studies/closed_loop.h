@@ -24,13 +24,22 @@ typedef struct LaunchLoop {
     int steps, fallen_back; /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
 } LaunchLoop;
 
+/* Logs of the converged runs of one launch. Other contacts lead elsewhere, however well they are solved, so a method is
+   compared with the run that has contacts as its own: with[stepper_mends()]. Zero-initialise. */
+typedef struct ConvergedLogs {
+    RunLog with[2]; /* Box2D-Lite's contacts, mended ones */
+} ConvergedLogs;
+
+void converged_logs_free(ConvergedLogs *logs);
+
 /* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch, or NULL. The
    run ends early if its state becomes NaN or infinite. rollout: scratch. */
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
-                        const RunLog *converged, LaunchLoop *result, Error *error);
+                        const ConvergedLogs *converged, LaunchLoop *result, Error *error);
 
-/* Logs a run of a launched scene to compare others with. ERROR_INPUT if its state becomes NaN or infinite. */
+/* Log runs of a launched scene to compare others with. ERROR_INPUT if a state becomes NaN or infinite. */
 bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error);
+bool closed_loop_log_converged(ConvergedLogs *logs, const Scene *launched, Error *error);
 
 typedef struct ClosedLoop {
     double frames_until_apart; /* LaunchLoop.frames_converged, median over the launches of which it is known */
@@ -40,11 +49,8 @@ typedef struct ClosedLoop {
     double energy_ratio;       /* largest mechanical energy / energy when the bomb was added; largest of all launches */
 } ClosedLoop;
 
-/* Logs the converged run of a launch for CLOSED_LOOP_FRAMES. Errors as closed_loop_log(). */
-bool closed_loop_log_converged(RunLog *log, const Scene *launched, Error *error);
-
-/* Runs launches[count] of a scene for as long. converged[count]: the logs of their converged runs. */
-bool closed_loop_run(const Method *method, const Scene *launches, const RunLog *converged, int count,
+/* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. converged[count]: for as long. */
+bool closed_loop_run(const Method *method, const Scene *launches, const ConvergedLogs *converged, int count,
                      ClosedLoop *result, Error *error);
 
 /* Microseconds per step of a method and of the engine, measured in turns on engine states: mean over the states of the

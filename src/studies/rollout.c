@@ -256,7 +256,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
     const bool push_out = !stepper_describe(stepper)->no_push_out;
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
     for (int frame = rollout->log.frames + 1; frame <= launched->frames; frame++) {
-        const Step step = {.scene = launched, .frame = frame};
+        const Step step = {.scene = launched, .frame = frame, .engine_step = rollout->engine_contacts};
         Error failure = {0};
         if (!simulate_step(stepper, rollout->world, &step, &failure)) {
             if (failure.failure != FAILURE_NONE) return true; /* a valid result */

@@ -123,6 +123,7 @@ typedef struct Rollout {
     ConvergedStep converged;
     RunLog log;
     int unconverged;                  /* steps that are not scored (converged_step_found()) */
+    bool engine_contacts;             /* set by the caller: its steps have the contacts that the engine's have (Step) */
     const struct SharedSteps *shared; /* set by the caller: how the run begins; or NULL */
     FloorSum *floors; /* [PHASES] set by the caller: of the sampled steps that it does not share; NULL: not measured */
 } Rollout;
