@@ -26,16 +26,6 @@ void gns_backward_free(GnsBackward *back) {
     *back = (GnsBackward){0};
 }
 
-static bool reserve(GnsBackward *back, const GnsGraph *graph, int width) {
-    const size_t most = (size_t)(graph->nodes > graph->edges ? graph->nodes : graph->edges) * (size_t)width;
-    enum { ARRAYS = 8 };
-    if (!array_reserve((void **)&back->numbers, &back->capacity, ARRAYS * most, sizeof *back->numbers)) return false;
-    float **arrays[ARRAYS] = {&back->of_node,   &back->of_edge, &back->of_sum, &back->of_receiver,
-                              &back->of_sender, &back->slopes,  &back->second, &back->first};
-    for (int i = 0; i < ARRAYS; i++) *arrays[i] = back->numbers + (size_t)i * most;
-    return true;
-}
-
 static void transpose(const float *from, float *to, int rows, int columns) {
     for (int r = 0; r < rows; r++)
         for (int c = 0; c < columns; c++) to[(ptrdiff_t)c * rows + r] = from[(ptrdiff_t)r * columns + c];
@@ -70,23 +60,21 @@ static void relu_back(float *slopes, const float *values, int count) {
     for (int i = 0; i < count; i++) slopes[i] = values[i] > 0.0f ? slopes[i] : 0.0f;
 }
 
-static void norm_back(const Back *back, const GnsMlp *mlp, const GnsLayerTape *tape, int rows, float *slopes) {
-    for (int r = 0; r < rows; r++)
-        for (int j = 0; j < mlp->outputs; j++)
-            back->gradient[mlp->gain + j] +=
-                slopes[(ptrdiff_t)r * mlp->outputs + j] * tape->normalised[(ptrdiff_t)r * mlp->outputs + j];
-    add_columns(back->gradient + mlp->offset, slopes, rows, mlp->outputs);
-    back->kernels->normalise_back(slopes, tape->normalised, tape->inverse, back->parameters + mlp->gain, rows,
-                                  mlp->outputs);
-}
-
 /* From slopes[rows, outputs], which change, to space->first: d loss / d (sums of the first layer). */
 static void mlp_back(const Back *back, const GnsMlp *mlp, const GnsLayerTape *tape, int rows, float *slopes) {
     const GnsKernels *kernels = back->kernels;
     const int width = mlp->width;
     const size_t bytes = (size_t)rows * (size_t)width * sizeof(float);
     float *gradient = back->gradient, *second = back->space->second, *first = back->space->first;
-    if (mlp->gain >= 0) norm_back(back, mlp, tape, rows, slopes);
+    if (mlp->gain >= 0) { /* the layer norm */
+        for (int r = 0; r < rows; r++)
+            for (int j = 0; j < mlp->outputs; j++)
+                gradient[mlp->gain + j] +=
+                    slopes[(ptrdiff_t)r * mlp->outputs + j] * tape->normalised[(ptrdiff_t)r * mlp->outputs + j];
+        add_columns(gradient + mlp->offset, slopes, rows, mlp->outputs);
+        kernels->normalise_back(slopes, tape->normalised, tape->inverse, back->parameters + mlp->gain, rows,
+                                mlp->outputs);
+    }
     kernels->add_gradient(gradient + mlp->weights[2], tape->second, slopes, rows, width, mlp->outputs);
     add_columns(gradient + mlp->biases[2], slopes, rows, mlp->outputs);
     memset(second, 0, bytes);
@@ -149,7 +137,12 @@ static void encoder_back(const Back *back, const GnsMlp *mlp, const GnsLayerTape
 
 bool gns_backward(GnsBackward *space, const GnsPass *pass, const GnsLayout *layout, const float *parameters,
                   const float *transposed, const GnsGraph *graph, const float *output_slopes, float *gradient) {
-    if (!reserve(space, graph, layout->width)) return false;
+    enum { ARRAYS = 8 };
+    float **arrays[ARRAYS] = {&space->of_node,   &space->of_edge, &space->of_sum, &space->of_receiver,
+                              &space->of_sender, &space->slopes,  &space->second, &space->first};
+    const size_t most = (size_t)(graph->nodes > graph->edges ? graph->nodes : graph->edges) * (size_t)layout->width;
+    if (!array_reserve((void **)&space->numbers, &space->capacity, ARRAYS * most, sizeof *space->numbers)) return false;
+    for (int i = 0; i < ARRAYS; i++) *arrays[i] = space->numbers + (size_t)i * most;
     const Back back = {space, pass->kernels, pass, graph, parameters, transposed, gradient, layout->width};
     const size_t width = (size_t)layout->width * sizeof(float);
     memcpy(space->slopes, output_slopes, (size_t)graph->nodes * GNS_OUTPUTS * sizeof(float));

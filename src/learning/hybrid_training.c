@@ -334,11 +334,10 @@ static Launch draw_launch(const Trainer *trainer, int i) {
 }
 
 /* Runs a launch and learns from it. The launches before the directions are fitted are learned together. */
-static bool do_launch(Trainer *trainer, int i, Error *error) {
+static bool do_launch(Trainer *trainer, const Launch *drawn, int i, Error *error) {
     const HybridTraining *training = trainer->training;
-    const Launch drawn = draw_launch(trainer, i);
     const LaunchWatch watch = {.scene = trainer->scene,
-                               .launches = &drawn,
+                               .launches = drawn,
                                .count = 1,
                                .impact_frames = training->steps,
                                .after_frames = 1,
@@ -364,26 +363,20 @@ static bool do_launch(Trainer *trainer, int i, Error *error) {
     return true;
 }
 
-static bool check_launches(const Trainer *trainer, Error *error) {
+static bool train(Trainer *trainer, const Progress *progress, Error *error) {
     const int count = trainer->training->launches;
     Launch *launches = malloc((size_t)count * sizeof *launches);
     if (launches == NULL) return error_memory(error, "hybrid");
     for (int i = 0; i < count; i++) launches[i] = draw_launch(trainer, i);
-    const bool ok = launches_check(trainer->scene, launches, count, error);
-    free(launches);
-    return ok;
-}
-
-static bool train(Trainer *trainer, const Progress *progress, Error *error) {
-    const int launches = trainer->training->launches;
-    if (!check_launches(trainer, error) || !hybrid_make(&trainer->interior, NULL, NULL, error)) return false;
-    trainer->past = launches_past(trainer->scene, &trainer->interior, error);
-    if (trainer->past == NULL) return false;
-    for (int i = 0; i < launches; i++) {
-        if (!do_launch(trainer, i, error)) return false;
-        if (!progress_report(progress, i + 1, launches)) break;
+    bool ok = launches_check(trainer->scene, launches, count, error) &&
+              hybrid_make(&trainer->interior, NULL, NULL, error) &&
+              (trainer->past = launches_past(trainer->scene, &trainer->interior, error)) != NULL;
+    for (int i = 0; ok && i < count; i++) {
+        ok = do_launch(trainer, &launches[i], i, error);
+        if (ok && !progress_report(progress, i + 1, count)) break;
     }
-    return trainer->memory != NULL || error_interrupted(error, "hybrid", "stopped before anything was learned");
+    free(launches);
+    return ok && (trainer->memory != NULL || error_interrupted(error, "hybrid", "stopped before anything was learned"));
 }
 
 HybridMemory *hybrid_training_run(const Scene *scene, const HybridTraining *training, const Progress *progress,

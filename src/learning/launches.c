@@ -50,17 +50,6 @@ void recorded_steps_free(RecordedSteps *steps) {
     *steps = (RecordedSteps){0};
 }
 
-/* Moves all of `from` to the end of the steps. False when memory is short. */
-static bool move_steps(RecordedSteps *steps, RecordedSteps *from) {
-    if (!array_reserve((void **)&steps->items, &steps->capacity, steps->count + from->count + 1, sizeof *steps->items))
-        return false;
-    for (size_t i = 0; i < from->count; i++) steps->items[steps->count++] = from->items[i];
-    steps->unconverged += from->unconverged;
-    free(from->items);
-    *from = (RecordedSteps){0};
-    return true;
-}
-
 bool launch_step_record(const LaunchStep *step, bool converged, Error *error) {
     RecordedSteps *steps = step->steps;
     const Reference *reference = step->reference;
@@ -107,12 +96,6 @@ typedef struct Observing {
     RecordedSteps *steps; /* [launches] */
 } Observing;
 
-static Stepper *make_stepper(const LaunchWatch *watch, int i, const Scene *launched, Error *error) {
-    ContactSolver solver = {0};
-    if (watch->method != NULL) return stepper_create(watch->method, launched, error);
-    return watch->make(watch->context, i, &solver, error) ? stepper_of_solver(&solver, error) : NULL;
-}
-
 /* The world in which a launch begins. */
 static World *begin(const Observing *observing, const Scene *launched, Error *error) {
     if (observing->past == NULL) return scene_world(launched, error);
@@ -130,7 +113,10 @@ static bool observe(void *context, int i, Error *error) {
     Reference reference = {0};
     PairMoment now = {0}, labels = {0};
     PhaseTracker tracker = {.impact_frames = watch->impact_frames};
-    Stepper *stepper = make_stepper(watch, i, &launched, error);
+    ContactSolver solver = {0};
+    Stepper *stepper = watch->method != NULL ? stepper_create(watch->method, &launched, error)
+                       : watch->make(watch->context, i, &solver, error) ? stepper_of_solver(&solver, error)
+                                                                        : NULL;
     World *world = stepper != NULL ? begin(observing, &launched, error) : NULL;
     LaunchStep step = {.scene = &launched,
                        .world = world,
@@ -178,8 +164,17 @@ bool launches_observe(const LaunchWatch *watch, RecordedSteps *steps, const Prog
     }
     ok = ok && parallel_for(&(ParallelWork){observe, &observing}, watch->count, "launches", progress, error);
     for (int i = 0; observing.steps != NULL && i < watch->count; i++) {
-        if (ok && steps != NULL) ok = move_steps(steps, &observing.steps[i]) || error_memory(error, "launches");
-        recorded_steps_free(&observing.steps[i]);
+        RecordedSteps *from = &observing.steps[i];
+        if (ok && steps != NULL)
+            ok = array_reserve((void **)&steps->items, &steps->capacity, steps->count + from->count + 1,
+                               sizeof *steps->items) ||
+                 error_memory(error, "launches");
+        if (ok && steps != NULL) {
+            for (size_t k = 0; k < from->count; k++) steps->items[steps->count++] = from->items[k];
+            steps->unconverged += from->unconverged;
+            from->count = 0;
+        }
+        recorded_steps_free(from);
     }
     free(observing.steps);
     world_destroy(past);

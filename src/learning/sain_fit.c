@@ -50,12 +50,6 @@ static void fill_row(double *values, int row, const float *numbers, int count, c
         values[i * BLOCK_ROWS + row] = ((double)numbers[i] - (double)by->offset[i]) * (double)by->scale[i];
 }
 
-/* The effects of row r of the part. */
-static double *effects_of(const SainLoss *loss, int r) {
-    const NetworkBlock *block = loss->relation[r / BLOCK_ROWS];
-    return block->values[block->shape->layers] + r % BLOCK_ROWS;
-}
-
 /* Answers to a part: object->values of its last layer, [SAIN_OUTPUTS, BLOCK_ROWS]. False when memory is short. */
 static bool forward(SainLoss *loss, const SainPart *part, const double *weights) {
     const SainNetwork *network = loss->network;
@@ -84,7 +78,9 @@ static bool forward(SainLoss *loss, const SainPart *part, const double *weights)
         for (int e = 0; e < SAIN_EFFECTS; e++) {
             const int at = SAIN_BODY_INPUTS + e;
             double sum = 0;
-            for (int k = 0; k < sample->rows; k++) sum += effects_of(loss, r + k)[e * BLOCK_ROWS];
+            for (int k = r; k < r + sample->rows; k++)
+                sum +=
+                    loss->relation[k / BLOCK_ROWS]->values[network->relation->layers][e * BLOCK_ROWS + k % BLOCK_ROWS];
             values[at * BLOCK_ROWS + i] = (sum - (double)by->offset[at]) * (double)by->scale[at];
         }
         r += sample->rows;

@@ -248,19 +248,6 @@ static void step_parameters(Fitter *fitter, int count, const AdamStep *step) {
     scene_net_pack_layers(fitter->network);
 }
 
-/* Factors are clamped to 0 .. 2: extrapolating further than two sweeps gains nothing. */
-static void step_factors(Fitter *fitter, int count, const AdamStep *step) {
-    for (int s = 1; s < fitter->network->sweeps; s++) {
-        double sum = 0;
-        for (int part = 0; part < PARTS; part++) {
-            sum += fitter->by_factors[part][s];
-            fitter->by_factors[part][s] = 0;
-        }
-        fitter->factors[s] -= adam_change(step, sum / count, &fitter->adam.mean[s], &fitter->adam.square[s]);
-        fitter->factors[s] = fmin(fmax(fitter->factors[s], 0), 2);
-    }
-}
-
 static bool do_epoch(Fitter *fitter, int epoch, double *mean_loss) {
     const bool impulses_only = epoch < fitter->fit->impulse_epochs;
     const SceneNetTask task = {impulses_only ? 1 : fitter->fit->impulse_weight, impulses_only ? 0 : 1,
@@ -273,7 +260,17 @@ static bool do_epoch(Fitter *fitter, int epoch, double *mean_loss) {
         const double done = (epoch + (double)batch / batches) / fitter->fit->epochs;
         const AdamStep step = adam_next(&fitter->adam, fitter->fit->rate * adam_cosine(done));
         step_parameters(fitter, size, &step);
-        if (fitter->fit->learn_factors && task.velocity_weight > 0) step_factors(fitter, size, &step);
+        /* Factors are clamped to 0 .. 2: extrapolating further than two sweeps gains nothing. */
+        const bool learns = fitter->fit->learn_factors && task.velocity_weight > 0;
+        for (int s = 1; learns && s < fitter->network->sweeps; s++) {
+            double sum = 0;
+            for (int part = 0; part < PARTS; part++) {
+                sum += fitter->by_factors[part][s];
+                fitter->by_factors[part][s] = 0;
+            }
+            fitter->factors[s] -= adam_change(&step, sum / size, &fitter->adam.mean[s], &fitter->adam.square[s]);
+            fitter->factors[s] = fmin(fmax(fitter->factors[s], 0), 2);
+        }
     }
     *mean_loss = 0;
     for (int part = 0; part < PARTS; part++) *mean_loss += fitter->losses[part] / count;

@@ -49,19 +49,6 @@ static Slot *find_slots(const SceneNetSamples *samples, int *count, Error *error
     return slots;
 }
 
-/* Warm impulses are capped at the largest one seen at the first touch: what exceeds it is left over from the shock in
-   the step before. */
-static void find_caps(SceneNet *network, const SceneNetSamples *samples) {
-    for (int i = 0; i < samples->count; i++) {
-        const ContactProblem *problem = &samples->items[i].step.problem;
-        for (int k = 0; samples->items[i].step.since == 0 && k < problem->contact_count; k++) {
-            const ContactPoint *contact = &problem->contacts[k];
-            const int slot = scene_net_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
-            if (slot >= 0 && network->cap[slot] < contact->warm_normal) network->cap[slot] = contact->warm_normal;
-        }
-    }
-}
-
 /* The unit of a slot's outputs: mean(sqrt(|goal - base|))^2. Rare shocks are hundreds of times larger than the rest; in
    a unit such as the RMS the rest would be negligible. */
 static bool find_scales(SceneNet *network, const SceneNetSamples *samples) {
@@ -86,10 +73,6 @@ static bool find_scales(SceneNet *network, const SceneNetSamples *samples) {
     }
     free(sums);
     return true;
-}
-
-static bool touches_bomb(const SceneNet *network, int slot) {
-    return network->slots[slot].a == network->bomb || network->slots[slot].b == network->bomb;
 }
 
 /* The whitened principal components of rows [samples, projection->from]: over the rows, components have mean 0,
@@ -139,7 +122,9 @@ static void find_weights(const SceneNet *network, const float *numbers, int samp
                          float *weights) {
     static const double least[SLOT_BODY_NUMBERS] = {0.01, 0.01, 0.01, 0.1, 0.1, 0.1}; /* m, rad, m/s, rad/s */
     for (int k = 0; k < count; k++) {
-        weights[k] = which == 2 && touches_bomb(network, k) ? bomb_weight : 1;
+        weights[k] = 1;
+        if (which == 2 && (network->slots[k].a == network->bomb || network->slots[k].b == network->bomb))
+            weights[k] = bomb_weight;
         if (which > 1) continue;
         double sum = 0, squares = 0;
         for (int i = 0; i < samples; i++) {
@@ -193,17 +178,6 @@ static bool draw_weights(SceneNet *network, uint64_t seed) {
     return true;
 }
 
-/* Packing the projections to bytes shifted the means of the inputs; moves them back to 0. */
-static void recentre(SceneNet *network, const SceneNetSamples *samples) {
-    Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
-    for (int p = 0, input = 0; p < 4; p++)
-        for (int k = 0; k < projections[p]->to; k++, input++) {
-            double sum = 0;
-            for (int i = 0; i < samples->count; i++) sum += (double)samples->items[i].inputs[input];
-            projections[p]->centre[k] += (float)(sum / samples->count);
-        }
-}
-
 SceneNet *scene_net_from_samples(SceneNetSamples *samples, const SceneNetWidths *widths, uint64_t seed, Error *error) {
     if (samples->count == 0)
         return error_input(error, "scene-net", "no launch has an impact whose residual reaches the gate"), NULL;
@@ -214,14 +188,30 @@ SceneNet *scene_net_from_samples(SceneNetSamples *samples, const SceneNetWidths 
     SceneNet *network = slots != NULL ? scene_net_create(&shape, slots, error) : NULL;
     free(slots);
     if (network == NULL) return NULL;
-    find_caps(network, samples);
+    /* Warm impulses are capped at the largest one seen at the first touch: what exceeds it is left over from the shock
+       in the step before. */
+    for (int i = 0; i < samples->count; i++) {
+        problem = &samples->items[i].step.problem;
+        for (int k = 0; samples->items[i].step.since == 0 && k < problem->contact_count; k++) {
+            const ContactPoint *contact = &problem->contacts[k];
+            const int slot = scene_net_find(network, contact->a, contact->b, scene_view_feature(problem, contact));
+            if (slot >= 0 && network->cap[slot] < contact->warm_normal) network->cap[slot] = contact->warm_normal;
+        }
+    }
     bool ok = scene_net_samples_look(samples, 0, network, error) &&
               (find_scales(network, samples) || error_memory(error, "scene-net")) &&
               find_projections(network, samples, error) &&
               (draw_weights(network, seed) || error_memory(error, "scene-net"));
     if (ok) scene_net_pack(network);
     ok = ok && scene_net_samples_look(samples, 0, network, error);
-    if (ok) recentre(network, samples);
+    /* Packing the projections to bytes shifted the means of the inputs; they move back to 0. */
+    Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
+    for (int p = 0, input = 0; ok && p < 4; p++)
+        for (int k = 0; k < projections[p]->to; k++, input++) {
+            double sum = 0;
+            for (int i = 0; i < samples->count; i++) sum += (double)samples->items[i].inputs[input];
+            projections[p]->centre[k] += (float)(sum / samples->count);
+        }
     if (ok && scene_net_samples_look(samples, 0, network, error)) return network;
     scene_net_destroy(network);
     return NULL;

@@ -296,22 +296,21 @@ static void backward_step(const WindowFit *fit, WindowPart *part, const double *
     }
 }
 
-static void run_part(const WindowFit *fit, WindowPart *part, const double *parameters, uint64_t seed) {
-    const size_t states = (size_t)(WINDOW_FRAMES + 2) * (size_t)fit->data->count * BLOCK_ROWS;
-    memset(part->slopes, 0, states * sizeof *part->slopes);
-    memset(part->gradient, 0, (size_t)network_parameter_count(fit->shape) * sizeof *part->gradient);
-    part->loss = 0;
-    choose_windows(fit, part, seed);
-    for (int t = 0; t < WINDOW_FRAMES; t++) forward_step(fit, part, parameters, t);
-    for (int t = 1; t <= WINDOW_FRAMES; t++) add_loss(fit, part, t);
-    for (int t = WINDOW_FRAMES - 1; t >= 0; t--) backward_step(fit, part, parameters, t);
-}
-
 double window_fit_slopes(WindowFit *fit, const double *parameters, uint64_t seed, double *slopes) {
     const int count = network_parameter_count(fit->shape);
+    const size_t states = (size_t)(WINDOW_FRAMES + 2) * (size_t)fit->data->count * BLOCK_ROWS;
     double loss = 0;
 #pragma omp parallel for schedule(static, 1)
-    for (int p = 0; p < WINDOW_PARTS; p++) run_part(fit, fit->parts[p], parameters, seed * WINDOW_PARTS + (uint64_t)p);
+    for (int p = 0; p < WINDOW_PARTS; p++) {
+        WindowPart *part = fit->parts[p];
+        memset(part->slopes, 0, states * sizeof *part->slopes);
+        memset(part->gradient, 0, (size_t)count * sizeof *part->gradient);
+        part->loss = 0;
+        choose_windows(fit, part, seed * WINDOW_PARTS + (uint64_t)p);
+        for (int t = 0; t < WINDOW_FRAMES; t++) forward_step(fit, part, parameters, t);
+        for (int t = 1; t <= WINDOW_FRAMES; t++) add_loss(fit, part, t);
+        for (int t = WINDOW_FRAMES - 1; t >= 0; t--) backward_step(fit, part, parameters, t);
+    }
     for (int i = 0; i < count; i++) {
         slopes[i] = 0;
         for (int p = 0; p < WINDOW_PARTS; p++) slopes[i] += fit->parts[p]->gradient[i] / WINDOW_PARTS;

@@ -255,18 +255,6 @@ static bool find_components(Trainer *trainer, Error *error) {
     return ok;
 }
 
-static bool fit_components(Trainer *trainer, Error *error) {
-    Method recorder;
-    LaunchRuns quiet = {0};
-    Launch never = launch_of(trainer->scene);
-    never.frame = trainer->scene->frames + 1;
-    bool ok = method_parse(&recorder, offline, error) &&
-              launch_runs_record(&quiet, trainer->scene, &recorder, &never, 1, NULL, error) && make_net(trainer, error);
-    if (ok) take_rest(trainer, &quiet);
-    launch_runs_free(&quiet);
-    return ok && find_components(trainer, error);
-}
-
 /* Fits a predictor; its rate falls to 0 by the square of what is left. */
 static bool fit_predictor(Trainer *trainer, int i, Error *error) {
     const SubspaceTraining *training = trainer->training;
@@ -313,19 +301,6 @@ static bool fit_predictor(Trainer *trainer, int i, Error *error) {
     return ok;
 }
 
-/* Shares of the progress are by components, with which the time grows. */
-static bool fit_predictors(Trainer *trainer, Error *error) {
-    const SubspaceShape *shape = &trainer->net->shape;
-    const double all = 1 - trainer->stage.begin - trainer->stage.share;
-    int components = 0;
-    for (int i = 0; i < shape->predictor_count; i++) components += shape->predictors[i];
-    for (int i = 0; i < shape->predictor_count; i++) {
-        progress_next_stage(&trainer->stage, all * shape->predictors[i] / components);
-        if (!fit_predictor(trainer, i, error)) return false;
-    }
-    return true;
-}
-
 static bool run(Trainer *trainer, Error *error) {
     progress_next_stage(&trainer->stage, recording_share);
     if (!record(trainer, &trainer->rows, false, trainer->training->launches, error)) return false;
@@ -333,8 +308,29 @@ static bool run(Trainer *trainer, Error *error) {
         return error_input(error, trainer->scene->name, "%d frames with the bomb; training needs %d",
                            trainer->rows.states - 1, WINDOW_FRAMES + 2);
     progress_next_stage(&trainer->stage, recording_share / 10);
-    return record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error) && fit_components(trainer, error) &&
-           fit_predictors(trainer, error);
+    if (!record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error)) return false;
+
+    /* The components, from a run in which no bomb appears. */
+    Method recorder;
+    LaunchRuns quiet = {0};
+    Launch never = launch_of(trainer->scene);
+    never.frame = trainer->scene->frames + 1;
+    bool ok = method_parse(&recorder, offline, error) &&
+              launch_runs_record(&quiet, trainer->scene, &recorder, &never, 1, NULL, error) && make_net(trainer, error);
+    if (ok) take_rest(trainer, &quiet);
+    launch_runs_free(&quiet);
+    if (!ok || !find_components(trainer, error)) return false;
+
+    /* The predictors; shares of the progress are by components, with which the time grows. */
+    const SubspaceShape *shape = &trainer->net->shape;
+    const double all = 1 - trainer->stage.begin - trainer->stage.share;
+    int components = 0;
+    for (int i = 0; i < shape->predictor_count; i++) components += shape->predictors[i];
+    for (int i = 0; ok && i < shape->predictor_count; i++) {
+        progress_next_stage(&trainer->stage, all * shape->predictors[i] / components);
+        ok = fit_predictor(trainer, i, error);
+    }
+    return ok;
 }
 
 SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training, const Progress *progress,
