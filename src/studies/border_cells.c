@@ -100,18 +100,6 @@ static void add_border(BorderCell *cell, const CsvTable *table, const BorderRow 
     if (!easy) add_span(cell, holds, holds_end, true, 0);
 }
 
-static void add_row(BorderCell *cell, const CsvTable *table, const BorderRow *row, const BorderRange *range) {
-    if (cell->row == NULL) cell->row = row;
-    if (row->verdict == CELL_NOT_APPLICABLE) return;
-    if (!isnan(row->holds_at) && !isnan(row->fails_at))
-        add_border(cell, table, row, range);
-    else if (!isnan(row->holds_at))
-        add_span(cell, fmax(next_border(table, row, range, true, true), 0),
-                 verdict_holds((Verdict)row->verdict) ? 1 : border_range_share(range, row->holds_at), true, 0);
-    else if (!isnan(row->fails_at))
-        add_span(cell, 0, 1, false, row->verdict);
-}
-
 bool border_holds_throughout(const BorderCell *cell) {
     return cell->row != NULL && isnan(cell->row->fails_at) && !isnan(cell->row->holds_at) &&
            verdict_holds((Verdict)cell->row->verdict);
@@ -120,7 +108,18 @@ bool border_holds_throughout(const BorderCell *cell) {
 BorderCell border_cell(const CsvTable *table, const BorderRow *study, const BorderRow *method,
                        const BorderRange *range) {
     BorderCell cell = {0};
-    for (int i = 0; i < table->count; i++)
-        if (is_in(border_row(table, i), study, method)) add_row(&cell, table, border_row(table, i), range);
+    for (int i = 0; i < table->count; i++) {
+        const BorderRow *row = border_row(table, i);
+        if (!is_in(row, study, method)) continue;
+        if (cell.row == NULL) cell.row = row;
+        if (row->verdict == CELL_NOT_APPLICABLE) continue;
+        if (!isnan(row->holds_at) && !isnan(row->fails_at))
+            add_border(&cell, table, row, range);
+        else if (!isnan(row->holds_at))
+            add_span(&cell, fmax(next_border(table, row, range, true, true), 0),
+                     verdict_holds((Verdict)row->verdict) ? 1 : border_range_share(range, row->holds_at), true, 0);
+        else if (!isnan(row->fails_at))
+            add_span(&cell, 0, 1, false, row->verdict);
+    }
     return cell;
 }

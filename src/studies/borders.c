@@ -348,12 +348,6 @@ static int number_border(Sketch *sketch, const BorderCell *cell, const BorderSpa
     return put_number(sketch, &spans[fails], holds != 0, halo, cell->row->holds_at, y) ? fails : -1;
 }
 
-/* Ticks at the edges of a cell, up to which rigid boxes hold. */
-static void draw_rigid(Sketch *sketch, double x, double y) {
-    for (int up = -1; up <= 1; up += 2)
-        sketch_line(sketch, (Point){x, y + up * row_height / 2}, (Point){x, y + up * tick_end}, &rigid_pen);
-}
-
 static void draw_cell(const Borders *borders, int study, int method, double y) {
     const BorderCell cell = cell_at(borders, study, method);
     const StabilityStudy *known = borders->studies[study].known;
@@ -381,30 +375,11 @@ static void draw_cell(const Borders *borders, int study, int method, double y) {
     const int numbered = number_border(borders->sketch, &cell, spans, hatched, y);
     for (int i = 0; i < cell.count; i++)
         if (!spans[i].holds && i != numbered) put_symbol(borders->sketch, spans[i].from, spans[i].to, y, spans[i].look);
-    if (known != NULL && known->rigid != NULL)
-        draw_rigid(borders->sketch, left + width * border_range_share(&borders->studies[study].range, known->rigid()),
-                   y);
-}
-
-static void draw_study(const Borders *borders, int i, double y) {
-    const BorderStudy *study = &borders->studies[i];
-    const double end = borders->label - text_gap,
-                 room = end - edge - text_gap - type_width(study->extent, small_points);
-    const TextStyle soft = {.points = small_points, .align = TEXT_RIGHT, .colour = SOFT_COLOUR};
-    plot_text(borders->sketch, (Point){edge, y}, TEXT_LEFT, text_points(study->title, title_points, room),
-              study->title);
-    sketch_text(borders->sketch, (Point){end, y}, &soft, "%s", study->extent);
-    for (int method = 0; method < borders->method_count; method++) draw_cell(borders, i, method, y);
-}
-
-/* What blue means in the rows below. */
-static void draw_heading(const Borders *borders, bool struck, double y) {
-    const Pen rule = pen_line(0x909090, 0.8, NULL);
-    const double top = y + heading_height / 2 - 0.6;
-    sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
-    fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_MOVES].fill);
-    plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
-              struck ? "struck: no box falls" : "holds");
+    /* Ticks at the edges of the cell, up to which rigid boxes hold. */
+    for (int up = -1; known != NULL && known->rigid != NULL && up <= 1; up += 2) {
+        const double x = left + width * border_range_share(&borders->studies[study].range, known->rigid());
+        sketch_line(borders->sketch, (Point){x, y + up * row_height / 2}, (Point){x, y + up * tick_end}, &rigid_pen);
+    }
 }
 
 static int legend_columns(const Borders *borders) { return (int)((borders->width - edge) / legend_item); }
@@ -437,13 +412,26 @@ static double draw_studies(const Borders *borders, double below) {
     double y = top - row_height / 2;
     draw_head(borders, top);
     draw_as_far(borders, y);
+    const double end = borders->label - text_gap;
+    const Pen rule = pen_line(0x909090, 0.8, NULL);
+    const TextStyle soft = {.points = small_points, .align = TEXT_RIGHT, .colour = SOFT_COLOUR};
     for (int i = 0; i < borders->study_count; i++) {
-        const bool struck = borders->studies[i].struck;
-        if (i == 0 || struck != borders->studies[i - 1].struck) {
-            draw_heading(borders, struck, y - row_height / 2 - heading_height / 2);
+        const BorderStudy *study = &borders->studies[i];
+        if (i == 0 || study->struck != borders->studies[i - 1].struck) { /* what blue means in the rows below */
+            const double middle = y - row_height / 2 - heading_height / 2, line = middle + heading_height / 2 - 0.6;
+            sketch_line(borders->sketch, (Point){edge, line},
+                        (Point){column_left(borders, borders->method_count), line}, &rule);
+            fill(borders->sketch, edge, edge + tile_height, middle - 0.4, verdict_looks[VERDICT_MOVES].fill);
+            plot_text(borders->sketch, (Point){edge + tile_height + 1.3, middle - 0.4}, TEXT_LEFT, title_points,
+                      study->struck ? "struck: no box falls" : "holds");
             y -= heading_height;
         }
-        draw_study(borders, i, y -= row_height);
+        y -= row_height;
+        const double room = end - edge - text_gap - type_width(study->extent, small_points);
+        plot_text(borders->sketch, (Point){edge, y}, TEXT_LEFT, text_points(study->title, title_points, room),
+                  study->title);
+        sketch_text(borders->sketch, (Point){end, y}, &soft, "%s", study->extent);
+        for (int method = 0; method < borders->method_count; method++) draw_cell(borders, i, method, y);
     }
     return top + borders->tiers * (borders->lines * line_height(small_points) + head_gap) + head_gap;
 }

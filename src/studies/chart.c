@@ -13,7 +13,6 @@
 #include "studies/launch_scores.h"
 #include "studies/piece_tables.h"
 #include "studies/scene_study.h"
-#include "studies/stepper_pool.h"
 #include "studies/study_page.h"
 
 #include <math.h>
@@ -67,23 +66,23 @@ static void describe_chart(void *context, int64_t piece, PieceInfo *info) {
 }
 
 /* Destroys the steppers of scenes that no piece works on. */
-static void empty_pools(const ChartPlan *plan) {
+static void rest_others(const ChartPlan *plan) {
     for (int i = 0; i < plan->count; i++)
-        if (plan->scenes[i].working == 0) stepper_pool_empty(&plan->scenes[i].study.steppers);
+        if (plan->scenes[i].working == 0) scene_study_rest(&plan->scenes[i].study);
 }
 
 /* Times are measured with steppers of their own. */
 static bool chart_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
     ChartScene *scene = scene_of(context, piece);
     if (is_times(scene, piece)) {
-        empty_pools(context);
+        rest_others(context);
         return scene_times_write(&scene->study, results, progress, error);
     }
     /* Pieces come scene by scene: the steppers of a scene go when work on another begins. */
 #pragma omp critical(chart_plan)
     {
         scene->working++;
-        empty_pools(context);
+        rest_others(context);
     }
     const bool ok = launch_piece_write(&scene->study, (int)(piece - scene->first), results, progress, error);
 #pragma omp critical(chart_plan)
@@ -129,17 +128,6 @@ typedef struct Assembly {
     FloorSum (*floors)[PHASES]; /* [PROTOCOLS] of all launches */
 } Assembly;
 
-/* The results of a launch; *text is to be freed. */
-static bool open_launch(const Assembly *assembly, int launch, char path[PIECES_PATH_SIZE], StoredScores *stored,
-                        char **text, Error *error) {
-    const int64_t piece = assembly->scene->first + launch;
-    size_t size;
-    if (!pieces_path(assembly->pieces, piece, path, error)) return false;
-    *text = pieces_read(assembly->pieces, piece, &size, NULL, error);
-    return *text != NULL &&
-           stored_scores_open(stored, path, *text, size, assembly->scene->study.contender_count, error);
-}
-
 static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
     const SceneStudy *study = &assembly->scene->study;
     MethodScores *scores = &assembly->scores[contender];
@@ -165,30 +153,32 @@ static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
     method_scores_free(scores);
 }
 
-static void add_steps(const Assembly *assembly, const LaunchSteps *steps) {
-    assembly->solves->frozen_unconverged += steps->unconverged;
-    assembly->solves->runs_unconverged += steps->run_unconverged;
-    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
-        for (int phase = 0; phase < PHASES; phase++) {
-            assembly->floors[protocol][phase].sum += steps->floors[protocol][phase].sum;
-            assembly->floors[protocol][phase].steps += steps->floors[protocol][phase].steps;
-        }
-}
-
 static bool add_scores(const Assembly *assembly, ChartRow *rows, Error *error) {
     const SceneStudy *study = &assembly->scene->study;
     int group = study->contender_count;
     for (int first = 0; first < study->contender_count; first += group) {
         for (int launch = 0; launch < study->launch_count; launch++) {
-            char path[PIECES_PATH_SIZE], *text = NULL;
+            const int64_t piece = assembly->scene->first + launch;
+            char path[PIECES_PATH_SIZE];
+            size_t size;
             StoredScores stored;
-            bool ok = open_launch(assembly, launch, path, &stored, &text, error);
-            if (ok && first == 0 &&
-                launch == 0) { /* as many methods as fit into GROUP_BYTES, by the size of a launch */
+            if (!pieces_path(assembly->pieces, piece, path, error)) return false;
+            char *text = pieces_read(assembly->pieces, piece, &size, NULL, error);
+            bool ok = text != NULL && stored_scores_open(&stored, path, text, size, study->contender_count, error);
+            if (ok && first == 0 && launch == 0) {
+                /* As many methods as fit into GROUP_BYTES, by the size of a launch. */
                 const double all = (double)stored.size * study->launch_count;
                 if (all > GROUP_BYTES) group = (int)fmax(1, study->contender_count * GROUP_BYTES / all);
             }
-            if (ok && first == 0) add_steps(assembly, &stored.steps);
+            if (ok && first == 0) {
+                assembly->solves->frozen_unconverged += stored.steps.unconverged;
+                assembly->solves->runs_unconverged += stored.steps.run_unconverged;
+                for (int i = 0; i < ROWS_EACH; i++) {
+                    const FloorSum *floor = &stored.steps.floors[i / PHASES][i % PHASES];
+                    assembly->floors[i / PHASES][i % PHASES].sum += floor->sum;
+                    assembly->floors[i / PHASES][i % PHASES].steps += floor->steps;
+                }
+            }
             for (int i = first; ok && i < first + group && i < study->contender_count; i++)
                 ok = method_scores_add(&assembly->scores[i], &stored, i, error);
             free(text);
@@ -293,27 +283,24 @@ static bool assemble_chart(Run *run, const Pieces *pieces, Error *error) {
     return true;
 }
 
-/* What a page sets to play a launch; nothing where the launch has another rotation, spin or frame than the scene's. */
-static void launch_settings(const SceneStudy *study, int launch, char *set, size_t size) {
-    const Launch own = launch_of(study->scene), *other = &study->launches[launch];
-    set[0] = '\0';
-    if (other->rotation != own.rotation || other->spin != own.spin || other->frame != own.frame) return;
-    text_add(set, size, "bomb_x=%.9g", (double)other->x);
-    if (other->mass != own.mass) text_add(set, size, ",bomb_mass=%.9g", (double)other->mass);
-}
-
 static void put_method(FILE *out, const SceneStudy *study, const StudyPage *page, const ChartRow *rows) {
     html_print(out, "<tr><td>%s</td><td>%s</td>", rows->method, rows->setting);
     for (int phase = PHASE_IMPACT; phase <= PHASE_AFTER; phase++) {
         const ChartRow *row = &rows[PROTOCOL_CLOSED * PHASES + phase];
-        char set[64], error[32];
+        char set[64] = "", error[32];
         if (isnan(row->us_solver))
             fputs("<td></td><td>", out);
         else
             fprintf(out, "<td>%.3g</td><td>", row->us_solver);
         snprintf(error, sizeof error, "%.3g", row->error_mean);
         if (!isnan(row->error_worst)) {
-            launch_settings(study, row->worst_launch, set, sizeof set);
+            /* What the page sets to play the launch; nothing where that has another rotation, spin or frame than the
+               scene's. */
+            const Launch own = launch_of(study->scene), *other = &study->launches[row->worst_launch];
+            if (other->rotation == own.rotation && other->spin == own.spin && other->frame == own.frame) {
+                text_add(set, sizeof set, "bomb_x=%.9g", (double)other->x);
+                if (other->mass != own.mass) text_add(set, sizeof set, ",bomb_mass=%.9g", (double)other->mass);
+            }
             study_link_put(out, page, set, row->method, row->setting, error);
         }
         fputs("</td>", out);

@@ -127,15 +127,6 @@ static bool draw_shade(const ChartDrawing *drawing, int panel) {
     return true;
 }
 
-static void draw_floor(ChartDrawing *drawing, double floor) {
-    const PlotBox *box = &drawing->plot->box;
-    const Pen pen = pen_line(CHART_GREY_INK, 0.8, NULL);
-    if (!(floor > 0)) return;
-    const double y = plot_axis_place(&drawing->plot->y, floor);
-    sketch_line(drawing->sketch, (Point){box->left, y}, (Point){box->left + box->width, y}, &pen);
-    label_add_segment(&drawing->field, (Segment){box->left, y, box->left + box->width, y});
-}
-
 const ChartMark *chart_find_baseline(const ChartPanel *panel) {
     for (int i = 0; i < panel->count; i++)
         if (panel->marks[i].baseline) return &panel->marks[i];
@@ -186,19 +177,6 @@ static void draw_mark(ChartDrawing *drawing, const ChartMark *mark) {
     label_add_box(&drawing->field, (PageBox){at.x - radius, at.y - radius, at.x + radius, at.y + radius});
 }
 
-/* Grey below colour, curves below marks. */
-static void draw_curves(ChartDrawing *drawing) {
-    const ChartMark *marks = drawing->panel->marks;
-    for (int coloured = 0; coloured <= 1; coloured++) {
-        for (int i = 0, end; i < drawing->panel->count; i = end) {
-            for (end = i; end < drawing->panel->count && marks[end].line == marks[i].line;) end++;
-            if (chart_is_coloured(drawing, &marks[i]) == (coloured == 1)) draw_curve(drawing, i, end);
-        }
-        for (int i = 0; i < drawing->panel->count; i++)
-            if (chart_is_coloured(drawing, &marks[i]) == (coloured == 1)) draw_mark(drawing, &marks[i]);
-    }
-}
-
 /* False if out of memory. */
 static bool draw_panel(ChartPicture *picture, int panel) {
     const PlotPanel *plot = &picture->panels[panel];
@@ -214,8 +192,24 @@ static bool draw_panel(ChartPicture *picture, int panel) {
     const bool whole = draw_shade(drawing, panel);
     if (whole) {
         chart_find_cross(drawing);
-        draw_floor(drawing, picture->chart->floor[panel]);
-        draw_curves(drawing);
+        const double floor = picture->chart->floor[panel];
+        if (floor > 0) {
+            const double y = plot_axis_place(&plot->y, floor), right = plot->box.left + plot->box.width;
+            const Pen pen = pen_line(CHART_GREY_INK, 0.8, NULL);
+            sketch_line(drawing->sketch, (Point){plot->box.left, y}, (Point){right, y}, &pen);
+            label_add_segment(&drawing->field, (Segment){plot->box.left, y, right, y});
+        }
+        /* Grey below colour, curves below marks. */
+        const ChartMark *marks = drawing->panel->marks;
+        const int count = drawing->panel->count;
+        for (int coloured = 0; coloured <= 1; coloured++) {
+            for (int i = 0, end; i < count; i = end) {
+                for (end = i; end < count && marks[end].line == marks[i].line;) end++;
+                if (chart_is_coloured(drawing, &marks[i]) == (coloured == 1)) draw_curve(drawing, i, end);
+            }
+            for (int i = 0; i < count; i++)
+                if (chart_is_coloured(drawing, &marks[i]) == (coloured == 1)) draw_mark(drawing, &marks[i]);
+        }
         chart_draw_names(drawing, panel);
         plot_panel_draw(&picture->sketch, plot);
     }
@@ -283,8 +277,7 @@ static bool make_picture(ChartPicture *picture, const Chart *chart, const char *
     char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
     *picture = (ChartPicture){.chart = chart, .size = look->size};
     chart_plain(name, scene);
-    snprintf(title, sizeof title, "%s, %d launch%s%s", name, chart->launches, plural_es(chart->launches),
-             chart->frozen ? ", on the engine's steps" : "");
+    snprintf(title, sizeof title, "%s, %d launch%s", name, chart->launches, plural_es(chart->launches));
     bool whole = draw_panels(picture, title, 0);
     chart_caption(chart, title, picture->named, picture->caption, sizeof picture->caption);
     if (whole && look->words) whole = draw_words(picture, title);

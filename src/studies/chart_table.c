@@ -104,15 +104,13 @@ static const CsvColumn columns[] = {
 enum { SOLVER_MEDIAN = 6 };
 
 /* Comparisons with NAN are false: a missing time is not checked. */
-static bool is_ordered(const ChartRow *row) {
-    return !(row->us_solver_q1 > row->us_solver || row->us_solver > row->us_solver_q3 ||
-             row->us_solver_q1 > row->us_solver_q3);
-}
-
 static bool check_times(const CsvTable *table, Error *error) {
-    for (int i = 0; i < table->count; i++)
-        if (!is_ordered(chart_row(table, i)))
+    for (int i = 0; i < table->count; i++) {
+        const ChartRow *row = chart_row(table, i);
+        if (row->us_solver_q1 > row->us_solver || row->us_solver > row->us_solver_q3 ||
+            row->us_solver_q1 > row->us_solver_q3)
             return csv_table_error(table, i, SOLVER_MEDIAN, error, "us_solver: the median is outside the quartiles");
+    }
     return true;
 }
 

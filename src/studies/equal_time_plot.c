@@ -84,19 +84,6 @@ static void add_column(Columns *columns, EqualTimeGrid *grid, const EqualTime *t
     }
 }
 
-/* Learned methods stand beside their silenced twins; other variants of them are in the tables only. */
-static void order_columns(Columns *columns, EqualTimeGrid *grid, const EqualTime *table) {
-    const RivalCurves *curves = &table->curves;
-    for (int i = 0; i < curves->family_count; i++)
-        if (twin_of(curves, i) == NULL) add_column(columns, grid, table, i, false);
-    for (int i = 0; i < curves->family_count; i++) {
-        const int twin = find_twin(curves, i);
-        if (twin_of(curves, i) == NULL || strcmp(curves->families[i].name, curves->families[i].method) != 0) continue;
-        add_column(columns, grid, table, i, false);
-        if (twin >= 0) add_column(columns, grid, table, twin, has_ratio(table, i, NULL));
-    }
-}
-
 /* ERROR_INPUT with the path if the grid has no room. */
 static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const char *path, Error *error) {
     const RivalCurves *curves = &table->curves;
@@ -105,7 +92,15 @@ static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const c
     if (curves->family_count > EQUAL_TIME_COLUMNS)
         return error_input(error, path, "a figure has at most %d methods (got %d)", EQUAL_TIME_COLUMNS,
                            curves->family_count);
-    order_columns(&columns, grid, table);
+    /* Learned methods stand beside their silenced twins; other variants of them are in the tables only. */
+    for (int i = 0; i < curves->family_count; i++)
+        if (twin_of(curves, i) == NULL) add_column(&columns, grid, table, i, false);
+    for (int i = 0; i < curves->family_count; i++) {
+        const int twin = find_twin(curves, i);
+        if (twin_of(curves, i) == NULL || strcmp(curves->families[i].name, curves->families[i].method) != 0) continue;
+        add_column(&columns, grid, table, i, false);
+        if (twin >= 0) add_column(&columns, grid, table, twin, has_ratio(table, i, NULL));
+    }
     grid->columns = columns.count;
     chart_plain(grid->time, table->time);
     words_add(&grid->words, "rival", "any other method without a network");

@@ -90,23 +90,19 @@ static int64_t part_begin(const StoredScores *stored, int method) {
 
 static bool is_step_count(int64_t count) { return count >= 0 && count <= SCENE_MAX_FRAMES; }
 
-static bool are_steps(const LaunchSteps *steps) {
-    bool are = is_step_count(steps->unconverged) && is_step_count(steps->run_unconverged);
-    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
-        for (int phase = 0; phase < PHASES; phase++) {
-            const FloorSum *floors = &steps->floors[protocol][phase];
-            are = are && is_step_count(floors->steps) && floors->sum >= 0 && floors->sum <= DBL_MAX;
-        }
-    return are;
-}
-
 bool stored_scores_open(StoredScores *stored, const char *path, const char *bytes, size_t size, int count,
                         Error *error) {
     LaunchHead head = {0};
     *stored = (StoredScores){.path = path, .bytes = bytes, .size = size, .count = count};
     if (size >= sizeof head) memcpy(&head, bytes, sizeof head);
     const size_t begin = sizeof head + (size_t)count * sizeof(int64_t);
-    if (size < begin || head.count != count || !are_steps(&head.steps)) return refuse(stored, error);
+    bool sound = size >= begin && head.count == count && is_step_count(head.steps.unconverged) &&
+                 is_step_count(head.steps.run_unconverged);
+    for (int i = 0; i < PROTOCOLS * PHASES; i++) {
+        const FloorSum *floors = &head.steps.floors[i / PHASES][i % PHASES];
+        sound = sound && is_step_count(floors->steps) && floors->sum >= 0 && floors->sum <= DBL_MAX;
+    }
+    if (!sound) return refuse(stored, error);
     for (int i = 0; i < count; i++) {
         const int64_t end = part_begin(stored, i + 1);
         if (end > (int64_t)size || end < part_begin(stored, i) + (int64_t)sizeof(PartHead))

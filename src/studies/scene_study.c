@@ -12,10 +12,10 @@
 #include "studies/launch_scores.h"
 #include "studies/rollout.h"
 #include "studies/scene_study.h"
-#include "studies/stepper_pool.h"
 #include "studies/timing.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,6 +62,13 @@ static StudySize size_for(const StudySize *full, const Scene *scene) {
     return size;
 }
 
+/* Of a contender, for the thread that has locked it. */
+struct SharedStepper {
+    omp_lock_t taken;
+    Stepper *stepper;   /* NULL: not made yet */
+    SharedSteps shared; /* the first steps of all launches */
+};
+
 static bool try_launch(void *context, int i, Error *error) {
     SceneStudy *study = context;
     const Scene launched = launch_scene(study->scene, &study->launches[i]);
@@ -77,7 +84,9 @@ static bool begin(SceneStudy *study, const char *path, const ContenderList *cont
     study->contender_count = contenders_for(contenders, scene, study->contenders);
     for (int i = 0; i < study->contender_count; i++)
         study->no_push_out |= study->contenders[i]->method.kind->description->no_push_out;
-    if (!stepper_pool_begin(&study->steppers, study->contender_count, error)) return false;
+    study->steppers = calloc((size_t)study->contender_count + 1, sizeof *study->steppers);
+    if (study->steppers == NULL) return error_memory(error, "study");
+    for (int i = 0; i < study->contender_count; i++) omp_init_lock(&study->steppers[i].taken);
     study->launches = choose_launches(launches, scene, study->size.launches, &study->launch_count, error);
     if (study->launches == NULL) return false;
     study->shared_steps = scene->frames;
@@ -104,8 +113,19 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
     return false;
 }
 
+void scene_study_rest(SceneStudy *study) {
+    for (int i = 0; study->steppers != NULL && i < study->contender_count; i++) {
+        stepper_destroy(study->steppers[i].stepper);
+        study->steppers[i].stepper = NULL;
+        shared_steps_free(&study->steppers[i].shared);
+    }
+}
+
 void scene_study_end(SceneStudy *study) {
-    stepper_pool_end(&study->steppers);
+    scene_study_rest(study);
+    for (int i = 0; study->steppers != NULL && i < study->contender_count; i++)
+        omp_destroy_lock(&study->steppers[i].taken);
+    free(study->steppers);
     shared_steps_free(&study->converged);
     free(study->launches);
     free(study->striking);
@@ -132,21 +152,35 @@ typedef struct LaunchPiece {
     LaunchScores *scores; /* [contenders] */
 } LaunchPiece;
 
-/* Scores a contender, whichever is free. */
+/* Scores a contender of those that are left: the first from piece->first on that no other thread uses, or else one that
+   it waits for. */
 static bool score(void *context, int i, Error *error) {
     (void)i;
     LaunchPiece *piece = context;
     SceneStudy *study = piece->study;
-    const int contender = stepper_pool_take(&study->steppers, piece->chosen, piece->first);
+    int contender = -1;
+    bool free = false;
+#pragma omp critical(study_steppers)
+    {
+        for (int k = 0; !free && k < study->contender_count; k++) {
+            const int next = (piece->first + k) % study->contender_count;
+            if (piece->chosen[next]) continue;
+            free = omp_test_lock(&study->steppers[next].taken) != 0;
+            if (free || contender < 0) contender = next;
+        }
+        piece->chosen[contender] = true;
+    }
+    struct SharedStepper *own = &study->steppers[contender];
+    if (!free) omp_set_lock(&own->taken);
+    if (own->stepper == NULL) own->stepper = stepper_create(&study->contenders[contender]->method, study->scene, error);
     LaunchScores *scores = &piece->scores[contender];
-    Stepper *stepper =
-        stepper_pool_stepper(&study->steppers, contender, &study->contenders[contender]->method, study->scene, error);
+    Stepper *stepper = own->stepper;
     Rollout rollout = {0};
     bool ok = stepper != NULL;
     if (study->shared_steps > 0 && contender_forgets(study->contenders[contender])) {
-        SharedSteps *shared = stepper_pool_shared(&study->steppers, contender);
-        ok = ok && shared_steps_run(shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
-        rollout.shared = shared;
+        ok = ok &&
+             shared_steps_run(&own->shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
+        rollout.shared = &own->shared;
     }
     ok = ok &&
          rollout_run(&rollout, stepper, &piece->launched, &study->size.closed, scores->steps[PROTOCOL_CLOSED], error);
@@ -155,7 +189,7 @@ static bool score(void *context, int i, Error *error) {
         ok = snapshots_score(&piece->snapshots, stepper, rollout.world, scores->steps[PROTOCOL_FROZEN], error);
     scores->unconverged = rollout.unconverged;
     rollout_free(&rollout);
-    stepper_pool_give(&study->steppers, contender);
+    omp_unset_lock(&own->taken);
     return ok;
 }
 
@@ -238,14 +272,6 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
     return ok;
 }
 
-static bool is_time(double value) { return !(value < 0); }
-
-/* What chart.csv can have. */
-static bool is_cost(const StepCost *cost) {
-    return is_time(cost->solver_q1) && !(cost->solver_q1 > cost->solver) && !(cost->solver > cost->solver_q3) &&
-           is_time(cost->step) && is_time(cost->engine);
-}
-
 MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error) {
     double stored[6];
     const size_t count = (size_t)study->contender_count;
@@ -256,7 +282,9 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
         memcpy(stored, bytes + i * sizeof stored, sizeof stored);
         StepCost *cost = &times[i / (PROTOCOLS * PHASES)].costs[i / PHASES % PROTOCOLS][i % PHASES];
         *cost = (StepCost){stored[0], stored[1], stored[2], stored[3], .engine = stored[4], .varies = stored[5] == 1};
-        whole = is_cost(cost) && (stored[5] == 0 || stored[5] == 1);
+        /* What chart.csv can have; NAN is no time. */
+        whole = !(cost->solver_q1 < 0) && !(cost->solver_q1 > cost->solver) && !(cost->solver > cost->solver_q3) &&
+                !(cost->step < 0) && !(cost->engine < 0) && (stored[5] == 0 || stored[5] == 1);
     }
     if (whole) return times;
     error_input(error, path, "is no result of times; delete it, and run the command again");

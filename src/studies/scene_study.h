@@ -7,7 +7,6 @@
 #include "studies/chart_table.h"
 #include "studies/contenders.h"
 #include "studies/rollout.h"
-#include "studies/stepper_pool.h"
 #include "studies/timing.h"
 
 #include <stdbool.h>
@@ -39,9 +38,11 @@ typedef struct SceneStudy {
     int striking_count;           /* of the launches: those that strike a box, by the engine; at least 1 */
     int *striking;                /* [striking_count] their places, rising */
     const Contender **contenders; /* [contender_count] available for this scene */
-    StepperPool steppers;         /* of the contenders */
-    SharedSteps converged;        /* of the converged runs */
-    bool no_push_out;             /* one of them is scored against converged velocities without push-out */
+    /* [contender_count] Threads use them in turns, as some take seconds and much memory to be made. A stepper keeps
+       nothing of a launch for the next, so the order of launches does not matter. */
+    struct SharedStepper *steppers;
+    SharedSteps converged; /* of the converged runs */
+    bool no_push_out;      /* one of them is scored against converged velocities without push-out */
     StudySize size;
 } SceneStudy;
 
@@ -50,6 +51,9 @@ typedef struct SceneStudy {
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
                        const LaunchChoice *launches, const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
+
+/* Destroys the steppers, which no thread may use; they are made again when they are needed. */
+void scene_study_rest(SceneStudy *study);
 
 /* The number of launches whose times are measured, spread evenly over those that strike. */
 int scene_study_timed(const SceneStudy *study);

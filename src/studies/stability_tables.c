@@ -38,28 +38,6 @@ const char stability_unconverged_words[] =
     "From a step on that did not converge no run is judged by the reference, and "
     "what a strike must do is undecided.";
 
-/* The first row of its values: other methods have the same converged runs. */
-static bool is_first_there(const CsvTable *table, int i) {
-    const MapCell *cell = map_cell(table, i);
-    for (int k = 0; k < i; k++) {
-        const MapCell *other = map_cell(table, k);
-        if (strcmp(other->map, cell->map) == 0 && other->x == cell->x &&
-            (other->y == cell->y || (isnan(other->y) && isnan(cell->y))))
-            return false;
-    }
-    return true;
-}
-
-/* "at rows 22", or of a map "at rows/rate 22/60"; further places without the names. */
-static void add_place(char *text, const MapCell *cell, int places) {
-    const bool map = !isnan(cell->y);
-    if (places > 0)
-        text_add(text, UNCONVERGED_TEXT_SIZE, ", ");
-    else
-        text_add(text, UNCONVERGED_TEXT_SIZE, map ? "at %s/%s " : "at %s ", cell->x_parameter, cell->y_parameter);
-    text_add(text, UNCONVERGED_TEXT_SIZE, map ? "%.4g/%.4g" : "%.4g", cell->x, cell->y);
-}
-
 bool stability_unconverged(const CsvTable *table, const char *study, char text[UNCONVERGED_TEXT_SIZE]) {
     enum { NAMED = 12 };
     double steps = 0, not_converged = 0, residual = 0;
@@ -67,8 +45,19 @@ bool stability_unconverged(const CsvTable *table, const char *study, char text[U
     text[0] = '\0';
     for (int i = 0; i < table->count; i++) {
         const MapCell *cell = map_cell(table, i);
-        if (strcmp(cell->map, study) != 0 || !is_first_there(table, i)) continue;
-        if (places < NAMED) add_place(text, cell, places);
+        const bool map = !isnan(cell->y);
+        bool first = strcmp(cell->map, study) == 0; /* row of its values: other methods have the same converged runs */
+        for (int k = 0; first && k < i; k++) {
+            const MapCell *other = map_cell(table, k);
+            first = strcmp(other->map, study) != 0 || other->x != cell->x || (map && other->y != cell->y);
+        }
+        if (!first) continue;
+        /* "at rows 22", or of a map "at rows/rate 22/60"; further places without the names. */
+        if (places == 0)
+            text_add(text, UNCONVERGED_TEXT_SIZE, map ? "at %s/%s " : "at %s ", cell->x_parameter, cell->y_parameter);
+        if (places < NAMED)
+            text_add(text, UNCONVERGED_TEXT_SIZE, map ? "%s%.4g/%.4g" : "%s%.4g", places > 0 ? ", " : "", cell->x,
+                     cell->y);
         places++;
         steps += cell->steps;
         not_converged += cell->not_converged;

@@ -170,28 +170,26 @@ static bool warm_up(Timing *timing, Error *error) {
     return ok;
 }
 
-/* Adds the quartiles and medians of step i over the repetitions. A repetition that another process interrupted in this
-   step does not count more than once. */
-static void add_step(StepCost *sum, const StepLog *logs, int repetitions, int i, double *times) {
-    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].step / 1000;
-    sum->step += statistics_quantile(times, repetitions, 0.5);
-    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].solver / 1000;
-    sum->solver += statistics_quantile(times, repetitions, 0.5);
-    sum->solver_q1 += statistics_quantile(times, repetitions, 0.25);
-    sum->solver_q3 += statistics_quantile(times, repetitions, 0.75);
-    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].engine / 1000;
-    sum->engine += statistics_quantile(times, repetitions, 0.5);
-    sum->steps++;
-}
-
-/* Adds the steps of a part in a phase. */
+/* Adds the steps of a part in a phase: of each the quartiles and medians over the repetitions. A repetition that another
+   process interrupted in a step does not count more than once. */
 static void add_part(const Timing *timing, const Timed *timed, int part, int phase, StepCost *sum) {
     const StepLog *logs = logs_of(timing, timed, part);
     const int repetitions = timing->options->repetitions;
     int fewest = logs[0].count;
     for (int r = 1; r < repetitions; r++) fewest = logs[r].count < fewest ? logs[r].count : fewest;
-    for (int i = 0; i < fewest; i++)
-        if ((int)logs[0].items[i].phase == phase) add_step(sum, logs, repetitions, i, timing->numbers);
+    double *times = timing->numbers;
+    for (int i = 0; i < fewest; i++) {
+        if ((int)logs[0].items[i].phase != phase) continue;
+        for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].step / 1000;
+        sum->step += statistics_quantile(times, repetitions, 0.5);
+        for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].solver / 1000;
+        sum->solver += statistics_quantile(times, repetitions, 0.5);
+        sum->solver_q1 += statistics_quantile(times, repetitions, 0.25);
+        sum->solver_q3 += statistics_quantile(times, repetitions, 0.75);
+        for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].engine / 1000;
+        sum->engine += statistics_quantile(times, repetitions, 0.5);
+        sum->steps++;
+    }
 }
 
 static StepCost summarise(const Timing *timing, const Timed *timed, int protocol, int phase) {
