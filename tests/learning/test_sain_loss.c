@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 #include "base/random.h"
-#include "learning/sain_fit.h"
+#include "learning/sain_training.h"
 
 enum { SAMPLES = 40, ROWS = 3 * SAMPLES };
 
@@ -39,7 +39,7 @@ static void fill(Any *any) {
     any->samples.count = SAMPLES;
     any->samples.problems = 1;
     assert_ok(sain_network_create(&any->network, &error), error);
-    sain_normalise(&any->network, &any->samples);
+    sain_normalise(&any->network, &any->samples, true);
     any->weight_count = sain_weight_count(&any->network);
     any->weights = calloc((size_t)any->weight_count, sizeof *any->weights);
     assert_non_null(any->weights);
