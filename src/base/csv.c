@@ -114,25 +114,20 @@ static bool take_row(Reader *reader, Error *error) {
                                             width == 1 ? "" : "s", csv->width);
 }
 
-static bool take_rows(Csv *csv, int min_rows, int max_rows, Error *error) {
-    Reader reader = {.csv = csv, .at = csv->text, .max_rows = max_rows};
-    while (*reader.at != '\0')
-        if (!take_row(&reader, error)) return false;
-    return csv->rows > min_rows ||
-           fail_csv(&reader, 1, error, csv->rows == 0 ? "the file is empty" : "the table has no rows");
-}
-
 bool csv_read(Csv *csv, const char *path, size_t max_size, int min_rows, int max_rows, Error *error) {
     *csv = (Csv){.path = strdup(path)};
     if (csv->path == NULL) return error_memory(error, path);
     size_t size;
     csv->text = file_read(path, max_size, &size, error);
-    if (csv->text != NULL) {
-        if (strncmp(csv->text, "\xef\xbb\xbf", 3) == 0) memmove(csv->text, csv->text + 3, (size -= 3) + 1);
-        if (check_text(path, csv->text, size, error) && take_rows(csv, min_rows, max_rows, error)) return true;
-    }
-    csv_free(csv);
-    return false;
+    bool ok = csv->text != NULL;
+    if (ok && strncmp(csv->text, "\xef\xbb\xbf", 3) == 0) memmove(csv->text, csv->text + 3, (size -= 3) + 1);
+    ok = ok && check_text(path, csv->text, size, error);
+    Reader reader = {.csv = csv, .at = csv->text, .max_rows = max_rows};
+    while (ok && *reader.at != '\0') ok = take_row(&reader, error);
+    if (ok && csv->rows <= min_rows)
+        ok = fail_csv(&reader, 1, error, csv->rows == 0 ? "the file is empty" : "the table has no rows");
+    if (!ok) csv_free(csv);
+    return ok;
 }
 
 void csv_free(Csv *csv) {

@@ -203,14 +203,6 @@ static bool sync_folder(int at, const char *path) {
     return sync_entry(folder);
 }
 
-/* Closes also after a failure, and keeps errno of the first failure. */
-static bool close_after(int file, bool done) {
-    int cause = errno;
-    if (close(file) != 0 && done) return false;
-    errno = cause;
-    return done;
-}
-
 /* What close() would report, while the lock lasts. */
 static bool flush(int file, bool wait) {
     if (wait && fsync(file) != 0) return false;
@@ -242,9 +234,14 @@ bool standard_output_is(const struct stat *status) {
     return fstat(STDOUT_FILENO, &output) == 0 && same_file(&output, status);
 }
 
-/* For devices, pipes and the target of /dev/stdout. */
+/* For devices, pipes and the target of /dev/stdout. Closes also after a failure, and keeps errno of the first one. */
 static bool write_into(int file, const Contents *contents) {
-    return file >= 0 && close_after(file, write_contents(file, contents));
+    if (file < 0) return false;
+    const bool done = write_contents(file, contents);
+    const int cause = errno;
+    if (close(file) != 0 && done) return false;
+    errno = cause;
+    return done;
 }
 
 static bool put(const char *path, const Contents *contents, bool wait) {

@@ -112,16 +112,6 @@ static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
     return true;
 }
 
-static bool draw_scenes(const CsvTable *table, const char *csv, const SpeedAccuracyOptions *options, Error *error) {
-    for (int i = 0; i < table->count; i++) {
-        int first = 0;
-        while (strcmp(chart_row(table, first)->scene, chart_row(table, i)->scene) != 0) first++;
-        if (first < i) continue;
-        if (!draw_scene(csv, chart_row(table, i)->scene, "", options, i, table->count, error)) return false;
-    }
-    return true;
-}
-
 /* The charts of a finished table. */
 static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Error *error) {
     CsvTable table;
@@ -129,10 +119,16 @@ static bool draw_again(const SpeedAccuracyOptions *options, const char *csv, Err
         options->launches.count > 0 || options->launches.table != NULL || options->launches.bomb_x.count > 0)
         return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
     if (!csv_table_read(&table, csv, &chart_layout, error)) return false;
-    const bool drawn = chart_colours_check(&options->look.colours, table.rows, table.count, error) &&
-                       chart_highlight_check(options->look.highlight, table.rows, table.count, error) &&
-                       folder_reserve(options->folder, error) && draw_scenes(&table, csv, options, error) &&
-                       draw_equal_time(csv, options->folder, error);
+    bool drawn = chart_colours_check(&options->look.colours, table.rows, table.count, error) &&
+                 chart_highlight_check(options->look.highlight, table.rows, table.count, error) &&
+                 folder_reserve(options->folder, error);
+    for (int i = 0; drawn && i < table.count; i++) {
+        const char *scene = chart_row(&table, i)->scene;
+        int first = 0;
+        while (strcmp(chart_row(&table, first)->scene, scene) != 0) first++;
+        drawn = first < i || draw_scene(csv, scene, "", options, i, table.count, error);
+    }
+    drawn = drawn && draw_equal_time(csv, options->folder, error);
     progress_bar_end();
     csv_table_free(&table);
     return drawn;
@@ -201,15 +197,6 @@ static void note_misses(const SpeedAccuracyScene *scene) {
                    missed, scene->launches, plural_es(scene->launches), missed == 1 ? "s" : "");
 }
 
-static bool chart_study(const SpeedAccuracyOptions *options, Error *error) {
-    Pieces pieces = {0};
-    SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
-    const bool ok = speed_accuracy_run(options, &pieces, progress_bar_begin("chart"), scenes, error);
-    progress_bar_end();
-    if (ok && options->shard.count > 0) shard_option_print(&pieces);
-    return ok;
-}
-
 bool command_chart(int argc, char **argv, Error *error) {
     Options options = {0};
     options.study.scenes = options.scenes;
@@ -226,6 +213,11 @@ bool command_chart(int argc, char **argv, Error *error) {
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
     options.study.look.chosen = options.study.methods != NULL;
-    return check_look(&options.study, error) && output_check_folder(options.study.folder, error) &&
-           chart_study(&options.study, error);
+    if (!check_look(&options.study, error) || !output_check_folder(options.study.folder, error)) return false;
+    Pieces pieces = {0};
+    SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
+    const bool ok = speed_accuracy_run(&options.study, &pieces, progress_bar_begin("chart"), scenes, error);
+    progress_bar_end();
+    if (ok && options.study.shard.count > 0) shard_option_print(&pieces);
+    return ok;
 }

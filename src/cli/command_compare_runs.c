@@ -386,21 +386,19 @@ void compare_runs_free(RunComparison *c) {
     for (int i = 0; i < 2; i++) trajectory_destroy(c->runs[i]);
 }
 
-/* The text is printed, and is in the report. */
-static bool show(RunComparison *c, Error *error) {
-    const CompareOptions *options = c->options;
-    if (options->report != NULL && !compare_runs_report(c, options->report, error)) return false;
-    if (options->json) return json_output("twinbox compare runs 1", compare_runs_write_json, c, error);
-    fputs(c->text, stdout);
-    if (c->same_world && c->parting.first.frame >= 0 && c->chaos.distance == NULL && c->runs[0]->scene_hash != 0)
-        note_print("with --scene SCENE, the growth is compared with that of a shift of 1e-6 m");
-    if (options->report != NULL) printf("report -> %s/report.html\n", options->report);
-    return true;
-}
-
 bool compare_runs(const CompareOptions *options, Error *error) {
-    RunComparison comparison = {.options = options};
-    const bool ok = compare_runs_make(&comparison, error) && show(&comparison, error) && comparison.passed;
-    compare_runs_free(&comparison);
+    RunComparison c = {.options = options};
+    bool ok =
+        compare_runs_make(&c, error) && (options->report == NULL || compare_runs_report(&c, options->report, error));
+    if (ok && options->json) {
+        ok = json_output("twinbox compare runs 1", compare_runs_write_json, &c, error);
+    } else if (ok) {
+        fputs(c.text, stdout); /* it is in the report, too */
+        if (c.same_world && c.parting.first.frame >= 0 && c.chaos.distance == NULL && c.runs[0]->scene_hash != 0)
+            note_print("with --scene SCENE, the growth is compared with that of a shift of 1e-6 m");
+        if (options->report != NULL) printf("report -> %s/report.html\n", options->report);
+    }
+    ok = ok && c.passed;
+    compare_runs_free(&c);
     return ok;
 }

@@ -64,18 +64,15 @@ static const CommandSpec spec = {
         "Example: twinbox dataset single stack -o pairs.npz\n"
         "         twinbox dataset single -o impulses.npz --inputs raw --target impulse"};
 
-static void print_rows(const Options *options, const Dataset *dataset) {
-    printf("%" PRId64 " rows of %d launch%s -> %s\n", dataset->rows, dataset->launches, plural_es(dataset->launches),
-           options->output);
-    if (options->dataset.labels == DATASET_BY_REFERENCE)
-        printf("    steps left out, as the reference does not converge: %" PRId64 "\n", dataset->unconverged);
-}
-
 static bool record_dataset(const Options *options, Error *error) {
     Dataset *dataset = dataset_record(&options->dataset, progress_bar_begin("recording launches"), error);
     progress_bar_end();
     const bool ok = dataset != NULL && dataset_write(dataset, options->output, error);
-    if (ok) print_rows(options, dataset);
+    if (ok)
+        printf("%" PRId64 " rows of %d launch%s -> %s\n", dataset->rows, dataset->launches,
+               plural_es(dataset->launches), options->output);
+    if (ok && options->dataset.labels == DATASET_BY_REFERENCE)
+        printf("    steps left out, as the reference does not converge: %" PRId64 "\n", dataset->unconverged);
     dataset_destroy(dataset);
     return ok;
 }

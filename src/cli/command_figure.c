@@ -140,28 +140,19 @@ static bool figure_refuse(const char *option, const FigureKind *kind, Error *err
     return error_input(error, option, "does not apply to the kind %s", kind->name);
 }
 
-static bool check_inputs(const FigureKind *kind, const Options *options, Error *error) {
-    if (options->input_count >= kind->min_runs && options->input_count <= kind->max_runs) return true;
-    return error_input(error, "figure", "%s needs %s%d run%s (.npz), not %d", kind->name,
-                       kind->min_runs < kind->max_runs ? "at least " : "", kind->min_runs, plural(kind->min_runs),
-                       options->input_count);
-}
-
-static bool check_captions(const Options *options, Error *error) {
-    if (options->caption_count > options->input_count)
-        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, options->input_count,
-                           options->input_count == 1 ? "" : "s");
-    for (int i = 0; i < options->caption_count; i++)
-        if (!caption_check(options->figure.captions[i], "--caption", error)) return false;
-    return true;
-}
-
 static bool check_options(const FigureKind *kind, const Options *options, Error *error) {
     const FigureSpec *figure = &options->figure;
     SketchFormat format;
-    if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error) ||
-        !check_captions(options, error))
-        return false;
+    if (!sketch_format(options->output, &format, error)) return false;
+    if (options->input_count < kind->min_runs || options->input_count > kind->max_runs)
+        return error_input(error, "figure", "%s needs %s%d run%s (.npz), not %d", kind->name,
+                           kind->min_runs < kind->max_runs ? "at least " : "", kind->min_runs, plural(kind->min_runs),
+                           options->input_count);
+    if (options->caption_count > options->input_count)
+        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, options->input_count,
+                           plural(options->input_count));
+    for (int i = 0; i < options->caption_count; i++)
+        if (!caption_check(figure->captions[i], "--caption", error)) return false;
     if (options->outlines && format != SKETCH_SVG)
         return error_input(error, "--outlines", "is for SVG, not for %s", options->output);
     if (figure->time_count > 0 && !kind->takes_times) return figure_refuse("--at", kind, error);
@@ -178,17 +169,6 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     if (options->view_from != NULL && !kind->takes_view) return figure_refuse("--view-from", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||
            error_input(error, "--moments", "cannot be combined with --at");
-}
-
-static bool figure_draw_and_write(const FigureKind *kind, const Options *options, Error *error) {
-    const SketchOutput output = {options->figure.dpi, options->transparent, options->outlines};
-    Sketch sketch = {0};
-    bool ok = figure_draw(kind, &sketch, &options->figure, error) && sketch_check_texts(&sketch, kind->name, error) &&
-              sketch_check_pixels(sketch.width, sketch.height, options->figure.dpi, error) &&
-              sketch_write(&sketch, options->output, &output, error);
-    if (ok) printf("%s, %.1f x %.1f mm -> %s\n", kind->name, sketch.width, sketch.height, options->output);
-    sketch_free(&sketch);
-    return ok;
 }
 
 /* A chart of the scene of a run, if its file is found by its name and has a family of launches. */
@@ -219,7 +199,13 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
     }
     if (ok) note_different_scenes(figure->runs, figure->run_count);
     figure->progress = progress_bar_begin(kind->name);
-    ok = ok && figure_draw_and_write(kind, options, error);
+    const SketchOutput output = {figure->dpi, options->transparent, options->outlines};
+    Sketch sketch = {0};
+    ok = ok && figure_draw(kind, &sketch, figure, error) && sketch_check_texts(&sketch, kind->name, error) &&
+         sketch_check_pixels(sketch.width, sketch.height, figure->dpi, error) &&
+         sketch_write(&sketch, options->output, &output, error);
+    if (ok) printf("%s, %.1f x %.1f mm -> %s\n", kind->name, sketch.width, sketch.height, options->output);
+    sketch_free(&sketch);
     progress_bar_end();
     if (ok && !path_is_standard(options->output)) next_chart(runs[0]->scene);
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) trajectory_destroy(runs[i]);

@@ -69,7 +69,6 @@ static const Option option_table[] = {
     {"--end", 0, "TEXT",
      "End with a card of two seconds, with a table of the distances from the reference, or from the run that held best",
      OPTION_TEXT(Options, render.look.end)},
-    {"--no-table", 0, NULL, "The card of --end has its text only", OPTION_FLAG(Options, render.look.end_bare)},
     {"--video", 0, "FILE",
      "Also encode a video: FILE.mp4 (H.264), .webm (VP9) or .gif; - writes y4m in 4:4:4 and BT.709 to standard output "
      "(may be repeated)",
@@ -434,17 +433,6 @@ static void next_figure(const char *directory, const Panels *panels) {
     next_print(words);
 }
 
-static bool render_panels(Options *options, const Panels *panels, Error *error) {
-    const char *directory = options->render.directory;
-    Costs costs;
-    RenderResult result;
-    if (!check_panels(options, panels, &costs, error) || !draw(options, panels, &result, error)) return false;
-    print_result(options, &result);
-    if (!note_foreign_files(directory, &result, panels, error)) return false;
-    if (!writes_output(options)) next_figure(directory, panels);
-    return true;
-}
-
 /* What can be refused before a run is read. */
 static bool check_options(const Options *options, Error *error) {
     const RenderOptions *render = &options->render;
@@ -458,8 +446,6 @@ static bool check_options(const Options *options, Error *error) {
         return false;
     for (int i = 0; i < options->caption_count; i++)
         if (!caption_check(render->captions[i], "--caption", error)) return false;
-    if (render->look.end_bare && render->look.end == NULL)
-        return error_input(error, "--no-table", "needs --end TEXT: only that card has a table");
     return true;
 }
 
@@ -476,9 +462,14 @@ bool command_render(int argc, char **argv, Error *error) {
     Trajectory *view_from;
     bool ok = camera_option_load(options.view_from, &render->look.view, &view_from, error);
     render->look.view_from = view_from;
+    Costs costs;
+    RenderResult result;
     ok = ok && check_videos(&options, error) &&
          panels_load(&panels, options.inputs, options.input_count, &options.set, &options.methods, error) &&
-         render_panels(&options, &panels, error);
+         check_panels(&options, &panels, &costs, error) && draw(&options, &panels, &result, error);
+    if (ok) print_result(&options, &result);
+    ok = ok && note_foreign_files(render->directory, &result, &panels, error);
+    if (ok && !writes_output(&options)) next_figure(render->directory, &panels);
     panels_free(&panels);
     trajectory_destroy(view_from);
     return ok;

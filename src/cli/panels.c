@@ -72,21 +72,15 @@ static void note_engine_only(const char *input, const Scene *scene) {
                trained ? scene->networks[0].method : "scene-net:network=net.npz");
 }
 
-static bool add_runs(Panels *panels, const Scene *scene, const char *input, const PanelMethods *methods, Error *error) {
-    static const PanelMethods both = {{"engine", "pair-net"}, 2}, engine = {{"engine"}, 1};
-    const bool chosen = methods->count > 0, network = scene_network(scene, "pair-net") != NULL;
-    if (!chosen) methods = network ? &both : &engine;
-    for (int i = 0; i < methods->count; i++)
-        if (!panels_add_run(panels, scene, methods->texts[i], input, error)) return false;
-    if (!chosen && !network) note_engine_only(input, scene);
-    return true;
-}
-
 bool panels_add_scene(Panels *panels, const char *input, const SceneSettings *set, const PanelMethods *methods,
                       Error *error) {
+    static const PanelMethods both = {{"engine", "pair-net"}, 2}, engine = {{"engine"}, 1};
     Scene *scene = scene_read_with(input, set->items, set->count, error);
-    const bool ok =
-        scene != NULL && type_check(scene->name, input, error) && add_runs(panels, scene, input, methods, error);
+    bool ok = scene != NULL && type_check(scene->name, input, error);
+    const bool chosen = methods->count > 0, network = ok && scene_network(scene, "pair-net") != NULL;
+    if (!chosen) methods = network ? &both : &engine;
+    for (int i = 0; ok && i < methods->count; i++) ok = panels_add_run(panels, scene, methods->texts[i], input, error);
+    if (ok && !chosen && !network) note_engine_only(input, scene);
     scene_destroy(scene);
     return ok;
 }

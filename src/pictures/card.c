@@ -84,7 +84,7 @@ static int draw_head(const Card *card, MomentKind kind) {
     const Picture *picture = card->picture;
     const TextLines head = card_head(picture, kind);
     const int lines = head.count < TEXT_LINES_MAX ? head.count : TEXT_LINES_MAX;
-    const int rows = kind == MOMENT_END && picture->look.end_bare ? 0 : picture->count;
+    const int rows = picture->count;
     const double height = (0.16 + LINE * rows - HEAD_LINE * (lines - 1)) * card->unit;
     const int last = (int)rint(0.46 * picture->layout.height - height / 2 + 0.07 * card->unit);
     for (int i = 0; i < lines; i++)
@@ -171,7 +171,6 @@ static void draw_end(const Card *card) {
     const int base = picture->card_base;
     const int first = draw_head(card, MOMENT_END), column = (int)rint(0.17 * (card->right - card->left));
     const int columns[3] = {card->right - 2 * column, card->right - column, card->right};
-    if (picture->look.end_bare) return;
     caption_method(picture, base, title, note);
     snprintf(text, sizeof text, picture->count > 1 ? "distance from %s" : "%s", title);
     int baseline = first + scaled(card, 0.065);

@@ -136,7 +136,6 @@ static void write_head(JsonWriter *json, const Manifest *manifest) {
     json_put_text(json, "png", options->small ? "small" : "fast");
     json_put_text(json, "title", options->title);
     json_put_text(json, "end", options->look.end);
-    json_put_bool(json, "end_table", options->look.end != NULL && !options->look.end_bare);
     write_runs(json, manifest);
     write_look(json, &options->look);
     /* The range of frames, and the number of pictures of everything else. */

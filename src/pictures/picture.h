@@ -90,7 +90,6 @@ typedef struct RenderLook {
     bool approach; /* where the bomb appears and its way until it strikes, in every frame, instead of `show` */
     const char *costs[LOOK_RUNS_MAX]; /* cost of each run, as text; NULL: none */
     const char *end;                  /* title of the end card; NULL: a default */
-    bool end_bare;                    /* the end card has no table */
 } RenderLook;
 
 /* The names used in options, in the order of the enums and of SHOW_MARKS; each list ends with NULL. */

@@ -58,25 +58,6 @@ static Picture plan(const char *title, const char *caption, int width, int heigh
     return picture;
 }
 
-static size_t end_glyphs(const RenderOptions *options) {
-    Error error = {0};
-    OWN(Picture) picture;
-    OWN(Drawing) drawing = {0};
-    assert_ok(picture_plan(&picture, (const Trajectory *const *)runs, 2, 1280, 720, &error), error);
-    assert_ok(picture_apply_options(&picture, options, &error), error);
-    card_draw(&picture, (Moment){.kind = MOMENT_END}, &drawing);
-    const size_t glyphs = drawing.glyph_count;
-    return glyphs;
-}
-
-TEST_WITH(an_end_card_without_its_table_has_its_text_only, make, destroy) {
-    RenderOptions options = {
-        .width = 1280, .height = 720, .end_card = true, .look = {.end = "Thanks", .end_bare = true}};
-    assert_int_equal(end_glyphs(&options), strlen("Thanks"));
-    options.look.end_bare = false;
-    assert_true(end_glyphs(&options) > 2 * strlen("Thanks"));
-}
-
 /* The run that the table compares with: what held best; the reference, whatever it did; without verdicts the first. */
 TEST_WITH(an_end_card_compares_with_what_held, make, destroy) {
     static const struct {
