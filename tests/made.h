@@ -11,6 +11,14 @@
 #include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 
+/* Appends a contact of a step. */
+static inline void add_contact(Trajectory *run, int step, TrajectoryContact contact) {
+    Error error = {0};
+    TrajectoryContact *added = trajectory_add_contacts(run, step, 1, &error);
+    assert_ok(added != NULL, error);
+    *added = contact;
+}
+
 static inline Scene *scene_from(const char *path) {
     Error error = {0};
     Scene *scene = scene_read(path, &error);

@@ -14,7 +14,6 @@
 #include "engine/engine.h"
 #include "learning/launches.h"
 #include "learning/principal.h"
-#include "methods/hybrid.h"
 #include "methods/hybrid_memory.h"
 #include "methods/pair.h"
 #include "methods/sweeps.h"

@@ -17,7 +17,6 @@
 #include "base/base.h"
 #include "base/hash.h"
 #include "engine/engine.h"
-#include "methods/hybrid.h"
 #include "methods/hybrid_memory.h"
 #include "methods/methods.h"
 #include "methods/residual.h"
@@ -159,24 +158,6 @@ static bool make_query(Hybrid *hybrid, const ContactProblem *problem, HybridQuer
     return true;
 }
 
-static bool is_impact(const Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution) {
-    static const SequentialOptions warm = {.accumulate = true, .warm = true};
-    if (problem->bomb < 0) return false;
-    sequential_impulses_begin(problem, &warm, solution);
-    return residual_reaches_scalar(problem, solution, hybrid->memory != NULL ? hybrid->memory->gate : hybrid_gate);
-}
-
-/* False for a NaN too. */
-static bool is_bounded(const ContactProblem *problem, const ContactSolution *solution) {
-    bool bounded = true;
-    for (int i = 0; i < problem->body_count; i++) {
-        const BodyVelocity *v = &solution->velocities[i];
-        bounded = bounded && fabsf(v->linear.x) <= speed_max && fabsf(v->linear.y) <= speed_max &&
-                  fabsf(v->angular) <= speed_max;
-    }
-    return bounded;
-}
-
 void hybrid_answer(const HybridMemory *memory, int entry, const float *key, const ContactProblem *problem,
                    ContactSolution *solution) {
     contact_solution_begin(problem, solution);
@@ -205,14 +186,23 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (hybrid->memory != NULL && !fits(hybrid, problem, error)) return false;
     solution->fallbacks = (Fallbacks){0};
     const bool asks = hybrid->retrieves && (hybrid->memory != NULL || hybrid->watch.see != NULL);
-    if (!asks || !is_impact(hybrid, problem, solution)) return converge(hybrid, problem, solution, error);
+    if (!asks || problem->bomb < 0) return converge(hybrid, problem, solution, error);
+    sequential_impulses_begin(problem, &(SequentialOptions){.accumulate = true, .warm = true}, solution);
+    if (!residual_reaches_scalar(problem, solution, hybrid->memory != NULL ? hybrid->memory->gate : hybrid_gate))
+        return converge(hybrid, problem, solution, error);
     HybridQuery query;
     if (!make_query(hybrid, problem, &query)) return error_memory(error, "hybrid");
     HybridStep step = {problem, solution, query, hybrid->bomb, hybrid->others, -1};
     if (hybrid->memory != NULL) step.entry = hybrid_memory_find(hybrid->memory, &step.query);
     if (step.entry >= 0) {
         hybrid_answer(hybrid->memory, step.entry, step.query.key, problem, solution);
-        if (!is_bounded(problem, solution)) {
+        bool bounded = true; /* which a NaN is not */
+        for (int i = 0; i < problem->body_count; i++) {
+            const BodyVelocity *v = &solution->velocities[i];
+            bounded = bounded && fabsf(v->linear.x) <= speed_max && fabsf(v->linear.y) <= speed_max &&
+                      fabsf(v->angular) <= speed_max;
+        }
+        if (!bounded) {
             solution->fallbacks = (Fallbacks){.not_finite = 1};
             step.entry = -1;
         }

@@ -118,13 +118,6 @@ TrajectoryContact *trajectory_add_contacts(Trajectory *t, int frame, int added, 
     return t->contacts + count;
 }
 
-bool trajectory_add_contact(Trajectory *t, int frame, const TrajectoryContact *contact, Error *error) {
-    assert(frame >= 1);
-    TrajectoryContact *added = trajectory_add_contacts(t, frame, 1, error);
-    if (added != NULL) *added = *contact;
-    return added != NULL;
-}
-
 void trajectory_restart_contacts(Trajectory *t) {
     t->last_step = -1;
     t->contact_start[0] = 0;

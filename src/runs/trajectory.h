@@ -151,7 +151,7 @@ void trajectory_name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]
 /* Making a trajectory. */
 
 /* All poses NaN, no contacts, contact_start all 0. NULL with error set when memory is short or the trajectory exceeds
-   the 2 GiB limit of files; trajectory_add_contact() fails for the same reasons. */
+   the 2 GiB limit of files; trajectory_add_contacts() fails for the same reasons. */
 Trajectory *trajectory_create(int frames, int bodies, Error *error);
 void trajectory_destroy(Trajectory *trajectory);
 
@@ -160,9 +160,6 @@ void trajectory_judge(Trajectory *trajectory, const char *words, int frame, int 
 
 /* Whether the masses of all bodies that are not static are known. */
 bool trajectory_has_masses(const Trajectory *trajectory);
-
-/* Appends a contact of step `frame` (from 1); frames in rising order. */
-bool trajectory_add_contact(Trajectory *trajectory, int frame, const TrajectoryContact *contact, Error *error);
 
 /* Call after the last contact: fills the rest of contact_start. */
 void trajectory_end_contacts(Trajectory *trajectory);

@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "methods/methods.h"
 #include "studies/chart_data.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 #include "studies/figure_words.h"
 
 #include <stddef.h>

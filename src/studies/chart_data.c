@@ -10,7 +10,7 @@
 #include "studies/chart_data.h"
 #include "studies/chart_plot.h"
 #include "studies/chart_table.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

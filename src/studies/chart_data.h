@@ -7,7 +7,7 @@
 #include "pictures/colours.h"
 #include "studies/chart_plot.h"
 #include "studies/chart_table.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 #include <stdbool.h>
 #include <stddef.h>

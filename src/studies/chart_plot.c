@@ -13,7 +13,7 @@
 #include "studies/chart_drawing.h"
 #include "studies/chart_plot.h"
 #include "studies/chart_table.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 #include <limits.h>
 #include <math.h>

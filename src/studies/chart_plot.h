@@ -28,7 +28,7 @@ bool chart_highlight_check(const char *highlight, const ChartRow *rows, int coun
 /* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path, and writes what they show as chart-SCENE.txt.
    x: solver time per step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after,
    in closed loop. At most six methods are in colour, each named at its curve; all others are grey. What no method
-   reaches is shaded (the Pareto front, studies/error_curve.h); dotted lines are the time and the error of the engine
+   reaches is shaded (the Pareto front, studies/statistics.h); dotted lines are the time and the error of the engine
    with the scene's own sweeps. The folder must exist. ERROR_INPUT for an invalid table, a scene without marks, or a
    scene name that is not a file name. Each file appears complete or not at all. */
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, const ChartLook *look, Error *error);

@@ -5,7 +5,7 @@
 #include "base/machine.h"
 #include "methods/methods.h"
 #include "studies/chart_table.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 #include <limits.h>
 #include <math.h>

@@ -7,7 +7,7 @@
 #include "scenes/scenes.h"
 #include "studies/chart_table.h"
 #include "studies/equal_time.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 #include <limits.h>
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "methods/methods.h"
 #include "scenes/scenes.h"
 #include "studies/chart_table.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 #include <stdbool.h>
 

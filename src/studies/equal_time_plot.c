@@ -11,7 +11,7 @@
 #include "studies/chart_data.h"
 #include "studies/chart_table.h"
 #include "studies/equal_time.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 #include "studies/figure_words.h"
 
 #include <limits.h>

@@ -30,7 +30,7 @@ TEST(growth_by_a_factor_is_a_straight_line) {
     Trajectory *runs[] = {run_make("engine", 61), run_apart()};
     FigureSpec spec = spec_of(runs, 2);
     Sketch sketch;
-    assert_true(trajectory_add_contact(runs[0], 40, &(TrajectoryContact){.a = 1, .b = BOMB_BODY}, &error));
+    add_contact(runs[0], 40, (TrajectoryContact){.a = 1, .b = BOMB_BODY});
     trajectory_end_contacts(runs[0]);
     draw_kind(&sketch, "divergence", &spec);
     const SketchMark *line = longest_line(&sketch);

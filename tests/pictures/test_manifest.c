@@ -30,7 +30,7 @@ FIXTURE(make) {
     TrajectoryContact contact = {.a = FIRST_BOX, .b = BOMB_BODY, .normal = {0, 1}};
     panels[0] = runs[0] = run_make("engine", FRAMES);
     panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
-    assert_ok(trajectory_add_contact(runs[0], 5, &contact, &error), error);
+    add_contact(runs[0], 5, contact);
     trajectory_end_contacts(runs[0]);
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
     RenderOptions options = options_for(whole);

@@ -26,7 +26,7 @@ TEST(contacts_are_found_by_step) {
     for (int step = 1; step < FRAMES - 5; step++) {
         for (int i = 0; i < step % 3; i++) {
             TrajectoryContact contact = {.a = step, .b = i};
-            assert_ok(trajectory_add_contact(t, step, &contact, &error), error);
+            add_contact(t, step, contact);
         }
     }
     trajectory_end_contacts(t);

@@ -5,7 +5,7 @@
 
 #include "studies/chart_table.h"
 #include "studies/equal_time.h"
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 OWNED_VALUE(EqualTime, equal_time_free)
 

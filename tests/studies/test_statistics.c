@@ -2,7 +2,7 @@
 /* Curves of error over time, in closed form. */
 #include "testing.h"
 
-#include "studies/error_curve.h"
+#include "studies/statistics.h"
 
 enum { POINTS = 4 };
 
