@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of gns: examples from frames of recorded launches, with noise, and the accelerations that correct it; the loss
-   of a batch on all threads, first weights and units, steps and scores. */
+/* Training of gns: examples from frames of recorded launches, with noise, and the accelerations that correct it; the
+   loss of a batch on all threads, first weights and units, steps and scores. */
 #include "learning/gns_training.h"
 
 #include "base/base.h"

@@ -2,8 +2,8 @@
 /* Training of the network of sain on launches of scenes. The target is the converged solution of a step minus the
    engine's. The first round records launches run by the engine and, every second, by sweeps with momentum, which stay
    near the converged motion. Later rounds record launches run by sain with the network so far, and fit all problems so
-   far. Sources: Ajay et al., "Combining Physical Simulators and Object-Based Networks for Control" (2019); Ross, Gordon,
-   Bagnell, "A Reduction of Imitation Learning and Structured Prediction to No-Regret Online Learning" (2011).
+   far. Sources: Ajay et al., "Combining Physical Simulators and Object-Based Networks for Control" (2019); Ross,
+   Gordon, Bagnell, "A Reduction of Imitation Learning and Structured Prediction to No-Regret Online Learning" (2011).
 
        SainNetwork network;
        bool ok = sain_training_run(&training, &network, progress, error) &&
@@ -51,9 +51,9 @@ typedef struct SainTraining {
     void *context;
 } SainTraining;
 
-/* Fills the network, which is destroyed by the caller in any case. False with error set if a scene has no family, memory
-   is short, or nothing was recorded. If progress requests a stop, the network is that so far; ERROR_INTERRUPTED if
-   there is none. Same bits for any number of threads. */
+/* Fills the network, which is destroyed by the caller in any case. False with error set if a scene has no family,
+   memory is short, or nothing was recorded. If progress requests a stop, the network is that so far; ERROR_INTERRUPTED
+   if there is none. Same bits for any number of threads. */
 bool sain_training_run(const SainTraining *training, SainNetwork *network, const Progress *progress, Error *error);
 
 /* The launches that a round records, of several scenes: all impact frames, and some of those after and of those at
@@ -98,8 +98,8 @@ void sain_samples_free(SainSamples *samples);
 /* Appends the receivers of all steps, or of those in impact frames. False with error set when memory is short. */
 bool sain_samples_add(SainSamples *samples, const RecordedSteps *steps, bool impacts_only, Error *error);
 
-/* Sets the ranges and limits to those of the samples, a little widened. first: also normalises the inputs to the samples'
-   mean and standard deviation. */
+/* Sets the ranges and limits to those of the samples, a little widened. first: also normalises the inputs to the
+   samples' mean and standard deviation. */
 void sain_normalise(SainNetwork *network, const SainSamples *samples, bool first);
 
 /* Weights as one vector: those of the relation network, then of the object network. */

@@ -10,7 +10,8 @@
    "Combining Physical Simulators and Object-Based Networks for Control" (2019), arXiv 1904.06580. Their network
    corrects poses of two pushed discs at the rate of a controller; here velocities, as positions follow from them.
 
-   A body whose inputs are beyond those of the training data keeps what the engine did. An answer that is NaN, infinite or larger than in training is discarded.
+   A body whose inputs are beyond those of the training data keeps what the engine did. An answer that is NaN, infinite
+   or larger than in training is discarded.
 
    Fails where a correction depends on bodies further away: a message crosses one contact in a step, an impact the whole
    stack. Corrections are no impulses: they create momentum, and may push boxes into each other. */

@@ -260,8 +260,8 @@ bool chart_mark_is_default(const ChartMark *mark) {
     return true;
 }
 
-/* Adds the lines of a scene's rows, and the marks of those in closed loop. Those of a method that lost the scene are marks until the
-   ranks are known. */
+/* Adds the lines of a scene's rows, and the marks of those in closed loop. Those of a method that lost the scene are
+   marks until the ranks are known. */
 static bool add_rows(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
     for (int i = 0; i < table->count; i++) {
         const ChartRow *row = chart_row(table, i);

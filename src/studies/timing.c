@@ -170,8 +170,8 @@ static bool warm_up(Timing *timing, Error *error) {
     return ok;
 }
 
-/* Adds the steps of a part in a phase: of each the quartiles and medians over the repetitions. A repetition that another
-   process interrupted in a step does not count more than once. */
+/* Adds the steps of a part in a phase: of each the quartiles and medians over the repetitions. A repetition that
+   another process interrupted in a step does not count more than once. */
 static void add_part(const Timing *timing, const Timed *timed, int part, int phase, StepCost *sum) {
     const StepLog *logs = logs_of(timing, timed, part);
     const int repetitions = timing->options->repetitions;
