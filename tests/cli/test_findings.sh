@@ -41,6 +41,8 @@ cp "$sources/README.md" copy
 cp "$sources/src/studies/README.md" copy/src/studies
 cp -r copy/golden/findings/*/ copy/out
 cp "$sources"/tests/paper/report/{networks,constants,rates,closed_loop,laws,transfer}.csv copy/out/paper
+printf '%s,0.004,0.9,0.4,0.1,%s\n' cone,1,2,0.002 0.04 cone,1,3,0.0025 0.04 >>copy/out/paper/laws.csv
+echo scratch,2,8,0.5,3.5 >>copy/out/paper/transfer.csv
 for table in families:families/table launches:launches/chart; do
     printf '#!/bin/sh\ncat golden/findings/%s.txt\n' "${table%%:*}" >"copy/scenes/${table#*:}"
     chmod +x "copy/scenes/${table#*:}"
@@ -54,16 +56,17 @@ touch copy/out/paper/report.md copy/out/{chart,chart_net,families}/equal_time.cs
 # What the made-up study of the paper found: in nine of ten splits the constant's 0.004 is below the rows of Table 1 for 0 to 100
 # iterations, in all above the others; of nine networks with that target one has 1289 parameters. The baseline is better than the mean
 # in one of two splits, and worse in the other: it is neither. It is right in 81 and 92% of two scenes, the constant in 80 and 95%.
-# Solvers are no networks: their runs do not count. By seeds: momentum is violated less at a larger error, so is the cone more; of the
-# starts from scratch, one of three with 2 launches is better than all after the smaller scenes, that with 8 is worse than with 2 there.
+# All networks have split 1: inputs-raw alone is worse than the mean. Solvers are no networks: their runs do not count. In all of three
+# seeds momentum is violated less, the cone in two; the error is smaller in one of two seeds with the cone alone. In seed 1 both starts
+# from scratch are worse than one with fewer launches after the smaller scenes, in seed 2 that with 8 launches is not.
 copy/golden/findings/write --paper copy/out/paper || fail "golden/findings/write"
 equal "what the study found" "$(cd copy/golden/findings/paper && tail -n +2 -q targets.csv definitions.csv loops.csv summary.csv && sed -n 2,3p networks.csv)" "\
 pair,10,0.004,0.004,0.1,4,2,0.5,0.5,0.5,8,inputs-contact,0.2,0.2,0.2
 net,10,0.001,0.001,0.001,5,1,0.5,0.5,0.5,1,net,0.7,0.7,0.7
 impulse,10,0.0001,0.0001,0.0001,6,0,0.5,0.5,0.5,2,impulse,0.5,0.5,0.5
-range,2,1,0.865,0.81,0.92,1
-absolute,2,1,0.46,0.3,0.62,1
-bodies,1,1,0.2,0.2,0.2,1
+range,2,1,0.865,0.81,0.92,1,1,1
+absolute,2,1,0.46,0.3,0.62,1,1,1
+bodies,1,1,0.2,0.2,0.2,1,1,1
 single,2,346.5,93,600,,,
 stack,2,306.25,12.5,600,40,60,110
 pyramid,1,4,4,4,,,
@@ -71,20 +74,22 @@ pyramid_settled,1,20,20,20,50,,600
 last_frame,600
 runs,6
 networks,15
-networks_better,13
-networks_worse,1
-networks_median,0.3
-networks_least,0.1
-networks_most,1.1
+better_median,14
+better_least,14
+better_most,14
 runs_complete,2
 highest_cost,3
 law_cases,2
-law_cases_obeyed,1
-law_cases_disobeyed,1
-law_cases_better,0
-law_cases_worse,2
+obeyed_median,2
+obeyed_least,1
+obeyed_most,2
+learned_median,0
+learned_least,0
+learned_most,1
 transfer_rows,2
-transfer_rows_saved,1
+saved_median,1.5
+saved_least,1
+saved_most,2
 baseline,baseline,10-10-2,pair,132,2,0.875,0.25,1.5,2.125,0.25,4,0.25,0.25,0.25,0.5,0.5,0.5,0,0
 inputs-raw,inputs,raw,pair,152,1,1.1,1.1,1.1,1.1,1.1,1.1,1.1,1.1,1.1,0.5,0.5,0.5,0,1"
 grep -q 'Of 6 runs with a network 2 stay within' copy/src/studies/README.md || fail "the page does not say how many runs stay"
