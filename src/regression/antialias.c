@@ -197,15 +197,21 @@ static bool are_mixtures(const uint8_t *const *colours, int count, double roundi
 /* 4. The colour and the part that its widest channel tells are off by a level each at most; what both pictures show
    lies between ends that each has rounded: half a level more. */
 static bool keeps_colours(const EdgeRows *a, const EdgeRows *b, int x) {
-    enum { WINDOW = 9 };
-    const uint8_t *both[2 * WINDOW];
+    enum { WINDOW = 9, WIDE = 25 };
+    const uint8_t *both[2 * WINDOW], *wide[2][WIDE];
+    for (int i = 0; i < WIDE; i++) {
+        const int row = REACH - 2 + i / 5, at = CHANNELS * (x + REACH - 2 + i % 5);
+        wide[0][i] = a->rows[row] + at;
+        wide[1][i] = b->rows[row] + at;
+    }
     for (int i = 0; i < WINDOW; i++) {
-        const int row = REACH - 1 + i / 3, at = CHANNELS * (x + REACH - 1 + i % 3);
-        both[i] = a->rows[row] + at;
-        both[WINDOW + i] = b->rows[row] + at;
+        const int middle = 5 * (1 + i / 3) + 1 + i % 3;
+        both[i] = wide[0][middle];
+        both[WINDOW + i] = wide[1][middle];
     }
     return are_mixtures(both, 2 * WINDOW, 2.5) || !are_mixtures(both, WINDOW, 2) ||
-           !are_mixtures(both + WINDOW, WINDOW, 2);
+           !are_mixtures(both + WINDOW, WINDOW, 2) || !are_mixtures(wide[0], WIDE, 2) ||
+           !are_mixtures(wide[1], WIDE, 2);
 }
 
 static int contrast_of(const Window *p, const Window *q, int c) {

@@ -24,8 +24,8 @@
    3. Within two pixels there is a flat colour (three neighbours are equal to it) that both pictures share: one side of
       the edge. In textures, such as photos, nothing is an edge.
 
-   4. If the colours of each window are mixtures of two, so are those of both together: a line of another colour has not
-      moved.
+   4. If the colours of each window, and of 5 x 5 pixels around the pixel, are mixtures of two, so are those of both
+      windows together: a line of another colour has not moved. Beside a third colour, it is that which may have moved.
 
    Values within 2 + c / 16 of each other count as equal, in 4 within 2, of both windows together within 2.5. Exchanging
    the pictures changes nothing.
