@@ -57,9 +57,10 @@ TEST(quotes_and_bits_are_read) {
 TEST(numbers_are_the_nearest_float64) {
     enum { COUNT = 20000 };
     static const char *const forms[] = {"%.17g", "%.16f", "%.9g", "%.19g", "%a", "%.1f", "%.12e"};
-    static const char *const odd[] = {"-0",     "9007199254740993",    "9007199254740992.5",    "0.1000000000000000055",
-                                      "4.35",   "9999999999999999999", "0.0000000000000000001", "1e300",
-                                      "5e-324", "00000000000000000001"};
+    static const char *const odd[] = {
+        "-0",     "9007199254740993",     "9007199254740992.5",    "0.1000000000000000055",
+        "4.35",   "9999999999999999999",  "0.0000000000000000001", "1e300",
+        "5e-324", "00000000000000000001", "0x1.00000000000008p0",  "0X2.80000000000001P-1074"};
     const char *path = temporary_path("numbers.csv");
     FILE *file = fopen(path, "w");
     double numbers[COUNT];
@@ -71,7 +72,7 @@ TEST(numbers_are_the_nearest_float64) {
         bits = bits * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
         const double number = ldexp((double)(int64_t)bits, -60 - (int)(bits >> 58));
         snprintf(text, sizeof text, forms[i % 7], number); // NOLINT(clang-diagnostic-format-nonliteral)
-        if (i < 10) strcpy(text, odd[i]);
+        if (i < (int)(sizeof odd / sizeof *odd)) strcpy(text, odd[i]);
         numbers[i] = strtod(text, NULL);
         fprintf(file, "%d,0,%s,0,0\n", i, text);
     }
@@ -190,6 +191,7 @@ static const struct {
      "run.csv:10: error: body 1 is finite in frame 2, but not in frame 1"},
     {HEAD "0,0,0,-0.5,0\n0,1,0,1e39,0\n", "run.csv: error: body 1: a number of its first frame is NaN or infinite"},
     {HEAD "0,0,0,-0.5,0\n0,1,0,nano,0\n", "run.csv:6:7: error: y: 'nano' is not a finite number"},
+    {HEAD "0,0,0,-0.5,0\n0,1,0,0x.p1,0\n", "run.csv:6:7: error: y: '0x.p1' is not a finite number"},
     {HEAD "0,0,0,-0.5\n", "run.csv:5: error: 4 fields, but the header has 5"},
     {HEAD "\n" ROWS, "run.csv:5: error: the line is empty"},
     {HEAD "-1,0,0,0,0\n", "run.csv:5:1: error: frame: '-1' is not a whole number from 0"},
