@@ -16,16 +16,17 @@ bool trajectory_both_exact(const Trajectory *a, const Trajectory *b) { return a-
 
 bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
 
-/* The numbers of two runs in the narrower of their two types: a float32 is compared with what a float64 rounds to. */
-typedef struct NumberPair {
-    double x, y;
-} NumberPair;
+/* Which columns both runs have. */
+static int columns_of(const Trajectory *a, const Trajectory *b) {
+    return a->no_poses || b->no_poses ? 0 : trajectory_both_move(a, b) ? STATE_COLUMNS : 3;
+}
 
-static NumberPair pair(const Trajectory *a, int of_a, const Trajectory *b, int of_b, int body, int column) {
-    const double x = trajectory_number(a, trajectory_at(a, of_a, body), column);
-    const double y = trajectory_number(b, trajectory_at(b, of_b, body), column);
-    if (trajectory_both_exact(a, b)) return (NumberPair){x, y};
-    return (NumberPair){(double)(float)x, (double)(float)y};
+/* A state in the narrower of the two types of numbers: a float32 is compared with what a float64 rounds to. */
+static void take_state(const Trajectory *t, size_t i, bool exact, double state[STATE_COLUMNS]) {
+    const Vec2 p = t->position[i], v = t->velocity[i];
+    const double rounded[STATE_COLUMNS] = {p.x, p.y, t->angle[i], v.x, v.y, t->angular_velocity[i]};
+    for (int column = 0; column < STATE_COLUMNS; column++)
+        state[column] = exact ? trajectory_number(t, i, column) : rounded[column];
 }
 
 bool trajectory_same_states(const Trajectory *a, int of_a, const Trajectory *b, int of_b, int body) {
@@ -33,12 +34,11 @@ bool trajectory_same_states(const Trajectory *a, int of_a, const Trajectory *b, 
     if (!in_a || !in_b) return in_a == in_b;
     if (trajectory_both_hashed(a, b) && a->hash[trajectory_at(a, of_a, body)] != b->hash[trajectory_at(b, of_b, body)])
         return false;
-    if (a->no_poses || b->no_poses) return true;
-    for (int column = 0; column < (trajectory_both_move(a, b) ? STATE_COLUMNS : 3); column++) {
-        const NumberPair of = pair(a, of_a, b, of_b, body, column);
-        if (memcmp(&of.x, &of.y, sizeof of.x) != 0) return false;
-    }
-    return true;
+    const bool exact = trajectory_both_exact(a, b);
+    double x[STATE_COLUMNS], y[STATE_COLUMNS];
+    take_state(a, trajectory_at(a, of_a, body), exact, x);
+    take_state(b, trajectory_at(b, of_b, body), exact, y);
+    return memcmp(x, y, (size_t)columns_of(a, b) * sizeof *x) == 0;
 }
 
 bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
@@ -47,12 +47,12 @@ bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, 
 
 StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
     StateDifference d = {.in_a = trajectory_there(a, frame, body), .in_b = trajectory_there(b, frame, body)};
-    if (!d.in_a || !d.in_b || a->no_poses || b->no_poses) return d;
-    double by[STATE_COLUMNS] = {0};
-    for (int column = 0; column < (trajectory_both_move(a, b) ? STATE_COLUMNS : 3); column++) {
-        const NumberPair of = pair(a, frame, b, frame, body, column);
-        by[column] = of.x - of.y;
-    }
+    const int columns = columns_of(a, b);
+    if (!d.in_a || !d.in_b || columns == 0) return d;
+    double x[STATE_COLUMNS], y[STATE_COLUMNS], by[STATE_COLUMNS] = {0};
+    take_state(a, trajectory_at(a, frame, body), trajectory_both_exact(a, b), x);
+    take_state(b, trajectory_at(b, frame, body), trajectory_both_exact(a, b), y);
+    for (int column = 0; column < columns; column++) by[column] = x[column] - y[column];
     d.distance = sqrt(by[0] * by[0] + by[1] * by[1]);
     d.angle = fabs(by[2]);
     d.speed = sqrt(by[3] * by[3] + by[4] * by[4]);
@@ -107,8 +107,8 @@ static int most_bodies(const Trajectory *a, const Trajectory *b) {
 /* Whether all states of a frame are the same bytes: then they are equal, without a look at each. */
 static bool same_bytes(const Trajectory *a, const Trajectory *b, int frame) {
     const size_t i = trajectory_at(a, frame, 0), count = (size_t)a->bodies;
-    const int columns = trajectory_both_move(a, b) ? STATE_COLUMNS : 3;
-    if (a->bodies != b->bodies || !trajectory_both_exact(a, b) || a->no_poses || b->no_poses ||
+    const int columns = columns_of(a, b);
+    if (a->bodies != b->bodies || !trajectory_both_exact(a, b) || columns == 0 ||
         (a->there == NULL) != (b->there == NULL) ||
         (a->there != NULL && memcmp(a->there + i, b->there + i, count) != 0) ||
         (trajectory_both_hashed(a, b) && memcmp(a->hash + i, b->hash + i, count * sizeof *a->hash) != 0))

@@ -82,16 +82,6 @@ void trajectory_judge(Trajectory *t, const char *words, int frame, int body) {
     t->verdict_body = body;
 }
 
-bool trajectory_has(const Trajectory *t, int frame, int body) {
-    Vec2 position = t->position[trajectory_at(t, frame, body)];
-    return isfinite(position.x) && isfinite(position.y);
-}
-
-bool trajectory_there(const Trajectory *t, int frame, int body) {
-    if (frame >= t->frames || body >= t->bodies) return false;
-    return t->there != NULL ? t->there[trajectory_at(t, frame, body)] != 0 : trajectory_has(t, frame, body);
-}
-
 /* Sets contact_start of steps without contacts, from the last step with contacts up to `step`. */
 static void end_steps(Trajectory *t, int step, int64_t count) {
     for (int k = t->last_step + 1; k <= step; k++) t->contact_start[k + 1] = count;

@@ -12,6 +12,7 @@
 #include "engine/engine.h"
 #include "scenes/scenes.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -104,7 +105,16 @@ static inline size_t trajectory_exact_at(const Trajectory *trajectory, size_t i,
 double trajectory_number(const Trajectory *trajectory, size_t i, int column);
 
 /* True if the body exists in this frame. */
-bool trajectory_has(const Trajectory *trajectory, int frame, int body);
+static inline bool trajectory_has(const Trajectory *t, int frame, int body) {
+    Vec2 position = t->position[trajectory_at(t, frame, body)];
+    return isfinite(position.x) && isfinite(position.y);
+}
+
+/* True if the run states the body in this frame: of a trace, also as NaN; false beyond its frames and bodies. */
+static inline bool trajectory_there(const Trajectory *t, int frame, int body) {
+    if (frame >= t->frames || body >= t->bodies) return false;
+    return t->there != NULL ? t->there[trajectory_at(t, frame, body)] != 0 : trajectory_has(t, frame, body);
+}
 
 /* The step whose contacts a picture of a frame shows: they result from its poses; in the last frame, the last step. */
 static inline int trajectory_contact_step(const Trajectory *trajectory, int frame) {
@@ -124,9 +134,6 @@ typedef enum ContactMode { CONTACT_OPEN, CONTACT_STICKS, CONTACT_SLIPS, CONTACT_
 
 /* The mode of a contact of the step, by its index in `contacts`. */
 ContactMode trajectory_mode(const Trajectory *trajectory, int step, int64_t contact);
-
-/* True if the run states the body in this frame: of a trace, also as NaN; false beyond its frames and bodies. */
-bool trajectory_there(const Trajectory *trajectory, int frame, int body);
 
 /* FNV-1a 64 over the little-endian bytes of x, y, angle, vx, vy, omega of each dynamic body that exists, by rising
    index: the hash of the reference trajectories. */
