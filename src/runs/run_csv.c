@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "engine/engine.h"
+#include "runs/compare_runs.h"
 #include "runs/run_files.h"
 #include "runs/runs_internal.h"
 #include "runs/trajectory.h"
@@ -504,16 +505,6 @@ static void print_head(FILE *out, const Trajectory *run) {
                 run->fixed[body] ? "static" : "dynamic");
 }
 
-/* Whether two frames have the same bits of a body's state. */
-static bool same(const Trajectory *run, size_t i, size_t k) {
-    bool equal = true;
-    for (int column = 0; equal && column < (run->no_velocities ? 3 : STATE_COLUMNS); column++) {
-        const double a = trajectory_number(run, i, column), b = trajectory_number(run, k, column);
-        equal = memcmp(&a, &b, sizeof a) == 0;
-    }
-    return equal;
-}
-
 static void print_run(FILE *out, const void *context) {
     const Trajectory *run = context;
     print_head(out, run);
@@ -527,8 +518,7 @@ static void print_run(FILE *out, const void *context) {
             if (!trajectory_has(run, frame, body)) continue;
             /* A static body is written once, as readers keep it where it is, and where it is alone: each frame has a
                row. */
-            if (run->fixed[body] && !alone && frame > 0 && trajectory_has(run, frame - 1, body) &&
-                same(run, i, i - (size_t)run->bodies))
+            if (run->fixed[body] && !alone && frame > 0 && trajectory_same_states(run, frame, run, frame - 1, body))
                 continue;
             fprintf(out, "%d,%d", frame, body);
             for (int column = 0; column < (run->no_velocities ? 3 : STATE_COLUMNS); column++)
