@@ -20,7 +20,6 @@
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "studies/contenders.h"
-#include "studies/converged.h"
 
 #define OWN(Type) __attribute__((cleanup(own_##Type))) Type
 #define OWNED_POINTER(Type, destroy) \
@@ -43,7 +42,6 @@ OWNED_POINTER(World, world_destroy)
 OWNED_VALUE(BlockLu, block_lu_free)
 OWNED_VALUE(ContenderList, contenders_free)
 OWNED_VALUE(CsvTable, csv_table_free)
-OWNED_VALUE(EnergyLog, energy_log_free)
 OWNED_VALUE(GnsNet, gns_net_free)
 OWNED_VALUE(Reference, reference_free)
 OWNED_VALUE(SainNetwork, sain_network_destroy)

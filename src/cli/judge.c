@@ -34,13 +34,14 @@ Trajectory *simulate_judged(const Scene *scene, const Method *method, const Prog
 }
 
 bool judged_run_find(JudgedRun *judged, const Trajectory *run, const JudgeOptions *options, Error *error) {
-    *judged = (JudgedRun){.scene = options->scene != NULL
-                                       ? scene_read_with(options->scene, options->set.items, options->set.count, error)
-                                       : trajectory_scene(run, error)};
-    const RunScene by = {judged->scene, options->scene == NULL, options->skin};
-    if (by.scene == NULL || !simulate_verdict_of_run(&judged->verdict, &by, run, error)) return false;
-    simulate_verdict_words(&judged->verdict, judged->words);
-    return true;
+    *judged = (JudgedRun){0};
+    Scene *scene =
+        options->scene != NULL ? scene_read_with(options->scene, options->set.items, options->set.count, error) : NULL;
+    const bool ok = (scene != NULL || options->scene == NULL) &&
+                    simulate_verdict_of_run(&judged->verdict, run, scene, options->skin, error);
+    if (ok) simulate_verdict_words(&judged->verdict, judged->words);
+    scene_destroy(scene);
+    return ok;
 }
 
 void judged_run_print(const JudgedRun *judged, const JudgeOptions *options) {
@@ -60,10 +61,7 @@ void judged_run_print(const JudgedRun *judged, const JudgeOptions *options) {
         note_print("assumed: a gravity of %g m/s2; with --scene SCENE it is the scene's", (double)VERDICT_GRAVITY);
 }
 
-void judged_run_free(JudgedRun *judged) {
-    simulate_verdict_free(&judged->verdict);
-    scene_destroy(judged->scene);
-}
+void judged_run_free(JudgedRun *judged) { simulate_verdict_free(&judged->verdict); }
 
 /* What the value is. */
 static const char *quantity(const VerdictReading *reading) {
@@ -89,16 +87,16 @@ void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, cons
     simulate_verdict_words(verdict, words);
     json_begin_object(json, key, JSON_LINES);
     json_put_text(json, "format", "twinbox simulate verdict 1");
-    json_put_text(json, "scene", verdict->scene->name);
+    json_put_text(json, "scene", verdict->scene);
     json_put_text(json, "method", verdict->method);
-    json_put_int(json, "steps", watch->frame);
-    json_put_number(json, "dt", (double)verdict->scene->dt);
+    json_put_int(json, "steps", reading->steps);
+    json_put_number(json, "dt", (double)watch->run.dt);
     json_put_text(json, "verdict", verdict_name(reading->verdict));
     json_put_text(json, "words", words);
     json_put_bool(json, "holds", verdict_holds(reading->verdict));
     json_put_bool(json, "sound", verdict_sound(reading->verdict));
     json_put_int(json, "frame", reading->frame);
-    json_put_number(json, "time", reading->frame * (double)verdict->scene->dt);
+    json_put_number(json, "time", reading->frame * (double)watch->run.dt);
     if (!json_put_absent(json, "body", reading->body < 0)) json_put_int(json, "body", reading->body);
     json_put_text(json, "quantity", quantity(reading));
     json_put_number(json, "value", reading->value);
@@ -114,8 +112,8 @@ void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, cons
     json_put_number(json, "farthest", count->farthest);
     if (!json_put_absent(json, "at_rest", reading->too_short)) json_put_bool(json, "at_rest", !reading->moving);
     if (!json_put_absent(json, "rest_since", reading->moving))
-        json_put_number(json, "rest_since", reading->since * (double)verdict->scene->dt);
-    json_put_number(json, "energy", watch->energy);
+        json_put_number(json, "rest_since", reading->since * (double)watch->run.dt);
+    json_put_number(json, "energy", reading->energy);
     json_put_number(json, "available", watch->available - watch->least);
     json_put_number(json, "drift", reading->drift);
     json_put_number(json, "gained", reading->gained);

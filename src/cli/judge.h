@@ -43,7 +43,6 @@ typedef struct JudgeOptions {
     }
 
 typedef struct JudgedRun {
-    Scene *scene;
     SimulateVerdict verdict;
     char words[TRAJECTORY_VERDICT_SIZE];
 } JudgedRun;

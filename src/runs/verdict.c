@@ -7,7 +7,6 @@
 #include "runs/runs.h"
 #include "runs/verdict_internal.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +16,7 @@ static const double place_share = 0.02;
 /* Half a side lower, a box has lost its layer. At 30 degrees a square's centre has risen by nine tenths of what turns
    it over. */
 static const double fall_share = 0.5, fall_turn = 30 * M_PI / 180;
+static const double rest_share = 0.5;   /* of the pace before: constant gliding has all of it */
 static const double moved_share = 0.1;  /* of a size: seen at a glance */
 static const double touch_share = 0.03; /* of a side: less is not seen */
 static const double unit_sizes = 5;     /* a box of 1 m: one second */
@@ -51,16 +51,6 @@ bool verdict_is_struck(const Scene *scene) {
     return (scene_has_launch(scene) && moving > 0) || (starting > 0 && starting < moving);
 }
 
-VerdictRun verdict_run_of(const Scene *scene, const Method *method) {
-    VerdictRun run = {.gravity = scene->gravity,
-                      .dt = scene->dt,
-                      .bomb = scene_has_launch(scene) ? scene->body_count : -1,
-                      .finds_contacts = method->kind->description->whole_scenes};
-    const char *text = run.finds_contacts ? settings_get(&method->settings, "skin") : NULL;
-    if (text != NULL && !parse_float(text, &run.skin)) run.skin = 0;
-    return run;
-}
-
 double way_past(const WatchedBody *a, const WatchedBody *b) {
     const Vec2 of_a = vec2_sub(a->last.at, a->before.at), of_b = vec2_sub(b->last.at, b->before.at);
     return vec2_distance(of_a, of_b) + turn_between(&a->last, &a->before) * a->corner +
@@ -79,12 +69,13 @@ bool bodies_touch(const VerdictWatch *watch, const WatchedBody *a, const Watched
     return depth_of(a, b, gap) > -gap;
 }
 
-bool find_near(VerdictWatch *watch, double down, Error *error) {
+bool find_near(VerdictWatch *watch, double way, Error *error) {
     ContactFinder *finder = &watch->finder;
     if (!contact_finder_reserve(finder, watch->body_count, error)) return false;
     for (int i = 0; i < watch->body_count; i++) {
         const WatchedBody *body = &watch->bodies[i];
-        const Vec2 a = body->before.at, b = vec2_sub(body->last.at, vec2_scale((float)down, watch->up));
+        const float down = (float)larger(way, fall_share * body->side);
+        const Vec2 a = body->before.at, b = vec2_sub(body->last.at, vec2_scale(down, watch->up));
         const float r = (float)(body->corner * (1 + touch_share)) + watch->run.skin;
         finder->bounds[i] =
             (Bounds){vec2(fminf(a.x, b.x) - r, fminf(a.y, b.y) - r), vec2(fmaxf(a.x, b.x) + r, fmaxf(a.y, b.y) + r)};
@@ -105,7 +96,7 @@ static double gap_above(const VerdictWatch *watch, const WatchedBody *body, cons
    down by `way`, m. On what nothing carries, nothing is carried either. */
 static bool find_carriers(VerdictWatch *watch, double way, Error *error) {
     if (watch->pull == 0) return true;
-    if (!find_near(watch, larger(way, fall_share * watch->largest), error)) return false;
+    if (!find_near(watch, way, error)) return false;
     for (int i = 0; i < watch->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
         if (isinf(body->gaps)) body->start = body->last, body->carrier = -1, body->gap = INFINITY;
@@ -154,16 +145,15 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
                               .corner = vec2_distance(from->size, vec2(0, 0)) / 2,
                               .last = pose,
                               .before = pose,
-                              .place = pose,
+                              .place = {pose, frame},
+                              .lately = {{pose, frame}, {pose, frame}},
                               .start = pose,
-                              .since = frame,
-                              .stays = {INT_MAX, INT_MAX},
                               .carrier = -1,
                               .gap = INFINITY,
                               .gaps = INFINITY,
                               .is_static = from->inv_mass == 0,
                               .is_bomb = i == watch->run.bomb};
-        watch->thinnest = fmin(watch->thinnest, body->side);
+        watch->smallest = fmin(watch->smallest, body->side);
         if (body->is_static) {
             const Box box = box_of(body, &pose);
             watch->floor = fmin(watch->floor, height_of(watch, &pose) - box_reach(&box, watch->up));
@@ -174,11 +164,8 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, int f
         body->inertia = 1 / (double)from->inv_inertia;
         body->energy = body_energy(from, watch->run.gravity);
         body->starts = frame == 0 && !body->is_bomb && speed + fabs(spin) * body->corner > slowest;
-        watch->smallest = fmin(watch->smallest, body->side);
-        watch->largest = larger(watch->largest, body->size);
         watch->liveliest = larger(watch->liveliest, body->energy / body->mass - watch->pull * watch->lowest);
         watch->weight += body->mass * watch->pull;
-        watch->lift += body->mass * watch->pull * body->size;
         if (energy_counts(watch, body)) count_energy(watch, body);
     }
     watch->body_count = count;
@@ -192,10 +179,8 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
                             .pull = pull,
                             .up = pull > 0 ? vec2_scale((float)(-1 / pull), run->gravity) : vec2(0, 1),
                             .smallest = INFINITY,
-                            .thinnest = INFINITY,
                             .floor = INFINITY,
                             .lowest = INFINITY,
-                            .kept = INFINITY,
                             .met = -1};
     double sizes = 0;
     int moving = 0, starting = 0;
@@ -220,6 +205,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
 
 /* Gives the bodies their new poses. False if one is not finite. */
 static bool move_bodies(VerdictWatch *watch, const VerdictStep *step, double *farthest) {
+    const int half = steps_of(watch, long_units);
     *farthest = 0;
     for (int i = 0; i < step->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
@@ -234,11 +220,15 @@ static bool move_bodies(VerdictWatch *watch, const VerdictStep *step, double *fa
         body->before = body->last;
         body->last = pose_of(now);
         *farthest = larger(*farthest, way_of(body, &body->before));
-        if (way_of(body, &body->place) <= place_share * body->size) continue;
-        body->stays[0] = body->stays[1];
-        body->stays[1] = step->frame - body->since;
-        body->since = step->frame;
-        body->place = body->last;
+        const Place now_here = {body->last, step->frame};
+        if (way_of(body, &body->place.pose) > place_share * body->size) {
+            body->stays[0] = body->stays[1];
+            body->stays[1] = step->frame - body->place.frame;
+            body->place = body->lately[0] = body->lately[1] = now_here;
+        } else if (step->frame % half == 0) {
+            body->lately[1] = body->lately[0];
+            body->lately[0] = now_here;
+        }
     }
     return true;
 }
@@ -295,7 +285,7 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *er
     if (farthest > pass_share / 2 * watch->smallest && !check_passes(watch, error)) return false;
     check_energy(watch, &step);
     judge_falls(watch);
-    if (!check_hanging(watch, &step, error)) return false;
+    if (!check_hanging(watch, error)) return false;
     if (watch->rested_frame == 0 && step.frame == steps_of(watch, VERDICT_DRIFT_UNITS)) {
         watch->rested_frame = step.frame;
         watch->rested = watch->energy;
@@ -337,6 +327,13 @@ bool verdict_watch_fell(const VerdictWatch *watch, int i) {
     return i < watch->body_count && !body->is_static && !body->is_bomb && body->fell > 0;
 }
 
+/* Whether a body has just taken its place, or goes on at the pace of the two places before. */
+static bool is_moving(const VerdictWatch *watch, const WatchedBody *body) {
+    if (watch->frame - body->place.frame < steps_of(watch, long_units)) return true;
+    const double shorter = fmin(body->stays[0], body->stays[1]), steps = watch->frame - body->lately[1].frame;
+    return way_of(body, &body->lately[1].pose) * shorter > rest_share * place_share * body->size * steps;
+}
+
 /* Counts, rest and figures; then, of a sound run, the word. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     VerdictReading reading = watch->worst;
@@ -362,17 +359,17 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
             count->moved++;
             count->farthest = larger(count->farthest, way);
         }
-        const int stay = watch->frame - body->since, shorter = (int)fmin(body->stays[0], body->stays[1]);
-        const bool known = body->stays[0] != INT_MAX && body->stays[1] != INT_MAX;
-        reading.moving |= stay < least || (known && stay <= 2 * shorter);
-        if (last < 0 || body->since > watch->bodies[last].since) last = i;
+        reading.moving |= is_moving(watch, body);
+        if (last < 0 || body->place.frame > watch->bodies[last].place.frame) last = i;
     }
     reading.struck = watch->struck;
-    reading.since = last >= 0 ? watch->bodies[last].since : 0;
+    reading.since = last >= 0 ? watch->bodies[last].place.frame : 0;
     reading.too_short = watch->frame < least && reading.since == 0 && count->bodies > 0;
     reading.fallbacks = watch->fallbacks;
     reading.deepest = watch->deepest;
     reading.excess = energy_is_judged(watch) ? larger(watch->excess, 0) : NAN;
+    reading.steps = watch->frame;
+    reading.energy = watch->energy;
     reading.gained = after ? watch->energy - watch->rested : NAN;
     reading.by_itself = count->fell > 0 && watch->run.bomb >= 0 && (watch->met < 0 || count->first <= watch->met);
     if (reading.verdict >= VERDICT_HANGS) return reading;

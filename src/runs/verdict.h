@@ -8,34 +8,8 @@
        simulate_verdict_end(&verdict, error);
        simulate_verdict_words(&verdict, words);    "falls; 4 of 10 fell, first at 1.2 s; at rest since 3.4 s"
 
-   The verdict needs poses, sizes, masses and gravity. It is the same in other units of length, time and mass. Up is
-   against gravity. The size of a body is the root of its area, its side the smaller one. The unit of time is that in
-   which a body falls five mean sizes; without gravity, that in which the fastest corner so far goes as far: it never
-   depends on dt. Bodies are the dynamic ones but the bomb. Two touch if the gap between them is no more than 3% of a
-   side, beside what they have moved past each other in the step.
-
-   Sound, unless a body's state is not finite, or the run
-   - explodes: the energy of all dynamic bodies exceeds what they brought by 1% of what is available to be lost, or the
-     least that it stayed below for a unit by 5%; or a body has five times the energy per kg of the liveliest one at the
-     start. The bomb brings what it has in the step before it first touches a body.
-   - sinks: two bodies are deeper in each other than a quarter of the smaller side for half a unit.
-   - tunnels: a body is on the other side of another, past which it went by more than half a side deep: between two
-     frames, or while they were deeper in each other than a quarter of a side.
-   - hangs: a body has kept its place for half a unit, and no chain of touching bodies joins it to a static one.
-
-   Rest. A body has a place: the pose from which its corners have since moved by no more than 2% of its size; when it
-   moves farther, it takes a new place there. It rests if it took its last place half a unit ago and more than twice the
-   shorter of its last two stays, so that constant gliding never rests. A run rests since its last body does; the bomb
-   need not.
-
-   Carrier. A body's carrier is what it touches first if it moves down from its start by up to half its side or, if it
-   starts at rest, as far as it would fall in a unit. For a body that nothing carries then, the strike of the bomb is
-   the start. What has none is judged by rest and leaving only.
-
-   Fell, at the end: a body is lower than at the start by more than half its side and the gaps below it, and so relative
-   to its carrier, beside how deep it is in that; or its carrier fell, too: neither sag nor pressing in is a fall. Or it
-   has turned by 30 degrees; or it left: it is below all static bodies. Moved: has not fallen, and is a tenth of its
-   size beside its start, or above it. */
+   The definitions (unit, size, sound, rest, carrier, fell, moved) are in src/studies/README.md, "The verdict on one
+   run". They need poses, sizes, masses and gravity, and are the same in other units of length, time and mass. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -77,7 +51,7 @@ bool verdict_holds(Verdict verdict);
 bool verdict_sound(Verdict verdict);
 
 typedef struct VerdictCount {
-    int bodies, fell, left, moved; /* what left has fallen, too */
+    int bodies, fell, left, moved; /* dynamic ones but the bomb; what left has fallen, too */
     int first, body;               /* frame and body of the first fall that lasts; 0, -1: none */
     double farthest;               /* m: of those that moved */
 } VerdictCount;
@@ -102,27 +76,14 @@ typedef struct VerdictReading {
     bool too_short;
     int since;                        /* the frame since which the run rests, if it does */
     char reason[VERDICT_REASON_SIZE]; /* adapter failed: how; else empty */
-    uint64_t state;                   /* set by verdict_run() only: FNV-1a of the bodies after the last step */
-    int steps;                        /* set by verdict_run() only */
+    int steps;
+    double energy; /* J: of all dynamic bodies at the end */
     /* After ten units; NaN in a shorter run. m: the largest distance moved by a body since; J: energy gained since. */
     double drift, gained;
     double deepest;      /* m: penetration of the deepest contact of all steps */
     double excess;       /* J: most energy above what bodies brought; >= 0; NaN if not judged */
     Fallbacks fallbacks; /* of all steps that were observed */
 } VerdictReading;
-
-/* The energy of a converged run per frame, beside which studies judge other runs of the same scene. Zero-initialise;
-   free with energy_log_free(); may be made again. */
-typedef struct EnergyLog {
-    int frames;
-    double *energy;  /* [frames + 1] J: of all dynamic bodies */
-    int unconverged; /* the first step whose solution did not converge, from which on the log bounds nothing; 0: none */
-    double liveliest;    /* J/kg: the most energy of a body in any frame, above the lowest at the start */
-    Fallbacks fallbacks; /* of all steps */
-    Vec2 gravity;
-    double lowest; /* m: height of a body at the start */
-    size_t capacity;
-} EnergyLog;
 
 /* The run to be judged. */
 typedef struct VerdictRun {
@@ -134,16 +95,11 @@ typedef struct VerdictRun {
     float skin;
     bool masses_unknown; /* the energy of a struck run is not judged */
     bool finds_contacts; /* between the bodies before a step: those that steps state do not count */
-    /* Energy is no gain that the converged run has within a unit before or after. At least as many frames; outlives the
-       watch. NULL: none. */
-    const EnergyLog *converged;
+    double allowed;      /* J: may be gained, as by bodies that overlap at the start and are pushed apart */
 } VerdictRun;
 
 /* The scene has a bomb that can strike a dynamic body, or some of its bodies start with a speed, but not all. */
 bool verdict_is_struck(const Scene *scene);
-
-/* Of a scene that the method runs. */
-VerdictRun verdict_run_of(const Scene *scene, const Method *method);
 
 /* A step, as given to the watch. */
 typedef struct VerdictStep {
@@ -164,16 +120,15 @@ typedef struct VerdictWatch {
     Vec2 up;                   /* unit vector */
     double pull;               /* m/s^2 */
     double mean;               /* m: mean size of the bodies at the start */
-    double smallest, thinnest; /* m: smallest side of a dynamic body; of any */
+    double smallest;           /* m: the smallest side of a body */
     double floor;              /* m: the lowest point of all static bodies */
     double unit;               /* s */
     double energy;             /* J: in the last frame: of all dynamic bodies */
     double speed, fastest;     /* m/s: of the fastest body in the last frame; of the fastest corner so far */
     double brought, available; /* J: what bodies brought; of that, and of their height, what they can lose */
     double lowest, liveliest;  /* m, J/kg: of dynamic bodies at the start, and of added ones */
-    double weight, lift, largest, farthest; /* N, J, m, m: floor of what counts as gained energy */
-    double peak, kept, excess, least; /* J, above `brought`: this unit's most, the least of whole units, most, least */
-    int unit_began;
+    double weight, farthest;   /* N, m: of all; from the origin so far: what rounding makes of them is no gain */
+    double excess, least;      /* J, above `brought`: most and least so far */
     bool struck;
     int met;                /* the frame before the bomb first touched a dynamic body; -1: not so far */
     double deepest, rested; /* m; J: energy after ten units */
@@ -210,16 +165,14 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch);
 /* True if the body has fallen at the end. */
 bool verdict_watch_fell(const VerdictWatch *watch, int body);
 
-/* The verdict on one run in words, found while its steps are made. Begin with simulate_verdict_begin(); free with
-   simulate_verdict_free(). */
+/* The verdict on one run of a scene by a method, while it is made or stored. Free with simulate_verdict_free(). */
 typedef struct SimulateVerdict {
-    const Scene *scene;
-    const char *method;
+    const char *scene, *method; /* their names */
     VerdictWatch watch;
     VerdictReading reading; /* after simulate_verdict_end() */
 } SimulateVerdict;
 
-/* The scene and the method outlive the verdict. */
+/* Before the run. The scene and the method outlive the verdict. */
 bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const Method *method, Error *error);
 
 /* After the run; failure: why it failed, if it did. False if there is no verdict: it was not the method that failed. */
@@ -230,25 +183,14 @@ void simulate_verdict_free(SimulateVerdict *verdict);
    stored run, so they also say what makes it no yardstick: "; 175 steps did not converge". */
 void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]);
 
-/* The verdict on a stored run. Contacts are found again, so that it is the one of simulate(); velocities, if the run
-   does not state them, are differences of poses. */
-
-/* Assumed of a run that states no masses and is judged without its scene. */
+/* Assumed of a stored run without its scene; the density only if the run states no masses. */
 #define VERDICT_GRAVITY 10.0f /* m/s^2, down */
 #define VERDICT_DENSITY 1.0f  /* kg/m^2 */
 
-/* What a run says of its scene: bodies with their masses, or of VERDICT_DENSITY, and a bomb. To be destroyed with
-   scene_destroy(). NULL with error set. */
-Scene *trajectory_scene(const Trajectory *run, Error *error);
-
-/* By what a stored run is judged. */
-typedef struct RunScene {
-    Scene *scene; /* masses, gravity and bomb; gets the run's time step and frames */
-    bool assumed; /* it is that of trajectory_scene() */
-    float skin;   /* m, as in VerdictRun */
-} RunScene;
-
-/* The scene and the run outlive the verdict. A run whose own verdict is non-finite has ended so, and that is the
-   verdict. ERROR_INPUT: the scene has other bodies, or a body is missing before another one; free the verdict in any
-   case. */
-bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const Trajectory *run, Error *error);
+/* The verdict on a stored run, which outlives it, from begin to end. Gravity and the bomb are those of the scene,
+   unless it is NULL, and so are masses, if the run states none; skin: as in VerdictRun. Contacts are found again,
+   so that it is the verdict of the run while it was made; velocities that the run does not state are differences of
+   poses. A run whose own verdict is non-finite has ended so. ERROR_INPUT: the scene has other bodies, or a body is
+   missing before another one; free the verdict in any case. */
+bool simulate_verdict_of_run(SimulateVerdict *verdict, const Trajectory *run, const Scene *scene, float skin,
+                             Error *error);

@@ -11,6 +11,11 @@ typedef struct Pose {
     float angle; /* rad */
 } Pose;
 
+typedef struct Place {
+    Pose pose;
+    int frame; /* since which a body has it */
+} Place;
+
 struct WatchedBody {
     double size, side, corner; /* m: root of the area, the smaller side, half the diagonal */
     double mass, inertia;      /* kg, kg m^2 */
@@ -19,14 +24,15 @@ struct WatchedBody {
     bool starts;       /* with a speed */
     double energy;     /* J: in the last frame */
     Pose last, before; /* in the last frame, and in the one before it */
-    Pose place;        /* since frame `since`; the two stays before took so many frames */
-    int since, stays[2];
+    Place place;
+    Place lately[2];    /* poses that are up to half a unit old, and up to a unit, but no older than the place */
+    int stays[2];       /* frames: in the two places before; 0: none, or that of the start */
     Pose start, rested; /* when it came; after VERDICT_DRIFT_UNITS */
     int carrier;        /* -1: none */
     double gap, gaps;   /* m: below the body; and below all that carries it, too: INFINITY if that drops */
     int fell;           /* since this frame; 0: not */
     bool left;          /* it is below all static bodies */
-    int link;           /* scratch: to a body that it touches */
+    bool held;          /* scratch: something static carries it */
 };
 
 /* Two bodies that are too deep in each other: in the steps from `since` to `seen`, and their poses before. */
@@ -83,8 +89,9 @@ double way_past(const WatchedBody *a, const WatchedBody *b);
 /* Whether two bodies touch after the last step. */
 bool bodies_touch(const VerdictWatch *watch, const WatchedBody *a, const WatchedBody *b);
 
-/* Finds the pairs of bodies, finder.pairs, that may touch in the last step, or if they move down by so many m. */
-bool find_near(VerdictWatch *watch, double down, Error *error);
+/* Finds the pairs of bodies, finder.pairs, that may touch in the last step, or if they move down by half a side, or by
+   `way`, m. */
+bool find_near(VerdictWatch *watch, double way, Error *error);
 
 /* The checks of a step; false if memory is short. Contacts, which are of the poses before the step, are checked before
    bodies get their new ones. The bomb's energy counts when it strikes. */
@@ -92,7 +99,7 @@ bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error);
 bool check_passes(VerdictWatch *watch, Error *error);
 void count_energy(VerdictWatch *watch, const WatchedBody *body);
 void check_energy(VerdictWatch *watch, const VerdictStep *step);
-bool check_hanging(VerdictWatch *watch, const VerdictStep *step, Error *error);
+bool check_hanging(VerdictWatch *watch, Error *error);
 
 /* Stores the verdict if it is worse than the worst so far. */
 void verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit);

@@ -13,10 +13,9 @@
 
 /* Of the energy that is available to be lost: what the solver's penetrations store and release again is less. */
 static const double gain_share = 0.01;
-static const double regain_share = 0.05; /* a stack that sank under its weight is pushed up again */
-static const double burst_factor = 5;    /* a heavy body's elastic blow gives a light one 4 times its energy per kg */
-static const double least_share = 0.1;   /* of a size: at least what lifts all bodies so far is available */
-static const double deep_share = 0.25;   /* of a side: an impact's penetration is less, or is corrected sooner */
+static const double burst_factor = 5;  /* a heavy body's elastic blow gives a light one 4 times its energy per kg */
+static const double least_share = 0.1; /* of a size: at least what lifts all bodies so far is available */
+static const double deep_share = 0.25; /* of a side: an impact's penetration is less, or is corrected sooner */
 /* float32 rounds a position by 6e-8 of it; its steps add up like a random walk. */
 static const double rounding = 1e-6;
 
@@ -31,27 +30,13 @@ void count_energy(VerdictWatch *watch, const WatchedBody *body) {
     watch->available += body->energy - body->mass * watch->pull * watch->lowest;
 }
 
-/* J: most energy of the converged run within a unit of this frame; -INFINITY: it says nothing of the frame. */
-static double converged_energy(const VerdictWatch *watch) {
-    const EnergyLog *log = watch->run.converged;
-    if (log == NULL) return -INFINITY;
-    const int end = log->unconverged > 0 ? log->unconverged : log->frames + 1, unit = steps_of(watch, 1);
-    double most = -INFINITY;
-    if (watch->frame >= end) return most;
-    for (int i = watch->frame > unit ? watch->frame - unit : 0; i < end && i <= watch->frame + unit; i++)
-        most = larger(most, log->energy[i]);
-    return most;
-}
-
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     const double dt = (double)watch->run.dt;
-    const EnergyLog *log = watch->run.converged;
-    const double liveliest = log != NULL ? larger(watch->liveliest, log->liveliest) : watch->liveliest; /* J/kg */
     const double noise = rounding * watch->farthest / dt;                                               /* m/s */
-    const double burst = burst_factor * (liveliest + watch->pull * watch->largest) + noise * noise;
-    double sum = 0, all = 0, most = 0; /* J */
+    const double burst = burst_factor * (watch->liveliest + watch->pull * watch->mean) + noise * noise; /* J/kg */
+    double gained = -watch->brought, most = 0;                                                          /* J */
     int hottest = -1;
-    watch->speed = 0;
+    watch->speed = watch->energy = 0;
     for (int i = 0; i < step->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
         const Body *now = &step->bodies[i];
@@ -60,31 +45,24 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
         const double speed = sqrt(vx * vx + vy * vy), up = height_of(watch, &body->last);
         const double own = (body->mass * speed * speed + body->inertia * spin * spin) / 2;
         body->energy = own + body->mass * watch->pull * up;
-        all += body->energy;
-        if (energy_counts(watch, body)) sum += body->energy;
+        watch->energy += body->energy;
+        if (energy_counts(watch, body)) gained += body->energy;
         watch->speed = larger(watch->speed, speed);
         watch->farthest = larger(watch->farthest, (double)larger(fabsf(body->last.at.x), fabsf(body->last.at.y)));
         if (own > most) most = own, hottest = i;
-        if (energy_is_judged(watch) && own + body->mass * (watch->pull * (up - watch->lowest) - burst) > 0)
+        if (energy_is_judged(watch) &&
+            own + body->mass * (watch->pull * (up - watch->lowest) - burst) > watch->run.allowed)
             verdict_note(watch, VERDICT_EXPLODES, i, speed, "m/s");
     }
-    watch->energy = all;
-    const double gained = sum - watch->brought;
     watch->excess = larger(watch->excess, gained);
     watch->least = fmin(watch->least, gained);
-    const double available = larger(watch->available - watch->least, least_share * watch->lift);
+    const double available = larger(watch->available - watch->least, least_share * watch->weight * watch->mean);
     /* Free of charge: what gravity does in a step, rounding, and a lift by skins. */
     const double skin = 2 * (double)watch->run.skin * (watch->weight + available / watch->smallest);
     const double free = skin + watch->weight * watch->pull * dt * dt / 2 +
                         rounding * (watch->weight * watch->farthest * sqrt(step->frame) + fabs(watch->brought));
-    const double over = larger(gained - larger(gain_share * available, free),
-                               gained - (watch->kept + larger(regain_share * available, free)));
-    if (over > 0 && energy_is_judged(watch) && all > converged_energy(watch) + larger(gain_share * available, free))
-        verdict_note(watch, VERDICT_EXPLODES, hottest, gained > 0 ? gained : gained - watch->kept, "J");
-    watch->peak = step->frame == watch->unit_began + 1 ? gained : larger(watch->peak, gained);
-    if (step->frame < watch->unit_began + steps_of(watch, 1)) return;
-    watch->kept = fmin(watch->kept, watch->peak);
-    watch->unit_began = step->frame;
+    if (energy_is_judged(watch) && gained > larger(gain_share * available, free) + watch->run.allowed)
+        verdict_note(watch, VERDICT_EXPLODES, hottest, gained, "J");
 }
 
 /* Whether b has gone through a since they had these poses: along an axis of a it was on one side and is on the other,
@@ -108,15 +86,22 @@ static bool has_passed(const WatchedBody *a, const WatchedBody *b, const Pose *o
     return false;
 }
 
-/* Since the step `since`, before which they had these poses. */
-static void check_pass(VerdictWatch *watch, BodyPair pair, const Pose *of_a, const Pose *of_b, int since) {
+/* Whether two bodies are through each other now. */
+static void check_pass(VerdictWatch *watch, const DeepPair *deep) {
+    const BodyPair pair = deep->pair;
     const WatchedBody *a = &watch->bodies[pair.a], *b = &watch->bodies[pair.b];
+    const Pose *of_a = &deep->of_a, *of_b = &deep->of_b;
     if (watch->worst.verdict >= VERDICT_TUNNELS) return;
     if (!has_passed(a, b, of_a, of_b) && !has_passed(b, a, of_b, of_a)) return;
     const double way = larger(vec2_distance(a->last.at, of_a->at), vec2_distance(b->last.at, of_b->at));
     verdict_note(watch, VERDICT_TUNNELS, b->is_static ? pair.a : pair.b,
-                 way / ((watch->frame - since + 1) * (double)watch->run.dt), "m/s");
+                 way / ((watch->frame - deep->since + 1) * (double)watch->run.dt), "m/s");
     watch->worst.other = b->is_static ? pair.b : pair.a;
+}
+
+/* Two bodies as they were before the last step. */
+static DeepPair pair_before(const VerdictWatch *watch, BodyPair pair) {
+    return (DeepPair){pair, watch->frame, watch->frame, watch->bodies[pair.a].before, watch->bodies[pair.b].before};
 }
 
 bool check_passes(VerdictWatch *watch, Error *error) {
@@ -124,8 +109,8 @@ bool check_passes(VerdictWatch *watch, Error *error) {
     for (size_t k = 0; k < watch->finder.pairs.count; k++) {
         const BodyPair pair = watch->finder.pairs.pairs[k];
         const WatchedBody *a = &watch->bodies[pair.a], *b = &watch->bodies[pair.b];
-        if (way_past(a, b) > pass_share * fmin(a->side, b->side))
-            check_pass(watch, pair, &a->before, &b->before, watch->frame);
+        const DeepPair before = pair_before(watch, pair);
+        if (way_past(a, b) > pass_share * fmin(a->side, b->side)) check_pass(watch, &before);
     }
     return true;
 }
@@ -136,15 +121,12 @@ static DeepPair *deep_pair(VerdictWatch *watch, BodyPair pair) {
         if (watch->deep[i].pair.a == pair.a && watch->deep[i].pair.b == pair.b) return &watch->deep[i];
     const size_t wanted = (size_t)watch->deep_count + 1;
     if (!array_reserve((void **)&watch->deep, &watch->deep_capacity, wanted, sizeof *watch->deep)) return NULL;
-    watch->deep[watch->deep_count] = (DeepPair){.pair = pair,
-                                                .since = watch->frame,
-                                                .of_a = watch->bodies[pair.a].before,
-                                                .of_b = watch->bodies[pair.b].before};
+    watch->deep[watch->deep_count] = pair_before(watch, pair);
     return &watch->deep[watch->deep_count++];
 }
 
 bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) {
-    const double shallow = fmin(watch->deepest, deep_share * watch->thinnest); /* m: it is no news */
+    const double shallow = fmin(watch->deepest, deep_share * watch->smallest); /* m: it is no news */
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
         const double depth = -(double)contact->separation;
@@ -165,44 +147,30 @@ bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) 
         if (deep->seen == step->frame)
             watch->deep[kept++] = *deep;
         else if (deep->since > 1)
-            check_pass(watch, deep->pair, &deep->of_a, &deep->of_b, deep->since);
+            check_pass(watch, deep);
     }
     watch->deep_count = kept;
     return true;
 }
 
-/* The body that i touches, and that which it touches, to the last. */
-static int end_of(const VerdictWatch *watch, int i) {
-    while (watch->bodies[i].link != i) i = watch->bodies[i].link = watch->bodies[watch->bodies[i].link].link;
-    return i;
-}
-
-static void join(VerdictWatch *watch, int i, int j) {
-    const int a = end_of(watch, i), b = end_of(watch, j);
-    watch->bodies[watch->bodies[a].is_static ? b : a].link = watch->bodies[a].is_static ? a : b;
-}
-
-/* The first body that rests on nothing; -1: none. */
-static int hanging(const VerdictWatch *watch, int longest) {
-    for (int i = 0; i < watch->body_count; i++)
-        if (watch->frame - watch->bodies[i].since >= longest && !watch->bodies[end_of(watch, i)].is_static) return i;
-    return -1;
-}
-
-/* Contacts tell of almost all bodies that they do not hang. */
-bool check_hanging(VerdictWatch *watch, const VerdictStep *step, Error *error) {
+/* What lies on static bodies, or on what lies on them, does not hang. */
+bool check_hanging(VerdictWatch *watch, Error *error) {
     const int longest = steps_of(watch, long_units);
     if (watch->pull == 0 || isinf(watch->floor) || watch->frame % longest != 0) return true;
-    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].link = i;
-    for (int k = 0; k < step->contact_count; k++)
-        if (step->contacts[k].b < watch->body_count) join(watch, step->contacts[k].a, step->contacts[k].b);
-    if (hanging(watch, longest) < 0) return true;
     if (!find_near(watch, 0, error)) return false;
-    for (size_t k = 0; k < watch->finder.pairs.count; k++) {
-        const BodyPair pair = watch->finder.pairs.pairs[k];
-        if (bodies_touch(watch, &watch->bodies[pair.a], &watch->bodies[pair.b])) join(watch, pair.a, pair.b);
+    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].held = watch->bodies[i].is_static;
+    for (bool more = true; more;) {
+        more = false;
+        for (size_t k = 0; k < watch->finder.pairs.count; k++) {
+            WatchedBody *a = &watch->bodies[watch->finder.pairs.pairs[k].a];
+            WatchedBody *b = &watch->bodies[watch->finder.pairs.pairs[k].b];
+            if (a->held != b->held && bodies_touch(watch, a, b)) a->held = b->held = more = true;
+        }
     }
-    const int body = hanging(watch, longest);
-    if (body >= 0) verdict_note(watch, VERDICT_HANGS, body, longest * (double)watch->run.dt, "s");
+    for (int i = 0; i < watch->body_count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        if (!body->held && watch->frame - body->place.frame >= longest)
+            verdict_note(watch, VERDICT_HANGS, i, longest * (double)watch->run.dt, "s");
+    }
     return true;
 }

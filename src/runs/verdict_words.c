@@ -10,9 +10,19 @@
 #include <stdio.h>
 #include <string.h>
 
+static VerdictRun run_of(const Scene *scene, const Method *method) {
+    VerdictRun run = {.gravity = scene->gravity,
+                      .dt = scene->dt,
+                      .bomb = scene_has_launch(scene) ? scene->body_count : -1,
+                      .finds_contacts = method->kind->description->whole_scenes};
+    const char *text = run.finds_contacts ? settings_get(&method->settings, "skin") : NULL;
+    if (text != NULL && !parse_float(text, &run.skin)) run.skin = 0;
+    return run;
+}
+
 bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const Method *method, Error *error) {
-    *verdict = (SimulateVerdict){.scene = scene, .method = method->text};
-    const VerdictRun run = verdict_run_of(scene, method);
+    *verdict = (SimulateVerdict){.scene = scene->name, .method = method->text};
+    const VerdictRun run = run_of(scene, method);
     World *start = scene_world(scene, error);
     bool ok = start != NULL &&
               verdict_watch_begin(&verdict->watch, &run, world_bodies(start), world_body_count(start), error);
@@ -34,7 +44,7 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
     const VerdictReading *reading = &verdict->reading;
     const VerdictCount *count = &reading->count;
     const VerdictWatch *watch = &verdict->watch;
-    const double dt = (double)verdict->scene->dt, value = reading->value;
+    const double dt = (double)watch->run.dt, value = reading->value;
     const int body = reading->body;
     snprintf(words, SIZE, "%s", verdict_name(reading->verdict));
     if (!verdict_sound(reading->verdict)) text_add(words, SIZE, " at %.3g s (", reading->frame * dt);

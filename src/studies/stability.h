@@ -11,7 +11,6 @@
 #include "methods/methods.h"
 #include "runs/pieces.h"
 #include "runs/verdict.h"
-#include "studies/converged.h"
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
@@ -157,8 +156,8 @@ typedef struct MapCell {
     int verdict;               /* a Verdict, or CELL_NOT_APPLICABLE */
     double frame, body, value; /* maps.csv: as in VerdictReading, or NAN */
     const char *unit;          /* maps.csv */
-    int steps, not_converged;  /* unconverged.csv: as in Convergence */
-    double residual, first;    /* unconverged.csv: m/s, NAN: not finite; as in Convergence, NAN: none */
+    int steps, not_converged;  /* unconverged.csv: as in ConvergedRun */
+    double residual;           /* unconverged.csv: m/s, NAN: not finite */
 } MapCell;
 
 /* stability.csv: a border of a method: the last value that holds and the first that fails. */
@@ -310,19 +309,25 @@ Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, do
    and its table does not say that it stands. */
 bool stability_is_struck(const StabilityPlace *place, const Scene *scene, bool stands);
 
-/* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those
-   that are shifted by a micrometre. */
-typedef struct Convergence {
-    int steps;           /* of all of them */
-    int first;           /* step that did not converge, in the run by which methods are judged; 0: none */
-    Fallbacks fallbacks; /* of all of them */
-} Convergence;
+/* Runs the scene with the method until the verdict is final; allowed: as in VerdictRun. A method that fails is a
+   verdict, not an error. False with error set if the method cannot be created, the launch is refused, too many
+   bodies are near each other, or memory is short. */
+bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, double allowed, Error *error);
 
-/* The truth of a struck scene is what the converged run does: stands, falls or collapses (runs/verdict.h). It is
-   undecided near the edge, where runs that are shifted by a micrometre
-   differ in that, and where the converged run is not sound or has a step that did not converge. Of a scene that is not
-   struck it is VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
-bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *convergence, Error *error);
+/* The converged run at a value of the scanned parameter. */
+typedef struct ConvergedRun {
+    double value;
+    Verdict truth; /* of a struck scene */
+    double gained; /* J: of a scene that is not struck, what position correction gives; 0: a step did not converge */
+    int steps;     /* of this run and, if it is struck, of those that are shifted by a micrometre */
+    Fallbacks fallbacks;
+} ConvergedRun;
+
+/* Finds the truth of a struck scene, which is the same afterwards: stands, falls or collapses (runs/verdict.h). It
+   is undecided near the edge, where runs that are shifted by a micrometre differ in that, and where the converged
+   run is not sound or has a step that did not converge. They always use a warm start, whatever the scene sets: it
+   does not change the converged solution, but without it a stack of 40 boxes takes minutes. */
+bool stability_truth(Scene *scene, ConvergedRun *run, Error *error);
 
 /* The verdict of a study on a run: what the run does. The reference's is undecided where the truth is, or where a step
    of its run did not converge; what is not sound stays so. */
@@ -339,14 +344,6 @@ bool stability_applies(const Method *method, const Scene *scene, Error *error);
 /* True for a method that makes as many sweeps as the scene sets. */
 bool stability_takes_iterations(const Method *method);
 
-/* A converged run at a value of the scanned parameter. */
-typedef struct ConvergedRun {
-    double value;
-    EnergyLog log;
-    Verdict truth;
-    Convergence convergence;
-} ConvergedRun;
-
 /* Counts runs and reports progress. Zero-initialise. */
 typedef struct RunCounter {
     const Progress *progress; /* may be NULL */
@@ -357,10 +354,8 @@ typedef struct RunCounter {
 /* Counts one run. Thread-safe. False with error set if progress stops the study. */
 bool run_counter_add(RunCounter *counter, const char *what, Error *error);
 
-/* A cache of converged runs. They always use a warm start, whatever the scene sets: it does not change the converged
-   solution, but without it a stack of 40 boxes takes minutes. Shifted scenes use the run of the unshifted scene.
-
-   Zero-initialise. Thread-safe; two threads may compute the same run, with the same result. */
+/* A cache of converged runs. Shifted scenes use the run of the unshifted scene. Zero-initialise. Thread-safe; two
+   threads may compute the same run, with the same result. */
 typedef struct ConvergedRuns {
     int count;
     size_t capacity;
@@ -377,7 +372,8 @@ typedef struct JudgedRun {
     bool struck; /* as of stability_is_struck() */
 } JudgedRun;
 
-/* The verdict of a study on a run of the scene, which is the same afterwards. *beside: the converged run that decides;
-   NULL: none, as the scene is not struck, and the run alone does not explode: beside another it may gain more. */
+/* The verdict of a study on a run of the scene, which is the same afterwards. *beside: the converged run; NULL:
+   none is needed, as the scene is not struck and the run does not explode. Else it may gain what the converged run
+   does. */
 bool stability_judge(Scene *scene, const JudgedRun *run, ConvergedRuns *runs, VerdictReading *reading,
                      const ConvergedRun **beside, Error *error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One run of a stability study: its scene, how it is judged, the converged run beside it; and maps, which have such a
+/* One run of a stability study: its scene, its verdict, the converged run beside it; and maps, which have such a
    run in each cell. */
 #include "base/base.h"
 #include "base/file.h"
@@ -79,13 +79,31 @@ bool run_counter_add(RunCounter *counter, const char *what, Error *error) {
     return !stopped || error_interrupted(error, what, "stopped; finished parts are kept");
 }
 
-/* The scene is the same afterwards. */
-bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *convergence, Error *error) {
+bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, double allowed, Error *error) {
+    SimulateVerdict verdict = {0};
+    Simulation run;
+    Error failure = {0};
+    if (!simulation_begin(&run, scene, method, error)) return false;
+    bool ok = simulate_verdict_begin(&verdict, scene, method, error);
+    verdict.watch.run.allowed = allowed;
+    for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&verdict.watch); frame++)
+        if (simulation_step(&run, frame, &failure)) {
+            ok = verdict_watch_observe(&verdict.watch, frame, run.world, error);
+        } else {
+            fallbacks_add(&verdict.watch.fallbacks, &world_solution(run.world)->fallbacks);
+            break;
+        }
+    if (ok && !simulate_verdict_end(&verdict, &failure)) *error = failure, ok = false;
+    *reading = verdict.reading;
+    simulate_verdict_free(&verdict);
+    simulation_end(&run);
+    return ok;
+}
+
+bool stability_truth(Scene *scene, ConvergedRun *run, Error *error) {
     Method reference;
     float *x = first_x(scene);
     const bool warm = scene->warm_starting;
-    *truth = VERDICT_SETTLES;
-    if (!struck) return true;
     if (!method_parse(&reference, "reference", error)) return false;
     const float place = *x;
     bool ok = true;
@@ -93,15 +111,14 @@ bool stability_truth(Scene *scene, bool struck, Verdict *truth, Convergence *con
     for (int seed = 0; ok && seed < BORDER_SEEDS; seed++) {
         VerdictReading reading;
         stability_shift(scene, seed);
-        const VerdictRun judged = verdict_run_of(scene, &reference);
-        ok = verdict_run(&reading, scene, &reference, &judged, error);
+        ok = verdict_run(&reading, scene, &reference, 0, error);
         *x = place;
-        if (ok && seed == 0) *truth = reading.verdict;
+        if (!ok) break;
+        if (seed == 0) run->truth = reading.verdict;
         const bool known = verdict_sound(reading.verdict) && reading.fallbacks.not_converged == 0;
-        if (ok && (reading.verdict != *truth || !known)) *truth = VERDICT_UNDECIDED;
-        if (!ok || seed == 0) continue; /* that run is known */
-        convergence->steps += scene->frames;
-        fallbacks_add(&convergence->fallbacks, &reading.fallbacks);
+        if (reading.verdict != run->truth || !known) run->truth = VERDICT_UNDECIDED;
+        run->steps += reading.steps;
+        fallbacks_add(&run->fallbacks, &reading.fallbacks);
     }
     scene->warm_starting = warm;
     return ok;
@@ -113,6 +130,20 @@ Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Me
     return is_truth && unknown && verdict_sound(reading->verdict) ? VERDICT_UNDECIDED : reading->verdict;
 }
 
+/* Without the explosion that it would be called by itself. */
+static bool find_gain(const Scene *scene, ConvergedRun *run, Error *error) {
+    VerdictReading reading;
+    Method reference;
+    Scene warm = *scene;
+    warm.warm_starting = true;
+    if (!method_parse(&reference, "reference", error) || !verdict_run(&reading, &warm, &reference, INFINITY, error))
+        return false;
+    run->steps = reading.steps;
+    run->fallbacks = reading.fallbacks;
+    run->gained = reading.fallbacks.not_converged == 0 ? reading.excess : 0;
+    return true;
+}
+
 /* The run of the scene at the value by the method "reference", and its truth. NULL with error set if it fails. */
 static const ConvergedRun *converged_run(ConvergedRuns *runs, Scene *scene, double value, bool struck, Error *error) {
     const ConvergedRun *known = NULL;
@@ -120,15 +151,10 @@ static const ConvergedRun *converged_run(ConvergedRuns *runs, Scene *scene, doub
     for (int i = 0; i < runs->count; i++)
         if (runs->runs[i]->value == value) known = runs->runs[i];
     if (known != NULL) return known;
-    Method reference;
-    Scene warm = *scene;
-    warm.warm_starting = true;
     ConvergedRun *run = calloc(1, sizeof *run);
     if (run == NULL) return error_memory(error, "converged run"), NULL;
     run->value = value;
-    bool ok = method_parse(&reference, "reference", error) && energy_log_run(&run->log, &warm, &reference, error);
-    run->convergence = (Convergence){run->log.frames, run->log.unconverged, run->log.fallbacks};
-    ok = ok && stability_truth(scene, struck, &run->truth, &run->convergence, error);
+    const bool ok = struck ? stability_truth(scene, run, error) : find_gain(scene, run, error);
     bool room = true;
 #pragma omp critical(converged_runs)
     if (ok) {
@@ -136,52 +162,46 @@ static const ConvergedRun *converged_run(ConvergedRuns *runs, Scene *scene, doub
         if (room) runs->runs[runs->count++] = run;
     }
     if (ok && (room || error_memory(error, "converged run"))) return run;
-    energy_log_free(&run->log);
     free(run);
     return NULL;
 }
 
-static bool run_beside(Scene *scene, const JudgedRun *run, const ConvergedRun *beside, VerdictReading *reading,
-                       Error *error) {
+/* The run with its shift. */
+static bool run_shifted(Scene *scene, const JudgedRun *run, double allowed, VerdictReading *reading, Error *error) {
     float *x = first_x(scene);
     const float place = x != NULL ? *x : 0;
     const bool warm = scene->warm_starting;
-    VerdictRun judged = verdict_run_of(scene, run->method);
-    if (beside != NULL) judged.converged = &beside->log;
     stability_shift(scene, run->seed);
     if (run->method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
-    const bool ok = verdict_run(reading, scene, run->method, &judged, error);
+    const bool ok = verdict_run(reading, scene, run->method, allowed, error);
     if (x != NULL) *x = place;
     scene->warm_starting = warm;
-    if (ok && beside != NULL) reading->verdict = stability_compare(reading, beside->truth, run->method);
     return ok;
 }
 
 bool stability_judge(Scene *scene, const JudgedRun *run, ConvergedRuns *runs, VerdictReading *reading,
                      const ConvergedRun **beside, Error *error) {
     *beside = NULL;
-    if (!run->struck && !run_beside(scene, run, NULL, reading, error)) return false;
+    if (!run_shifted(scene, run, 0, reading, error)) return false;
     if (!run->struck && reading->verdict != VERDICT_EXPLODES) return true;
     *beside = converged_run(runs, scene, run->value, run->struck, error);
-    return *beside != NULL && run_beside(scene, run, *beside, reading, error);
+    if (*beside == NULL) return false;
+    if (!run->struck) return run_shifted(scene, run, (*beside)->gained, reading, error);
+    reading->verdict = stability_compare(reading, (*beside)->truth, run->method);
+    return true;
 }
 
 void converged_runs_free(ConvergedRuns *runs) {
-    for (int i = 0; i < runs->count; i++) {
-        energy_log_free(&runs->runs[i]->log);
-        free(runs->runs[i]);
-    }
+    for (int i = 0; i < runs->count; i++) free(runs->runs[i]);
     free(runs->runs);
     *runs = (ConvergedRuns){0};
 }
 
 bool unconverged_print(FILE *results, int section, MapCell *row, const ConvergedRun *beside, Error *error) {
-    if (beside == NULL || beside->convergence.fallbacks.not_converged == 0) return true;
-    const Convergence *convergence = &beside->convergence;
-    row->steps = convergence->steps;
-    row->not_converged = convergence->fallbacks.not_converged;
-    row->residual = isfinite(convergence->fallbacks.residual) ? convergence->fallbacks.residual : NAN;
-    row->first = convergence->first > 0 ? (double)convergence->first : NAN;
+    if (beside == NULL || beside->fallbacks.not_converged == 0) return true;
+    row->steps = beside->steps;
+    row->not_converged = beside->fallbacks.not_converged;
+    row->residual = isfinite(beside->fallbacks.residual) ? beside->fallbacks.residual : NAN;
     return piece_tables_print(results, &unconverged_layout, section, row, error);
 }
 

@@ -105,7 +105,8 @@ static bool repeat_runs(const ProbeContext *probed, Error *error) {
                                 error) ||
             !run_counter_add(&run->counter, run->scan->study->name, error))
             return false;
-        if (again.state != first->reading.state || again.steps != first->reading.steps) result->differs = first->value;
+        if (again.energy != first->reading.energy || again.steps != first->reading.steps)
+            result->differs = first->value;
     }
     return true;
 }

@@ -34,9 +34,7 @@ const char stability_struck_words[] =
     "maps also where only one of the two collapses. "
     "Undecided: a micrometre decides, or the reference did not converge.";
 
-const char stability_unconverged_words[] =
-    "From a step on that did not converge no run is judged by the reference, and "
-    "what a strike must do is undecided.";
+const char stability_unconverged_words[] = "Where a step did not converge, what a strike must do is undecided.";
 
 bool stability_unconverged(const CsvTable *table, const char *study, char text[UNCONVERGED_TEXT_SIZE]) {
     enum { NAMED = 12 };
@@ -183,7 +181,6 @@ static const CsvColumn unconverged_columns[] = {
     COUNT(MapCell, steps, 1),
     COUNT(MapCell, not_converged, 1),
     NUMBER(MapCell, residual, CSV_OPTIONAL, 0, LARGEST, REST_DIGITS),
-    NUMBER(MapCell, first, CSV_OPTIONAL, 1, SCENE_MAX_FRAMES, VALUE_DIGITS),
 };
 
 /* The columns that these tables begin with. */

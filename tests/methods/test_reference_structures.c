@@ -6,8 +6,6 @@
 #include "reference_worlds.h"
 #include "sanitized.h"
 
-#include "studies/converged.h"
-
 typedef struct Converged {
     Reference reference;
     int steps, failed;
@@ -94,15 +92,6 @@ TEST(a_run_counts_steps_without_a_solution) {
     assert_ok(simulate_watched(scene, &method, &(RunWatch){.fallbacks = &fallbacks}, &error), error);
     assert_int_equal(fallbacks.not_converged, run_scene(scene).failed);
     assert_true(fallbacks.residual > tight);
-}
-
-/* The log of such a run bounds nothing from there on. */
-TEST(a_log_ends_at_the_first_step_without_a_solution) {
-    OWN(EnergyLog) log = {0};
-    OWN(Scene) *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
-    const Method method = method_named("reference");
-    assert_ok(energy_log_run(&log, scene, &method, &error), error);
-    assert_true(log.unconverged > 0 && log.unconverged < scene->frames);
 }
 
 /* As they come, none chosen. */

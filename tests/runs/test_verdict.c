@@ -236,16 +236,27 @@ TEST(each_number_is_of_its_bodies) {
     assert_near(reading.drift, 25.499, 1e-4);
 }
 
-/* Stays of 60 frames, then a last one. */
-TEST(a_rest_is_twice_as_long_as_the_stays_before) {
-    for (int last = 119; last <= 121; last += 2) {
+/* Stays of 60 frames, then one of 59 in which the box goes on at some share of their pace, 2% of its size a stay; or
+   goes 1.9% at once, and rests for the last unit or for a little more than the last half unit. */
+TEST(what_goes_on_at_half_its_pace_moves) {
+    static const struct {
+        float share, at_once;
+        int last;
+        bool moves;
+    } cases[] = {{0.45f, 0, 59, false}, {0.55f, 0, 59, true}, {0, 0.019f, 119, false}, {0, 0.019f, 35, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Trial trial = box_on_ground();
         for (int stay = 0; stay < 4; stay++) {
             go(&trial, 60 * (stay + 1) - 1);
             trial.bodies[1].position.x += 0.03f;
         }
-        go(&trial, 240 + last);
-        assert_int_equal(end(&trial).moving, last == 119);
+        go(&trial, 240);
+        trial.bodies[1].position.x += cases[i].at_once;
+        for (int frame = 1; frame <= cases[i].last; frame++) {
+            trial.bodies[1].position.x += cases[i].share * 0.02f / 60;
+            go(&trial, 240 + frame);
+        }
+        assert_int_equal(end(&trial).moving, cases[i].moves);
     }
 }
 
@@ -415,36 +426,14 @@ TEST(a_percent_of_what_is_available_may_be_gained) {
     assert_string_equal(reading.unit, "J");
 }
 
-TEST(energy_that_a_run_has_lost_it_may_not_regain) {
+TEST(what_is_allowed_is_no_gain) {
     for (int i = 0; i < 2; i++) {
         Trial trial = box_on_ground();
-        Body *box = add_box(&trial, 5, 0.499f);
-        box->velocity.x = 10; /* 50 J, lost within the first unit */
+        trial.run.allowed = i == 0 ? 12.6 : 11; /* J */
         go(&trial, 10);
-        box->velocity.x = 0;
-        go(&trial, 3 * SECOND);
-        box->velocity.x = (float)sqrt(2 * (i == 0 ? 4.99 : 5.01)); /* 5% of 50 J that it had and 50 J that it lost */
-        go(&trial, 3 * SECOND + 10);
+        trial.bodies[1].velocity.x = 5; /* 12.5 J; 0.1 J are free */
+        go(&trial, 20);
         assert_int_equal(end(&trial).verdict == VERDICT_EXPLODES, i);
-    }
-}
-
-/* What a converged run has within a unit is no gain. */
-TEST(a_converged_run_bounds_energy) {
-    double energy[301];
-    for (int i = 0; i < 301; i++) energy[i] = i == 100 ? 20 : 10; /* J */
-    const EnergyLog log = {.frames = 300, .energy = energy, .liveliest = 1000};
-    static const struct {
-        int frame;
-        bool explodes;
-    } cases[] = {{39, true}, {41, false}, {159, false}, {162, true}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Trial trial = box_on_ground(); /* 4.99 J */
-        trial.run.converged = &log;
-        go(&trial, cases[i].frame - 1);
-        trial.bodies[1].velocity.x = 5; /* 12.5 J more */
-        go(&trial, cases[i].frame);
-        assert_int_equal(end(&trial).verdict == VERDICT_EXPLODES, cases[i].explodes);
     }
 }
 

@@ -88,10 +88,10 @@ static const Law laws[] = {{"lengths and times", enlarge, false},
                            {"no velocities", forget_velocities, true}};
 enum { LAWS = sizeof laws / sizeof *laws };
 
-static VerdictReading judge(const Trajectory *run, Scene *scene, char words[TRAJECTORY_VERDICT_SIZE]) {
+static VerdictReading judge(const Trajectory *run, const Scene *scene, char words[TRAJECTORY_VERDICT_SIZE]) {
     SimulateVerdict verdict;
     Error error = {0};
-    assert_ok(simulate_verdict_of_run(&verdict, &(RunScene){.scene = scene, .assumed = true}, run, &error), error);
+    assert_ok(simulate_verdict_of_run(&verdict, run, scene, 0, &error), error);
     simulate_verdict_words(&verdict, words);
     simulate_verdict_free(&verdict);
     return verdict.reading;
@@ -107,20 +107,13 @@ static void check_run(const char *path, const char *text, int broken[LAWS]) {
     OWN(Trajectory) *run = simulate(scene, &method, NULL, &error);
     if (run == NULL) return; /* the method does not apply, or fails */
     char words[TRAJECTORY_VERDICT_SIZE], again[TRAJECTORY_VERDICT_SIZE];
-    OWN(Scene) *assumed = trajectory_scene(run, &error);
-    const VerdictReading is = judge(run, assumed, words);
+    const VerdictReading is = judge(run, scene, words);
     for (int law = 0; law < LAWS; law++) {
         OWN(Trajectory) *copy = simulate(scene, &method, NULL, &error);
-        OWN(Scene) *of_copy = trajectory_scene(run, &error);
+        OWN(Scene) *of_copy = scene_from(path);
         laws[law].change(copy, of_copy);
         for (int i = 0; i < copy->bodies; i++) /* the scene of the copy */
-            if (i < of_copy->body_count) {
-                of_copy->bodies[i].size = copy->size[i];
-                of_copy->bodies[i].mass = copy->mass[i];
-            } else {
-                of_copy->bomb.size = copy->size[i];
-                of_copy->bomb.mass.value = copy->mass[i];
-            }
+            *(i < of_copy->body_count ? &of_copy->bodies[i].size : &of_copy->bomb.size) = copy->size[i];
         const VerdictReading was = judge(copy, of_copy, again);
         const bool same = is.verdict == was.verdict && is.struck == was.struck && is.moving == was.moving &&
                           is.count.bodies == was.count.bodies && is.count.fell == was.count.fell &&

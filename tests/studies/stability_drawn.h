@@ -12,7 +12,7 @@
 #define MAPS "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"
 #define BORDERS "study,method,setting,parameter,unit,holds_at,fails_at,verdict\n"
 #define UNCONVERGED \
-    "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,steps,not_converged,residual,first\n"
+    "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,steps,not_converged,residual\n"
 #define ONE_CELL "stack,engine,k=10,ratio,,1,height,boxes,2,falls,100,1,0.5,m\n"
 #define ONE_BORDER "stack,engine,k=10,height,boxes,10,11,falls\n"
 

@@ -149,10 +149,10 @@ TEST(where_the_reference_did_not_converge_is_named) {
     draw();
     check_svg("for name in ('borders', 'map-m'):\n"
               "    assert 'converge' not in caption(name) + str(texts(read(name))), caption(name)\n");
-    write_table("unconverged.csv", UNCONVERGED UNCONVERGED_RUN("s", "engine", "2", "", "100,7,0.02,3")
-                                       UNCONVERGED_RUN("s", "engine", "5", "", "300,1,2e-08,")
-                                           UNCONVERGED_RUN("s", "nncg", "2", "", "100,7,2e-08,3")
-                                               UNCONVERGED_RUN("m", "engine", "2", "4", "50,50,,1"));
+    write_table("unconverged.csv", UNCONVERGED UNCONVERGED_RUN("s", "engine", "2", "", "100,7,0.02")
+                                       UNCONVERGED_RUN("s", "engine", "5", "", "300,1,2e-08")
+                                           UNCONVERGED_RUN("s", "nncg", "2", "", "100,7,2e-08")
+                                               UNCONVERGED_RUN("m", "engine", "2", "4", "50,50,"));
     draw();
     check_svg("for name, where in (('borders', 's at h 2, 5 (8 of 400 steps, residual up to 0.02 m/s).'),\n"
               "                    ('map-m', 'm at h/v 2/4 (50 of 50 steps, residual not finite).')):\n"

@@ -33,14 +33,13 @@ static Verdict truth_at(float past, int frames) {
                         {.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {past, 0.5f}}};
     Scene scene = scene_of_bodies(bodies, 2, frames);
     scene.bomb = (SceneBomb){.present = true, .frame = 1, .size = {1, 1}, .mass.value = 1, .x.value = -8, .y = 0.5f};
-    Verdict truth;
-    Convergence convergence = {0};
+    ConvergedRun run = {0};
     Error error = {0};
-    assert_ok(stability_truth(&scene, true, &truth, &convergence, &error), error);
-    assert_int_equal(convergence.steps, (BORDER_SEEDS - 1) * frames);
-    assert_int_equal(convergence.fallbacks.not_converged, 0);
+    assert_ok(stability_truth(&scene, &run, &error), error);
+    assert_int_equal(run.steps, BORDER_SEEDS * frames);
+    assert_int_equal(run.fallbacks.not_converged, 0);
     assert_true(bodies[1].position.x == past && scene.warm_starting);
-    return truth;
+    return run.truth;
 }
 
 /* Rigid boxes: the centre decides. On the edge, a micrometre does. */

@@ -3,7 +3,7 @@
 #include "made.h"
 #include "sanitized.h"
 
-#include "studies/converged.h"
+#include "studies/stability.h"
 
 #include <dirent.h>
 
@@ -15,19 +15,14 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
     static int cases;
     if (cases++ % sampled(4) != 0) return;
     Error error = {0};
-    OWN(EnergyLog) converged = {0};
     OWN(Scene) *scene = scene_read_with(path, settings, count, &error);
     assert_ok(scene != NULL, error);
     scene->bomb.present = false;
     scene->frames = STEPS;
-    const Method reference = method_named("reference");
-    assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
     for (int i = 0; i < 3; i++) {
         VerdictReading reading;
         const Method method = method_named(methods[i]);
-        VerdictRun run = verdict_run_of(scene, &method);
-        run.converged = &converged;
-        assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
+        assert_ok(verdict_run(&reading, scene, &method, 0, &error), error);
         if (!verdict_holds(reading.verdict))
             fail_msg("%s%s: %s %s at body %d, frame %d", path,
                      count > 0 ? printed(" with %s = %g", settings->name, settings->value) : "", methods[i],
@@ -78,8 +73,7 @@ TEST(the_pile_comes_to_rest) {
         const Method method = method_named(methods[i / 5]);
         scene->bomb.present = false;
         scene->frames = scene->bomb.frame;
-        const VerdictRun run = verdict_run_of(scene, &method);
-        assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
+        assert_ok(verdict_run(&reading, scene, &method, 0, &error), error);
         if (reading.verdict != VERDICT_SETTLES)
             fail_msg("%s with tilt %g and friction %g: %s, body %d", methods[i / 5], values[i % 5][0], values[i % 5][1],
                      verdict_name(reading.verdict), reading.body);
@@ -88,18 +82,13 @@ TEST(the_pile_comes_to_rest) {
 
 /* "With 10 iterations it falls." */
 TEST(the_arch_needs_its_iterations) {
-    OWN(EnergyLog) converged = {0};
-    Method reference, engine;
     VerdictReading reading;
+    const Method engine = method_named("engine");
     OWN(Scene) *scene = scene_named("templates/arch");
     scene->bomb.present = false;
     scene->frames = STEPS;
     scene->iterations = 10;
-    assert_true(method_parse(&reference, "reference", &error) && method_parse(&engine, "engine", &error));
-    assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
-    VerdictRun run = verdict_run_of(scene, &engine);
-    run.converged = &converged;
-    assert_ok(verdict_run(&reading, scene, &engine, &run, &error), error);
+    assert_ok(verdict_run(&reading, scene, &engine, 0, &error), error);
     assert_string_equal(verdict_name(reading.verdict), "falls");
 }
 
