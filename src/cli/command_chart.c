@@ -72,6 +72,9 @@ static const Option option_table[] = {
      "174 x 92 mm, two columns of a paper; 85 x 144 mm, one column; or 160 x 90 mm, 16:9 (default: page)",
      OPTION_READ(read_size, Options, study.look.size)},
     {OPTION_COLOUR(Options, study.look.colours)},
+    {"--frozen", 0, NULL,
+     "Draw errors on steps that the engine's runs recorded, which methods that lose the scene have, too",
+     OPTION_FLAG(Options, study.look.frozen)},
     {"--words", 0, NULL, "Also write the caption below the picture", OPTION_FLAG(Options, study.look.words)},
     {OPTION_SHARD(Options, study.shard)},
     {0}};

@@ -25,8 +25,9 @@ enum { WIDTH = 1280, HEIGHT = 720 };
 static const double way = 3;
 
 typedef struct Options {
-    const char *scene, *output; /* output: NULL for NAME-first-frame.png */
-    unsigned verdict;           /* of `verdicts` */
+    const char *scene, *output;              /* output: NULL for NAME-first-frame.png */
+    unsigned verdict;                        /* of `verdicts` */
+    double max_overlap, max_drift, max_gain; /* m, m, J; NaN: any */
     JudgeOptions judge;
     bool json;
 } Options;
@@ -47,6 +48,11 @@ static const Option option_table[] = {
      "fall), holds (settles, stands or moves), settles, stands, moves, too short, falls, collapses, hangs, sinks, "
      "tunnels, explodes, non-finite (default: any)",
      OPTION_ENUM(Options, verdict, verdicts)},
+    {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, max_overlap, 0, 1e6)},
+    {"--max-drift", 0, "M", "Fail if a body moves further after the time that the verdict names, m",
+     OPTION_DOUBLE(Options, max_drift, 0, 1e6)},
+    {"--max-gain", 0, "J", "Fail if the energy exceeds that of the start and the bomb by more, J",
+     OPTION_DOUBLE(Options, max_gain, 0, 1e12)},
     {0}};
 
 static const CommandSpec spec = {
@@ -321,52 +327,79 @@ static bool check_scene(const Scene *scene, const Options *options, Error *error
 
 /* twinbox check RUN.npz */
 
+enum { LIMITS = 3, FAILURE_SIZE = 160 };
+
 typedef struct CheckedRun {
     const Options *options;
     JudgedRun judged;
-    char failure[160]; /* empty: none */
+    int failed;
+    char failures[1 + LIMITS][FAILURE_SIZE]; /* another verdict than is wanted, and what is beyond a limit */
 } CheckedRun;
+
+/* Notes failures. False with error set if the run does not tell what a limit is for. */
+static bool check_limits(CheckedRun *checked, const Trajectory *run, Error *error) {
+    const Options *options = checked->options;
+    const VerdictReading *reading = &checked->judged.verdict.reading;
+    const Verdict verdict = reading->verdict;
+    const char *wanted = verdicts[options->verdict];
+    if (!isnan(options->max_drift) && isnan(reading->drift))
+        return error_input(error, options->scene, "lasts %.3g s: --max-drift needs a run of more than %.3g s",
+                           (run->frames - 1) * (double)run->dt,
+                           VERDICT_DRIFT_UNITS * checked->judged.verdict.watch.unit);
+    if (!isnan(options->max_gain) && isnan(reading->excess))
+        return error_input(error, options->scene, "has no masses, and bodies are struck: --max-gain needs --scene");
+    const bool right = options->verdict == 0          ? true
+                       : strcmp(wanted, "sound") == 0 ? verdict_sound(verdict)
+                       : strcmp(wanted, "holds") == 0 ? verdict_holds(verdict)
+                                                      : strcmp(wanted, verdict_name(verdict)) == 0;
+    if (!right)
+        snprintf(checked->failures[checked->failed++], FAILURE_SIZE, "verdict %s, not %s", verdict_name(verdict),
+                 wanted);
+    const struct {
+        const char *what, *unit;
+        double value, most; /* NaN: no limit */
+    } limits[LIMITS] = {{"overlap", "m", reading->deepest, options->max_overlap},
+                        {"drift", "m", reading->drift, options->max_drift},
+                        {"energy gained", "J", reading->excess, options->max_gain}};
+    for (int i = 0; i < LIMITS; i++)
+        if (limits[i].value > limits[i].most)
+            snprintf(checked->failures[checked->failed++], FAILURE_SIZE, "%s %.4g %s, more than %.4g %s",
+                     limits[i].what, limits[i].value, limits[i].unit, limits[i].most, limits[i].unit);
+    return true;
+}
 
 static void write_checked(JsonWriter *json, const void *context) {
     const CheckedRun *checked = context;
     json_put_text(json, "run", checked->options->scene);
-    const bool passed = checked->failure[0] == '\0';
-    json_put_bool(json, "passed", passed);
+    json_put_bool(json, "passed", checked->failed == 0);
     json_begin_array(json, "failures", JSON_LINES);
-    if (!passed) json_put_text(json, NULL, checked->failure);
+    for (int i = 0; i < checked->failed; i++) json_put_text(json, NULL, checked->failures[i]);
     json_end(json);
     simulate_verdict_put(&checked->judged.verdict, json, "verdict");
 }
 
-/* Prints the verdict and figures. False also, without an error, if another verdict is wanted. */
+/* Prints the verdict and figures. False also, without an error, if the run has failures. */
 static bool check_run(const Options *options, Error *error) {
     if (options->output != NULL) return error_input(error, "--output", "applies to scenes only");
     Trajectory *run = trajectory_read(options->scene, error);
     if (run == NULL) return false;
     CheckedRun checked = {.options = options};
-    bool ok = judged_run_find(&checked.judged, run, &options->judge, error);
-    const Verdict verdict = checked.judged.verdict.reading.verdict;
-    const char *wanted = verdicts[options->verdict];
-    const bool right = options->verdict == 0          ? true
-                       : strcmp(wanted, "sound") == 0 ? verdict_sound(verdict)
-                       : strcmp(wanted, "holds") == 0 ? verdict_holds(verdict)
-                                                      : strcmp(wanted, verdict_name(verdict)) == 0;
-    if (!right) snprintf(checked.failure, sizeof checked.failure, "verdict %s, not %s", verdict_name(verdict), wanted);
+    bool ok = judged_run_find(&checked.judged, run, &options->judge, error) && check_limits(&checked, run, error);
     if (ok && options->json) {
         ok = json_output("twinbox check run 1", write_checked, &checked, error);
     } else if (ok) {
         printf("%s by %s: %d steps of %g s, %d bodies (%s)\n", run->scene, run->method, run->frames - 1,
                (double)run->dt, run->bodies, options->scene);
         judged_run_print(&checked.judged, &options->judge);
-        if (!right) printf("failed: %s\n", checked.failure);
+        for (int i = 0; i < checked.failed; i++) printf("failed: %s\n", checked.failures[i]);
     }
     judged_run_free(&checked.judged);
     trajectory_destroy(run);
-    return ok && right;
+    return ok && checked.failed == 0;
 }
 
 bool command_check(int argc, char **argv, Error *error) {
-    Options options = {0};
+    Options options = {.max_overlap = NAN, .max_drift = NAN, .max_gain = NAN};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const char *output = options.output;
     const bool to_output = output != NULL && path_is_standard(output);
@@ -374,8 +407,10 @@ bool command_check(int argc, char **argv, Error *error) {
     if (file_name_ends_with(options.scene, ".npy"))
         return error_input(error, options.scene,
                            "is one array of NumPy; a run is a .npz, of at least position, angle, size and dt");
-    if (options.verdict > 0 || options.judge.scene != NULL || options.judge.set.count > 0 || options.judge.skin > 0)
-        return error_input(error, options.scene, "is a scene; --scene, --set, --skin and --verdict apply to runs");
+    if (options.verdict > 0 || !isnan(options.max_overlap) || !isnan(options.max_drift) || !isnan(options.max_gain) ||
+        options.judge.scene != NULL || options.judge.set.count > 0 || options.judge.skin > 0)
+        return error_input(error, options.scene,
+                           "is a scene; --scene, --set, --skin, --verdict and limits apply to runs");
     const char *ending = output != NULL ? strrchr(output, '.') : NULL;
     if (output != NULL && !to_output && (ending == NULL || strcmp(ending, ".png") != 0))
         return error_input(error, output, "the name of the picture must end in .png");

@@ -118,8 +118,8 @@ void chart_caption(const Chart *chart, const char *title, const bool *named, cha
     snprintf(
         text, size,
         "Speed against accuracy: %s. At the impact: the first frames after the bomb touches a box. Velocity error: "
-        "difference from the converged solution of the same step, RMS over the boxes; mean over all launches.",
-        title);
+        "difference from the converged solution of the same step%s, RMS over the boxes; mean over all launches.",
+        title, chart->frozen ? " of the engine's run, on which every method is tried" : "");
     add_curves(&caption);
     add_names(&caption, is_without_push_out,
               "error against the solution without the velocity that pushes overlapping boxes apart.");

@@ -260,9 +260,10 @@ bool chart_mark_is_default(const ChartMark *mark) {
     return true;
 }
 
-/* Adds the lines of a scene's rows, and the marks of those in closed loop. Those of a method that lost the scene are
-   marks until the ranks are known. */
+/* Adds the lines and marks of a scene's rows by one protocol. Those of a method that lost the scene are marks until the
+   ranks are known. */
 static bool add_rows(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
+    const ChartProtocol protocol = chart->frozen ? PROTOCOL_FROZEN : PROTOCOL_CLOSED;
     for (int i = 0; i < table->count; i++) {
         const ChartRow *row = chart_row(table, i);
         const MethodDescription *method = method_describe(row->method);
@@ -282,7 +283,7 @@ static bool add_rows(Chart *chart, const CsvTable *table, const char *scene, con
             name_line(key, line->name);
             line->competes = method == NULL || method->role == METHOD_COMPETES;
         }
-        if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST) continue;
+        if (row->protocol != protocol || row->phase == PHASE_REST) continue;
         if (row->floor > PARETO_RESOLUTION) chart->floor[p] = row->floor;
         /* A program has no quartiles: it reports one time a step. */
         const bool own_clock = isnan(row->us_solver) && !isnan(row->us_engine);
@@ -293,7 +294,7 @@ static bool add_rows(Chart *chart, const CsvTable *table, const char *scene, con
                                 .error = fmax(row->error_mean, chart_row_resolution(row)),
                                 .floored = row->error_mean < PARETO_RESOLUTION && !(row->floor > PARETO_RESOLUTION),
                                 .varies = row->us_varies > 0,
-                                .lost = chart_row_lost(table->rows, table->count, row),
+                                .lost = !chart->frozen && chart_row_lost(table->rows, table->count, row),
                                 .baseline = method != NULL && method->baseline && row->setting[0] == '\0',
                                 .method = row->method,
                                 .setting = row->setting};
@@ -399,7 +400,7 @@ static void label_mark(const Chart *chart, ChartMark *mark) {
 
 bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const ChartLook *look,
                   Error *error) {
-    *chart = (Chart){.us_least = INFINITY, .error_least = INFINITY};
+    *chart = (Chart){.us_least = INFINITY, .error_least = INFINITY, .frozen = look->frozen};
     chart_times_note(chart->times, table->rows, table->count);
     chart_make_plain(chart->times);
     bool room = true, ok = true;
@@ -433,7 +434,8 @@ bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const 
         for (int p = 0; p < CHART_PANELS; p++)
             for (int i = 0; i < chart->panels[p].count; i++) label_mark(chart, &chart->panels[p].marks[i]);
         ok = chart->panels[0].count + chart->panels[1].count > 0 ||
-             error_input(error, path, "no row of the scene '%s' in closed loop has a time and an error", scene);
+             error_input(error, path, "no row of the scene '%s' %s has a time and an error", scene,
+                         chart->frozen ? "on recorded steps" : "in closed loop");
     }
     const char *keys[CHART_MAX_LINES];
     RunColours colours[CHART_MAX_LINES];

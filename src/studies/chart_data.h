@@ -66,6 +66,7 @@ typedef struct ChartPanel {
 
 typedef struct Chart {
     int line_count, launches;
+    bool frozen; /* ChartLook */
     int floored; /* number of marks drawn at PARETO_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
     ChartPanel panels[CHART_PANELS]; /* impact frames and the frames after */

@@ -277,7 +277,8 @@ static bool make_picture(ChartPicture *picture, const Chart *chart, const char *
     char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
     *picture = (ChartPicture){.chart = chart, .size = look->size};
     chart_plain(name, scene);
-    snprintf(title, sizeof title, "%s, %d launch%s", name, chart->launches, plural_es(chart->launches));
+    snprintf(title, sizeof title, "%s, %d launch%s%s", name, chart->launches, plural_es(chart->launches),
+             chart->frozen ? ", on the engine's steps" : "");
     bool whole = draw_panels(picture, title, 0);
     chart_caption(chart, title, picture->named, picture->caption, sizeof picture->caption);
     if (whole && look->words) whole = draw_words(picture, title);

@@ -14,6 +14,7 @@ typedef struct ChartLook {
     ChartSize size;
     const char *highlight; /* methods to be drawn in colour, separated by commas; NULL: none beside the usual ones */
     bool chosen;           /* all lines are: methods that --methods names, but silenced twins */
+    bool frozen;           /* errors and times on recorded steps, which methods that lose the scene have, too */
     bool words;            /* the caption below the picture, too, which makes it higher */
     ColourChoices colours; /* those that name a line count */
 } ChartLook;

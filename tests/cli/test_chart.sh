@@ -59,6 +59,11 @@ for file in quick/*.png quick/*.svg quick/equal_time*.csv; do
     cmp -s "$file" "again/$(basename "$file")" || fail "$file is drawn differently from its table"
 done
 
+run 0 chart quick/chart.csv -o frozen --frozen
+for scene in single stack; do
+    grep -q "on the engine's steps" frozen/chart-$scene.svg || fail "$scene: errors in closed loop"
+done
+
 ! brief || finish
 
 # A box in a V that its friction holds apart from: steps of the converged runs without a solution are counted.
