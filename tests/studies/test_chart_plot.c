@@ -424,6 +424,7 @@ TEST(what_is_left_out_is_in_the_picture) {
         FREED char *svg = read_drawn("stack", "svg", &size);
         assert_true((strstr(svg, "left out: pair-net (unstable)") != NULL) == (i == 0));
         assert_true((strstr(svg, ">pair-net<") != NULL) == (i == 1));
+        assert_true((strstr(svg, ">engine<") != NULL) == (i == 0)); /* it has no frozen row */
         assert_true((strstr(svg, "on the engine's steps") != NULL) == (i == 1));
     }
 }
