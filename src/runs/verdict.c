@@ -285,7 +285,7 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *er
     if (farthest > pass_share / 2 * watch->smallest && !check_passes(watch, error)) return false;
     check_energy(watch, &step);
     judge_falls(watch);
-    if (!check_hanging(watch, error)) return false;
+    if (!check_hanging(watch, &step, error)) return false;
     if (watch->rested_frame == 0 && step.frame == steps_of(watch, VERDICT_DRIFT_UNITS)) {
         watch->rested_frame = step.frame;
         watch->rested = watch->energy;

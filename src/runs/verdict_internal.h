@@ -99,7 +99,7 @@ bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error);
 bool check_passes(VerdictWatch *watch, Error *error);
 void count_energy(VerdictWatch *watch, const WatchedBody *body);
 void check_energy(VerdictWatch *watch, const VerdictStep *step);
-bool check_hanging(VerdictWatch *watch, Error *error);
+bool check_hanging(VerdictWatch *watch, const VerdictStep *step, Error *error);
 
 /* Stores the verdict if it is worse than the worst so far. */
 void verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit);

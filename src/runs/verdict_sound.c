@@ -153,24 +153,39 @@ bool check_contacts(VerdictWatch *watch, const VerdictStep *step, Error *error) 
     return true;
 }
 
-/* What lies on static bodies, or on what lies on them, does not hang. */
-bool check_hanging(VerdictWatch *watch, Error *error) {
+/* What touches a held body is held, too. True: one was not so far. */
+static bool hold(WatchedBody *a, WatchedBody *b) {
+    if (a->held == b->held) return false;
+    return a->held = b->held = true;
+}
+
+/* The first body that keeps its place and is not held; -1: none. */
+static int hanging(const VerdictWatch *watch, int longest) {
+    for (int i = 0; i < watch->body_count; i++)
+        if (!watch->bodies[i].held && watch->frame - watch->bodies[i].place.frame >= longest) return i;
+    return -1;
+}
+
+/* Static bodies are held. Contacts tell of almost all bodies that they do not hang. */
+bool check_hanging(VerdictWatch *watch, const VerdictStep *step, Error *error) {
     const int longest = steps_of(watch, long_units);
+    WatchedBody *bodies = watch->bodies;
     if (watch->pull == 0 || isinf(watch->floor) || watch->frame % longest != 0) return true;
-    if (!find_near(watch, 0, error)) return false;
-    for (int i = 0; i < watch->body_count; i++) watch->bodies[i].held = watch->bodies[i].is_static;
+    for (int i = 0; i < watch->body_count; i++) bodies[i].held = bodies[i].is_static;
     for (bool more = true; more;) {
         more = false;
-        for (size_t k = 0; k < watch->finder.pairs.count; k++) {
-            WatchedBody *a = &watch->bodies[watch->finder.pairs.pairs[k].a];
-            WatchedBody *b = &watch->bodies[watch->finder.pairs.pairs[k].b];
-            if (a->held != b->held && bodies_touch(watch, a, b)) a->held = b->held = more = true;
-        }
+        for (const ContactPoint *at = step->contacts; at < step->contacts + step->contact_count; at++)
+            more |= at->b < watch->body_count && hold(&bodies[at->a], &bodies[at->b]);
     }
-    for (int i = 0; i < watch->body_count; i++) {
-        const WatchedBody *body = &watch->bodies[i];
-        if (!body->held && watch->frame - body->place.frame >= longest)
-            verdict_note(watch, VERDICT_HANGS, i, longest * (double)watch->run.dt, "s");
+    if (hanging(watch, longest) < 0) return true;
+    if (!find_near(watch, 0, error)) return false;
+    for (bool more = true; more;) {
+        more = false;
+        const PairList *near = &watch->finder.pairs;
+        for (const BodyPair *pair = near->pairs; pair < near->pairs + near->count; pair++)
+            more |= bodies_touch(watch, &bodies[pair->a], &bodies[pair->b]) && hold(&bodies[pair->a], &bodies[pair->b]);
     }
+    const int body = hanging(watch, longest);
+    if (body >= 0) verdict_note(watch, VERDICT_HANGS, body, longest * (double)watch->run.dt, "s");
     return true;
 }

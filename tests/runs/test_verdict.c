@@ -243,7 +243,7 @@ TEST(what_goes_on_at_half_its_pace_moves) {
         float share, at_once;
         int last;
         bool moves;
-    } cases[] = {{0.45f, 0, 59, false}, {0.55f, 0, 59, true}, {0, 0.019f, 119, false}, {0, 0.019f, 35, true}};
+    } cases[] = {{0.45f, 0, 59, false}, {0.55f, 0, 59, true}, {0, 0.019f, 100, false}, {0, 0.019f, 35, true}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Trial trial = box_on_ground();
         for (int stay = 0; stay < 4; stay++) {
