@@ -24,7 +24,7 @@
 /* Every so many frames after the impact and at rest; they differ little. */
 enum { AFTER_STEP = 6, REST_EVERY = 30, FACTORIZATIONS_MAX = 120 /* 95% of the impacts on pyramids take fewer */ };
 
-static const double converged = 1e-6; /* m/s */
+static const ReferenceAim aim = {.tolerance = 1e-6, .most = FACTORIZATIONS_MAX, .push_out = true};
 static const double first_rate = 0.003;
 
 static bool make_solver(void *context, int i, ContactSolver *solver, Error *error) {
@@ -39,8 +39,8 @@ static bool keep_some(void *context, const LaunchStep *step, Error *error) {
     const bool wanted = step->phase == PHASE_IMPACT ||
                         (step->phase == PHASE_AFTER ? step->since % AFTER_STEP : step->frame % REST_EVERY) == 0;
     return !wanted || step->problem->contact_count == 0 ||
-           (reference_solve_to(step->reference, step->problem, converged, true, FACTORIZATIONS_MAX, error) &&
-            launch_step_record(step, step->reference->residual <= converged, error));
+           (reference_solve_to(step->reference, step->problem, &aim, error) &&
+            launch_step_record(step, step->reference->residual <= aim.tolerance, error));
 }
 
 bool sain_launches_record(const SainLaunches *launches, RecordedSteps *steps, const Progress *progress, Error *error) {

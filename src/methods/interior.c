@@ -4,21 +4,18 @@
  (Look):
 
    1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at
-      rest. Else an island of up to 33 bodies is solved as the reference is (methods/reference.h), to a quarter of the
-      tolerance: in 0.82 of the time of what follows, with a fortieth of the error; from 34 bodies on it takes 2.3 times
-      as long. For the others:
-   2. A few sweeps with momentum, where they save more than they cost.
-   3. Iterations until the residual is at most `near`: from near the bounds, and if these break down, from further
-      inside.
+      rest.
+   2. From 34 bodies on, a few sweeps with momentum, where they save more than they cost, then iterations until the
+      residual is at most what the step asks for: from near the bounds, and if these break down, from further inside.
+   3. The reference's solver (methods/reference.h), which follows the central path, also where it turns back. Up to 33
+      bodies it takes 0.82 of the time of 2, with a fortieth of the error, and comes first; beyond, an iteration of its
+      takes 1.7 times as long, and it needs 1.5 times as many.
    4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
-   The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. Iterations end when it
-   is reached; the best answer so far is the solution. The analysis of the matrix tells what an iteration costs: 5 to 10
-   sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all
-   sides. Where too few fit in, all is left to sweeps.
-
-   Fails at impacts whose central path turns back, as the bound leaves no room to follow it. The difficulty there, for
-   all methods, is to find which contacts open, stick and slide. */
+   The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. The analysis of the
+   matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to 1,000,
+   40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is left to sweeps. The difficulty, for all
+   methods, is to find which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior_point_internal.h"
@@ -37,11 +34,13 @@
 
 enum {
     FIRST_SWEEPS = 2,
-    START_SWEEPS = 6,  /* with momentum */
-    LEAST_OF_MANY = 11 /* iterations: fewer are rarely as good as sweeps; with 12 a pyramid of 20 rows creeps */
+    START_SWEEPS = 6,     /* with momentum */
+    LEAST_ITERATIONS = 11 /* fewer are rarely as good as sweeps; with 12 a pyramid of 20 rows creeps */
 };
 
-/* Work is counted, not timed, in sweeps over the island's contacts; its bound is INTERIOR_MOST_WORK. */
+/* Work is counted, not timed, in coloured sweeps over the island's contacts. Its bound is 300 of the engine's own
+   sweeps: each takes as long as 2.6 of these over 9 bodies, and as 4.9 to 6.8 over more (INTERIOR_MOST_WORK). */
+static const double few_most_work = 780;
 static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and
    walls, 1.4 in piles. */
@@ -54,19 +53,13 @@ static const double last_work = 20;
 static const float trusted = 0.3f;
 
 /* Iterations from the start of the sweeps. If these break down or cycle, it is better to start from there again,
-   further inside, than from where they are. */
-enum { ATTEMPTS = 4 /* the last is empty */ };
+   further inside, than from where they are. At rest one iteration mostly ends it, if it starts where the sweeps do; among
+   many bodies those that do not converge at once rarely do. Struck islands converge from near the bounds at once or not
+   at all; those with many bodies, or with a heavy one, begin further inside. */
+enum { ATTEMPTS = 3 /* the last is empty */ };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
-static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
-                                                  {&interior_gentle, 0.01, patient, 40},
-                                                  {&interior_far, 0.01, patient, 40}},
-                             at_rest_uneven[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
-                                                         {&interior_far, 0.01, patient, 40}};
-/* Among many bodies iterations that do not converge at once rarely do. */
-static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
-/* Restless islands converge from near the bounds, some after many jumps; struck ones at once or not at all. If not,
-   they begin again further inside. Those with many bodies, or with a heavy one, begin there. */
-static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}},
+static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_far, 1e-7, hasty, 10}, {&interior_far, 0.01, patient, 40}},
+                             at_rest_of_many[ATTEMPTS] = {{&interior_far, 1e-7, hasty, 10}},
                              at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 20},
                                                     {&interior_far, 0.3, patient, 40}};
 
@@ -85,8 +78,11 @@ static const InteriorAttempt near_bounds[ATTEMPTS] = {{&interior_quick, 1e-3, pa
 /* More: an iteration takes as long as 10 sweeps or more. Few: the reference's own solver, with so many factorizations
    at most, and so many more in a jam. */
 enum { FEW_BODIES = 33, FEW_ITERATIONS = 60, JAM_ITERATIONS = 35, MANY_BODIES = 128 };
-/* In sweeps, of a factorization with all that an iteration takes; kept for an answer without position correction. */
-static const double few_work = 7.5, jam_work = 10 + JAM_ITERATIONS * 7.5;
+/* Of the tolerance, which is a mean over contacts and the reference's the largest. */
+static const double few_share = 0.25;
+/* In sweeps, of a factorization of the reference with all that goes with it: for few bodies; for others, as a multiple
+   of an iteration's. Kept for an answer without position correction. */
+static const double few_work = 7.5, path_work = 1.7, jam_work = 10 + JAM_ITERATIONS * 7.5;
 
 typedef struct Look {
     int bodies, loops; /* bodies: that move */
@@ -94,8 +90,7 @@ typedef struct Look {
     float fall;        /* m/s, that gravity adds in a step */
     float pace;        /* m/s, the unit of speeds at rest */
     bool calm, many, slippery;
-    bool uneven, heavy; /* bodies of unlike masses touch */
-    bool restless;
+    float unlike;       /* the largest multiple of the other's mass, of two bodies that touch */
     bool slender;       /* towers: errors below are larger above */
     float near, enough; /* m/s: residuals at which iterations stop, and that are taken */
     PairResidual left;  /* sum over its pairs, after the first sweeps */
@@ -118,8 +113,14 @@ static const float still = 2e-5f, roundings = 0.3f;
 static const float restless_from = 2;
 /* Multiples of the other's mass, of two bodies that touch. Beyond the first, sweeps carry little between them. Beyond
    the second, iterations from near the bounds break down at impacts: on 36 boxes under a bomb of 1e5 times their mass,
-   the error of sweeps of the same work is 3.5 times that of interior if it tries them, 10 times if not. */
+   the error of sweeps of the same work is 3.5 times that of interior if it tries them, 10 times if not. And what is a
+   rounding error of an impulse for the heavy body throws the light one, so that such an island at rest is neither
+   restless nor still by its roundings. */
 static const float uneven_from = 10, heavy_from = 100;
+/* The tolerance of uneven calm islands is divided by their multiple over the first, at most by this. Of 184 random
+   structures at rest that the reference holds, with masses spread by up to a million, each at three tolerances, 2 runs
+   fall; 55 without this and the reference's own measure of such islands (ReferenceAim). */
+static const float most_exact = 1000;
 /* Of the pace. */
 static const float calm_speed = 10;
 
@@ -145,12 +146,13 @@ typedef struct State {
 
 static float smaller(float x, float y) { return x < y ? x : y; }
 
-static bool is_uneven(float inv_mass_a, float inv_mass_b, float from) {
-    return inv_mass_a > 0 && inv_mass_b > 0 && (inv_mass_a > from * inv_mass_b || inv_mass_b > from * inv_mass_a);
-}
+static float larger(float x, float y) { return x > y ? x : y; }
+
+static bool is_uneven(const Look *look) { return look->unlike > uneven_from; }
+static bool is_heavy(const Look *look) { return look->unlike > heavy_from; }
 
 /* Sweeps carry little between its bodies. */
-static bool jams(const Look *look) { return look->slippery || look->uneven; }
+static bool jams(const Look *look) { return look->slippery || is_uneven(look); }
 
 /* Before the step. near: of impacts, m/s. */
 static void look_at_islands(State *solver, const ContactProblem *problem, float near) {
@@ -171,18 +173,19 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
                     inv_mass_b = problem->bodies[contact->b].inv_mass, motion = residual_of_motion(problem, i);
         if (!(motion <= look->fastest)) look->fastest = motion; /* NaN, too */
         look->slippery |= contact->friction < INTERIOR_SLIPPERY;
-        look->uneven |= is_uneven(inv_mass_a, inv_mass_b, uneven_from);
-        look->heavy |= is_uneven(inv_mass_a, inv_mass_b, heavy_from);
+        if (inv_mass_a > 0 && inv_mass_b > 0)
+            look->unlike = larger(look->unlike, larger(inv_mass_a / inv_mass_b, inv_mass_b / inv_mass_a));
     }
     for (int k = 0; k < islands->count; k++) {
         Look *look = &solver->looks[k];
         const float limit = look->fall + calm_below * look->pace;
         look->calm = look->fastest < limit * limit;
-        const float share = look->slippery                ? slippery_near
-                            : look->slender               ? slender_near
-                            : look->many && !look->uneven ? many_near
-                                                          : calm_near;
-        look->near = look->calm ? smaller(near, share * look->pace) : near;
+        const float share = look->slippery                   ? slippery_near
+                            : look->slender                  ? slender_near
+                            : look->many && !is_uneven(look) ? many_near
+                                                             : calm_near;
+        const float exact = smaller(larger(look->unlike / uneven_from, 1), most_exact);
+        look->near = look->calm ? smaller(near, share * look->pace / exact) : near;
         look->enough = look->calm && look->many ? look->near : near;
     }
 }
@@ -201,8 +204,10 @@ static void look_at_residuals(Look *looks, const Sweeps *sweeps, const int32_t *
 /* Whether the residual, root mean square over so many contacts, is little more than rounding errors. */
 static bool is_still(const Look *look, int contacts) {
     const float held = sqrtf(look->left.held / (float)contacts);
-    const float least = look->slippery || look->slender ? 0 : still * look->pace;
-    const float rounding = roundings * 0x1p-24f * (look->pace + held), limit = rounding > least ? rounding : least;
+    const float exact = smaller(larger(look->unlike / uneven_from, 1), most_exact);
+    const float least = look->slippery || look->slender ? 0 : still * look->pace / exact;
+    const float rounding = is_heavy(look) ? 0 : roundings * 0x1p-24f * (look->pace + held);
+    const float limit = larger(rounding, least);
     return look->calm && look->left.visit < limit * limit * (float)contacts;
 }
 
@@ -282,16 +287,12 @@ static int affordable(const State *solver, double before, double iteration_work)
 static bool seems_cheap(const State *solver, const Look *step) {
     const double usual =
         interior_work(usual_products * step->loops * sqrt(step->loops), solver->momentum.sweeps.pair_count);
-    return affordable(solver, load_work + analysis_work(step), usual) >= (step->many ? LEAST_OF_MANY : 0);
+    return affordable(solver, load_work + analysis_work(step), usual) >= (step->many ? LEAST_ITERATIONS : 0);
 }
 
-/* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let
-   them open: a wall that creeps once goes on. */
 static const InteriorAttempt *attempts_of(const Look *step) {
-    if (!step->calm) return step->many || step->heavy ? at_impact + 1 : at_impact;
-    const bool many = step->many && !jams(step);
-    if (step->restless && !many) return near_bounds;
-    return many ? at_rest_of_many : step->uneven ? at_rest_uneven : at_rest;
+    if (step->calm) return step->many ? at_rest_of_many : at_rest;
+    return step->many || is_heavy(step) ? at_impact + 1 : at_impact;
 }
 
 /* The attempts, until the residual is at most `near` or the work is done. False when memory is short. */
@@ -365,12 +366,13 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
            error_memory(error, "interior");
 }
 
-/* Sets `best`. Rounded impulses are put back into their cones. False when memory is short. */
-static bool ask_reference(State *solver, const ContactProblem *problem, const Look *step, bool push_out, int most,
-                          ContactSolution *solution, Error *error) {
+/* Sets `best`: INFINITY if the answer is not taken. work: of a factorization. Rounded impulses are put back into their
+   cones. False when memory is short. */
+static bool ask_reference(State *solver, const ContactProblem *problem, const Look *step, const ReferenceAim *aim,
+                          double work, ContactSolution *solution, Error *error) {
     Reference *reference = &solver->reference;
-    if (!reference_solve_to(reference, problem, 0.25 * (double)step->near, push_out, most, error)) return false;
-    solver->left -= load_work + few_work * reference->factorizations;
+    if (!reference_solve_to(reference, problem, aim, error)) return false;
+    solver->left -= load_work + work * reference->factorizations;
     reference_round(reference, problem, solution);
     bool finite = true;
     for (int i = 0; i < problem->body_count; i++) {
@@ -387,24 +389,51 @@ static bool ask_reference(State *solver, const ContactProblem *problem, const Lo
     return true;
 }
 
+static bool reserve_other(State *solver, const ContactProblem *problem) {
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return ARRAY_BLOCK_RESERVE(&solver->other_block, ARRAY_PART(solver->other.velocities, bodies),
+                               ARRAY_PART(solver->other.impulses, contacts));
+}
+
+static void take_other(const State *solver, const ContactProblem *problem, ContactSolution *solution) {
+    const ContactSolution *other = &solver->other;
+    memcpy(solution->velocities, other->velocities, (size_t)problem->body_count * sizeof *other->velocities);
+    memcpy(solution->impulses, other->impulses, (size_t)problem->contact_count * sizeof *other->impulses);
+}
+
+/* After iterations that did not get there: what is left of the work goes to the reference's path, and what that leaves,
+   to sweeps. Calm islands of many bodies are left to the latter: their path is long, and sweeps lead to the tolerance. */
+static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
+                        Error *error) {
+    const double best = solver->best, work = path_work * solver->interior.iteration_work;
+    const int most = affordable(solver, load_work, work);
+    if (most >= LEAST_ITERATIONS && !(step->calm && step->many)) {
+        const ReferenceAim aim = {(double)step->near, most, true, is_uneven(step)};
+        if (!reserve_other(solver, problem)) return error_memory(error, "interior");
+        if (!ask_reference(solver, problem, step, &aim, work, &solver->other, error)) return false;
+        if (solver->best < INFINITY) {
+            take_other(solver, problem, solution);
+            return true;
+        }
+        solver->best = best;
+    }
+    return best <= (double)step->enough || fall_back(solver, problem, step->enough, solution, error);
+}
+
 /* After sweeps: the answer without position correction instead, if its residual is smaller. In a jam no answer has what
    correction asks for. False when memory is short. */
 static bool answer_jam(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                        Error *error) {
-    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     ContactSolution *other = &solver->other;
     double swept, freed;
     if (!reference_residual(&solver->reference, problem, solution->impulses, &swept, error)) return false;
     if (swept <= (double)step->enough) return true;
-    if (!ARRAY_BLOCK_RESERVE(&solver->other_block, ARRAY_PART(other->velocities, bodies),
-                             ARRAY_PART(other->impulses, contacts)))
-        return error_memory(error, "interior");
-    if (!ask_reference(solver, problem, step, false, JAM_ITERATIONS, other, error)) return false;
+    if (!reserve_other(solver, problem)) return error_memory(error, "interior");
+    const ReferenceAim aim = {few_share * (double)step->near, JAM_ITERATIONS, false, is_uneven(step)};
+    if (!ask_reference(solver, problem, step, &aim, few_work, other, error)) return false;
     if (solver->best == INFINITY) return true;
     if (!reference_residual(&solver->reference, problem, other->impulses, &freed, error)) return false;
-    if (!(freed < swept)) return true;
-    memcpy(solution->velocities, other->velocities, bodies * sizeof *other->velocities);
-    memcpy(solution->impulses, other->impulses, contacts * sizeof *other->impulses);
+    if (freed < swept) take_other(solver, problem, solution);
     return true;
 }
 
@@ -412,7 +441,8 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
    ever: sweeps begin from the warm start. False when memory is short. */
 static bool solve_few(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                       Error *error) {
-    if (!ask_reference(solver, problem, step, true, FEW_ITERATIONS, solution, error)) return false;
+    const ReferenceAim aim = {few_share * (double)step->near, FEW_ITERATIONS, true, is_uneven(step)};
+    if (!ask_reference(solver, problem, step, &aim, few_work, solution, error)) return false;
     if (solver->best < INFINITY) return true;
     solver->left -= jam_work;
     if (!fall_back(solver, problem, step->enough, solution, error)) return false;
@@ -420,13 +450,15 @@ static bool solve_few(State *solver, const ContactProblem *problem, const Look *
     return answer_jam(solver, problem, step, solution, error);
 }
 
+static double most_work(const Look *look) { return look->bodies <= FEW_BODIES ? few_most_work : INTERIOR_MOST_WORK; }
+
 /* A problem that is a single island. */
 static bool solve_island(State *solver, const ContactProblem *problem, const Look *seen, ContactSolution *solution,
                          Error *error) {
     Look look = *seen, *step = &look;
     bool done = false;
     step->left = (PairResidual){0};
-    solver->left = INTERIOR_MOST_WORK;
+    solver->left = most_work(step);
     solver->analysed = solver->loaded = false;
     if (!start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
@@ -436,9 +468,9 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     if (step->bodies <= FEW_BODIES) return solve_few(solver, problem, step, solution, error);
     if (step->calm) {
         const float limit = restless_from * solver->near;
-        step->restless =
-            !step->slippery && !step->slender && step->left.visit > limit * limit * (float)problem->contact_count;
-        if (step->restless) step->near = step->enough = solver->near;
+        const bool restless = !step->slippery && !step->slender && !is_heavy(step) &&
+                              step->left.visit > limit * limit * (float)problem->contact_count;
+        if (restless) step->near = step->enough = solver->near;
     }
     if (step->many && !step->calm && !seems_cheap(solver, step))
         return solve_by_sweeps(solver, problem, solver->near, solution, error);
@@ -448,12 +480,13 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     solver->best = INFINITY;
     bool cheap = seems_cheap(solver, step);
     if (cheap && !load_interior(solver, problem, step)) return error_memory(error, "interior");
-    cheap = cheap && affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_OF_MANY : 0);
+    cheap = cheap && affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_ITERATIONS : 0);
     if (!cheap)
         return start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->enough, solution, error)
                                              : error_memory(error, "interior");
     if (!iterate(solver, problem, step, solution)) return error_memory(error, "interior");
-    return solver->best <= (double)step->enough || fall_back(solver, problem, step->enough, solution, error);
+    const float wanted = is_heavy(step) ? step->near : step->enough;
+    return solver->best <= (double)wanted || follow_path(solver, problem, step, solution, error);
 }
 
 static bool solve_islands(State *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -474,7 +507,7 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
         ContactSolution of_part;
         const ContactProblem part = islands_take(islands, problem, k, &of_part);
         if (!solve_island(solver, &part, step, &of_part, error)) return false;
-        solver->work = fmax(solver->work, INTERIOR_MOST_WORK - solver->left);
+        solver->work = fmax(solver->work, most_work(step) - solver->left);
         islands_put(islands, k, &part, &of_part, solution);
     }
     solution->fallbacks.by_sweeps = solution->fallbacks.by_sweeps > 0;
@@ -495,7 +528,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (!(single ? solve_island(solver, problem, &solver->looks[0], solution, error)
                  : solve_islands(solver, problem, solution, error)))
         return false;
-    if (single) solver->work = INTERIOR_MOST_WORK - solver->left;
+    if (single) solver->work = most_work(&solver->looks[0]) - solver->left;
     return islands_take_gain(&solver->islands, problem, solution) || error_memory(error, "interior");
 }
 

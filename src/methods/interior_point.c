@@ -14,10 +14,7 @@
    fewest iterations to 0.02 and 0.001 m/s. On scenes of other kinds: scenes/families/heldout. */
 const InteriorRule interior_quick = {
     .impulse = 3, .gap = 0.06, .slip = 0.11, .first = 0.005, .shrink = 0.04, .follow = 0.03};
-/* Hand-tuned: at rest, */
-const InteriorRule interior_gentle = {
-    .impulse = 0.5, .gap = 0.5, .slip = 0.5, .first = 0.25, .shrink = 0.15, .follow = 0.05};
-/* and at impacts where quick iterations break down. */
+/* Hand-tuned, at rest and at impacts where quick iterations break down. */
 const InteriorRule interior_far = {
     .impulse = 0.1, .gap = 0.2, .slip = 0.2, .by_heaviest = true, .first = 0.1, .shrink = 0.15, .follow = 0.05};
 static const double scale_of_residual = 4;

@@ -118,7 +118,7 @@ typedef struct InteriorRule {
 
 /* far: a heavy body passes impulses on through light ones that are many times larger than those that move them. From a
    start by the contacts' own masses it takes hundreds of iterations to get there, or they cycle. */
-extern const InteriorRule interior_quick, interior_gentle, interior_far;
+extern const InteriorRule interior_quick, interior_far;
 
 /* Speeds are shares of a speed of the problem, so that no limit depends on its units. */
 typedef struct InteriorAttempt {
@@ -145,9 +145,8 @@ bool interior_end(const Interior *interior, const Sweeps *sweeps, const ContactP
                   ContactSolution *solution);
 
 /* The bound of the work that a step of interior takes, in coloured sweeps over an island's contacts: 30 times the
-   engine's ten. One of the engine's own sweeps takes as long as 2.6 of these over 9 bodies, and as 4.9 to 6.8 over
-   more. */
-enum { INTERIOR_MOST_WORK = 780 };
+   engine's ten, as one of the engine's own sweeps takes as long as 4.9 to 6.8 of these. */
+enum { INTERIOR_MOST_WORK = 1470 };
 
 /* The most that the last step took for an island, by a count of what was done; never above the bound. */
 double interior_work_done(const void *state);

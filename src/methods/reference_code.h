@@ -525,7 +525,8 @@ static bool follow(Reference *r, int most, bool carefully) {
             begun = true;
         }
         stuck = length < short_step || !forward ? stuck + 1 : 0;
-        if (stuck < (begun || !r->persist ? 2 : PATIENCE) && !(carefully && length >= good)) continue;
+        if (stuck < (begun || !(r->persist || r->by_heaviest) ? 2 : PATIENCE) && !(carefully && length >= good))
+            continue;
         if (!begun || !pass_fold(r, carefully)) break;
         mean = mean_product(r);
         stuck = 0;
@@ -629,7 +630,7 @@ enum { FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 /* The first start is the warm start, the others the best answer or no impulses; then sweeps. */
 static const struct {
     int sweeps;
-    bool from_nothing, by_heaviest;
+    bool from_nothing, by_heaviest; /* the latter of the first start: the caller's */
 } starts[] = {{2, false, false},  {100, false, false}, {100, true, false}, {800, false, false}, {800, true, false},
               {100, false, true}, {100, true, true},   {800, false, true}, {800, true, true}};
 
@@ -697,10 +698,10 @@ static void run(Reference *r) {
     const int count = sizeof starts / sizeof *starts;
     apply(r);
     r->best = INFINITY;
-    weigh(r, starts[0].by_heaviest);
+    weigh(r, r->by_heaviest);
     sweep_start(r, starts[0].sweeps);
     bool solved = try_all(r);
-    for (int i = 1; r->persist && !solved && i < count; i++) {
+    for (int i = 1; r->persist && !solved && i < count && r->factorizations < r->most; i++) {
         weigh(r, starts[i].by_heaviest);
         take_best(r);
         for (int k = 0; starts[i].from_nothing && k < r->group_count; k++)

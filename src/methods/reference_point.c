@@ -12,7 +12,6 @@
 #include "methods/reference_parts.h"
 #include "methods/sweeps.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -212,20 +211,21 @@ bool reference_solve(Reference *r, const ContactProblem *problem, const ContactI
     r->aim = REFERENCE_TOLERANCE / 10;
     r->enough = REFERENCE_TOLERANCE / 4;
     r->calm = 0.01;
-    r->most = INT_MAX;
+    r->most = REFERENCE_MOST;
     r->persist = r->push_out = true;
+    r->by_heaviest = false;
     if (!solve_scaled(r, problem, start, error)) return false;
     r->residual = kernels(r)->residual(r);
     return r->residual <= near_solution * r->calm || answer_unsolved(r, problem, start, error);
 }
 
-bool reference_solve_to(Reference *r, const ContactProblem *problem, double tolerance, bool push_out, int most,
-                        Error *error) {
-    r->aim = r->enough = tolerance;
-    r->calm = 20 * tolerance;
-    r->most = most;
+bool reference_solve_to(Reference *r, const ContactProblem *problem, const ReferenceAim *aim, Error *error) {
+    r->aim = r->enough = aim->tolerance;
+    r->calm = 20 * aim->tolerance;
+    r->most = aim->most;
     r->persist = false;
-    r->push_out = push_out;
+    r->push_out = aim->push_out;
+    r->by_heaviest = aim->by_heaviest;
     if (!solve_scaled(r, problem, NULL, error)) return false;
     r->residual = r->best;
     return true;

@@ -83,7 +83,8 @@ TEST(problems_without_a_solution_are_left_out_and_counted) {
     OWN(Reference) reference = {0};
     assert_ok(sain_launches_record(&launches, &problems, NULL, &error), error);
     for (size_t i = 0; i < problems.count; i++) {
-        assert_ok(reference_solve_to(&reference, &problems.items[i].problem, 1e-6, true, 120, &error), error);
+        const ReferenceAim aim = {1e-6, 120, true, false};
+        assert_ok(reference_solve_to(&reference, &problems.items[i].problem, &aim, &error), error);
         assert_true(reference.residual <= 1e-6);
     }
     assert_int_equal(problems.unconverged, 3 * 2); /* of each launch frames 30 and 60: the box wedges at frame 26 */

@@ -101,12 +101,12 @@ TEST(a_hard_impact_allocates_nothing) {
 TEST(the_reference_ends_at_the_tolerance) {
     OWN(World) *world = make_struck_wall(2.1f, 0.3f, 1);
     const ContactProblem *problem = next_problem(world);
-    assert_ok(reference_solve_to(&reference, problem, 0.01, true, INT_MAX, &error), error);
+    assert_ok(reference_solve_to(&reference, problem, &(ReferenceAim){0.01, INT_MAX, true, false}, &error), error);
     const int rough = reference.factorizations;
     assert_true(reference.residual <= 0.01);
     assert_ok(reference_solve(&reference, problem, NULL, &error), error);
     assert_true(rough < reference.factorizations);
-    assert_ok(reference_solve_to(&reference, problem, 1e-9, true, 5, &error), error);
+    assert_ok(reference_solve_to(&reference, problem, &(ReferenceAim){1e-9, 5, true, false}, &error), error);
     assert_true(reference.factorizations <= 5 + 2);
     assert_true(reference.residual > 1e-9);
 }

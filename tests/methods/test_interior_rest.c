@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The method interior at rest: what must stand, stands, and does not creep. */
 #include "kernels.h"
+#include "made.h"
+#include "random_structures.h"
 #include "reference_worlds.h"
 
 /* The largest distance by which a body moves in the next steps, m. */
@@ -30,6 +32,25 @@ TEST(stacks_at_rest_stay_in_place) {
         run(world, &solver, 1200);
         const double by = moved(world, &solver, 600);
         if (!(by < 1e-6)) fail_msg("%d boxes moved by %g m", heights[k], by);
+    }
+}
+
+/* Structures whose bodies have 1 to a million times each other's mass, all of which the reference holds: a light box
+   below a heavy one must not let it tip. */
+TEST(light_boxes_carry_heavy_ones) {
+    static const int seeds[] = {7012, 7078, 7102, 7116, 7180, 7266, 7392, 7442, 7464};
+    for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
+        OWN(Scene) *scene = random_structure(seeds[k]);
+        OWN(World) *world = world_of(scene);
+        world_set_contacts(world, (ContactRules){.mend = true});
+        OWN(ContactSolver) solver = make_solver(&solver_interior, "");
+        run(world, &solver, 240);
+        const float unit = scene->bodies[0].size.x / 500;
+        for (int i = 1; i < scene->body_count; i++) {
+            const Vec2 by = vec2_sub(world_bodies(world)[i].position, scene->bodies[i].position);
+            const double distance = hypot((double)by.x, (double)by.y) / (double)unit;
+            if (!(distance < 0.1)) fail_msg("%s: body %d moved by %g of its side", scene->name, i, distance);
+        }
     }
 }
 
