@@ -325,23 +325,6 @@ typedef struct Trainer {
     Progress progress; /* of the stage */
 } Trainer;
 
-/* The loss of the example in the worker, whose pass has run: the mean over particles that count of the squared error,
-   in units of the net's acceleration. Fills worker->slopes. */
-static double example_loss(Worker *worker, const GnsScales *scales) {
-    const GnsExample *example = &worker->example;
-    int count = 0;
-    for (int i = 0; i < example->particles.bodies; i++) count += example->counts[i] > 0 ? BOX_PARTICLES : 0;
-    const float share = 1.0f / (float)(count > 0 ? count : 1);
-    double sum = 0;
-    for (int i = 0; i < GNS_OUTPUTS * gns_particle_count(&example->particles); i++) {
-        const float by = example->counts[i / (GNS_OUTPUTS * BOX_PARTICLES)] * share;
-        const float off = worker->pass.outputs[i] - example->targets[i] / scales->acceleration, size = fabsf(off);
-        sum += (double)by * (double)(size < knee ? off * off : knee * (2 * size - knee));
-        worker->slopes[i] = by * 2 * (size < knee ? off : copysignf(knee, off));
-    }
-    return sum;
-}
-
 static bool run_example(Trainer *trainer, Worker *worker, const GnsExamples *examples, uint64_t number, double *loss,
                         float *gradient) {
     const GnsNet *net = trainer->net;
@@ -353,7 +336,17 @@ static bool run_example(Trainer *trainer, Worker *worker, const GnsExamples *exa
                        (size_t)gns_particle_count(&example->particles), GNS_OUTPUTS * sizeof *worker->slopes) ||
         !gns_forward(&worker->pass, &net->layout, net->parameters, &example->graph))
         return false;
-    *loss = example_loss(worker, &net->scales);
+    /* The mean over particles that count of the squared error, in units of the net's acceleration. */
+    int count = 0;
+    for (int i = 0; i < example->particles.bodies; i++) count += example->counts[i] > 0 ? BOX_PARTICLES : 0;
+    const float share = 1.0f / (float)(count > 0 ? count : 1);
+    *loss = 0;
+    for (int i = 0; i < GNS_OUTPUTS * gns_particle_count(&example->particles); i++) {
+        const float by = example->counts[i / (GNS_OUTPUTS * BOX_PARTICLES)] * share;
+        const float off = worker->pass.outputs[i] - example->targets[i] / net->scales.acceleration, size = fabsf(off);
+        *loss += (double)by * (double)(size < knee ? off * off : knee * (2 * size - knee));
+        worker->slopes[i] = by * 2 * (size < knee ? off : copysignf(knee, off));
+    }
     return gradient == NULL || gns_backward(&worker->back, &worker->pass, &net->layout, net->parameters,
                                             trainer->transposed, &example->graph, worker->slopes, gradient);
 }

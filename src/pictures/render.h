@@ -155,19 +155,3 @@ bool sink_frame_path(char *path, size_t size, const char *directory, int index);
 
 /* Whether the file of that picture exists and has these bytes (XXH3); false if the system cannot tell. */
 bool sink_frame_is(const char *directory, int index, uint64_t hash);
-
-/* Writes frame_000000.png, ... into an existing directory, whose name must outlive the sink. Files appear complete. */
-typedef struct FrameSink {
-    const char *directory;
-    PngEncoder *encoder;
-    int first, end; /* frames first <= index < end were written; others in the folder are older */
-} FrameSink;
-
-bool sink_open(FrameSink *sink, const char *directory, int width, int height, PngEffort effort, Error *error);
-
-/* `changed`: as for png_encode(). *hash: XXH3 of the file. */
-bool sink_write(FrameSink *sink, int index, const Image *image, const bool *changed, const ImageText *texts, int count,
-                uint64_t *hash, Error *error);
-
-/* Also after errors; true if all frames are safely stored. */
-bool sink_close(FrameSink *sink, Error *error);

@@ -41,13 +41,21 @@ bool sink_frame_is(const char *directory, int index, uint64_t hash) {
     return same;
 }
 
-bool sink_open(FrameSink *sink, const char *directory, int width, int height, PngEffort effort, Error *error) {
+/* Writes frame_000000.png, ... into an existing directory, whose name must outlive the sink. Files appear complete. */
+typedef struct FrameSink {
+    const char *directory;
+    PngEncoder *encoder;
+    int first, end; /* frames first <= index < end were written; others in the folder are older */
+} FrameSink;
+
+static bool sink_open(FrameSink *sink, const char *directory, int width, int height, PngEffort effort, Error *error) {
     *sink = (FrameSink){.directory = directory, .encoder = png_encoder_create(width, height, effort, error)};
     return sink->encoder != NULL;
 }
 
-bool sink_write(FrameSink *sink, int index, const Image *image, const bool *changed, const ImageText *texts, int count,
-                uint64_t *hash, Error *error) {
+/* `changed`: as for png_encode(). *hash: XXH3 of the file. */
+static bool sink_write(FrameSink *sink, int index, const Image *image, const bool *changed, const ImageText *texts,
+                       int count, uint64_t *hash, Error *error) {
     char path[PATH_MAX];
     const uint8_t *data;
     size_t size;
@@ -62,8 +70,9 @@ bool sink_write(FrameSink *sink, int index, const Image *image, const bool *chan
     return true;
 }
 
-/* Once, at the end: syncing many files takes hardly longer than one. */
-bool sink_close(FrameSink *sink, Error *error) {
+/* Also after errors; true if all frames are safely stored. Once, at the end: syncing many files takes hardly longer than
+   one. */
+static bool sink_close(FrameSink *sink, Error *error) {
     char path[PATH_MAX];
     bool ok = true;
     for (int index = sink->first; ok && index < sink->end; index++)

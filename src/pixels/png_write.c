@@ -160,13 +160,6 @@ static Idat *idat_create(int width, int height, Error *error) {
     return idat;
 }
 
-static void idat_destroy(Idat *idat) {
-    if (idat == NULL) return;
-    for (int y = 0; y < idat->height; y++) free(idat->rows[y].bits);
-    free(idat->data);
-    free(idat);
-}
-
 /* The difference of a row to the one above, per byte modulo 256, and the pixels that differ from their left neighbour.
    Simple loops that compilers vectorise: for the baseline instruction set here, for AVX2 below. */
 static inline void compare_rows(Idat *idat, const uint8_t *row, const uint8_t *above) {
@@ -302,7 +295,9 @@ PngEncoder *png_encoder_create(int width, int height, PngEffort effort, Error *e
 
 void png_encoder_destroy(PngEncoder *encoder) {
     if (encoder == NULL) return;
-    idat_destroy(encoder->idat);
+    for (int y = 0; encoder->idat != NULL && y < encoder->idat->height; y++) free(encoder->idat->rows[y].bits);
+    if (encoder->idat != NULL) free(encoder->idat->data);
+    free(encoder->idat);
     free(encoder->data);
     free(encoder);
 }

@@ -60,16 +60,13 @@ static double error_at(const RivalCurves *curves, int family, Phase phase, Curve
     return count == 0 ? NAN : error_curve_at(curves->points, error_curve_front(curves->points, count), us, reach);
 }
 
-static bool is_rival(const CurveFamily *family, const CurveFamily *other) {
-    if (strcmp(family->method, other->method) == 0) return false;
-    return other->description == NULL || other->description->twin == NULL;
-}
-
 static BestRival find_best(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic, double us) {
     BestRival best = {-1, NAN, CURVE_BEFORE};
     for (int i = 0; i < curves->family_count; i++) {
+        const CurveFamily *other = &curves->families[i];
         CurveReach reach;
-        if (!is_rival(&curves->families[family], &curves->families[i])) continue;
+        if (strcmp(curves->families[family].method, other->method) == 0) continue;
+        if (other->description != NULL && other->description->twin != NULL) continue; /* it learned */
         const double error = error_at(curves, i, phase, statistic, us, &reach);
         if (reach != CURVE_BEFORE && !(best.error <= error)) best = (BestRival){i, error, reach};
     }
