@@ -70,8 +70,8 @@ static bool sink_write(FrameSink *sink, int index, const Image *image, const boo
     return true;
 }
 
-/* Also after errors; true if all frames are safely stored. Once, at the end: syncing many files takes hardly longer than
-   one. */
+/* Also after errors; true if all frames are safely stored. Once, at the end: syncing many files takes hardly longer
+   than one. */
 static bool sink_close(FrameSink *sink, Error *error) {
     char path[PATH_MAX];
     bool ok = true;
