@@ -38,7 +38,7 @@ static bool find_marks(Player *player, int index, Error *error) {
     const int common = index > 0 && run->compared ? int_min(first->frames, trajectory->frames) : 0;
     for (int frame = 0; frame < common && run->apart_frame < 0; frame++)
         for (int body = 0; body < trajectory->bodies && run->apart_frame < 0; body++) {
-            if (run->differs_frame < 0 && !trajectory_same_state(first, trajectory, frame, body))
+            if (run->differs_frame < 0 && !trajectory_same_states(first, frame, trajectory, frame, body))
                 run->differs_frame = frame, run->differs_body = body;
             if (trajectory_has(first, frame, body) && trajectory_has(trajectory, frame, body) &&
                 trajectory_state_difference(first, trajectory, frame, body).distance > EVENTS_VISIBLE_DISTANCE)

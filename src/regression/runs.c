@@ -89,7 +89,7 @@ static bool measure(RegressionRun *run, const Trajectory *a, const Trajectory *b
     for (int frame = 0; frame < run->frames; frame++) {
         run->differs[frame] = other_worlds || frame >= common;
         for (int body = 0; (body < a->bodies || body < b->bodies) && !run->differs[frame]; body++)
-            run->differs[frame] = !trajectory_same_state(a, b, frame, body);
+            run->differs[frame] = !trajectory_same_states(a, frame, b, frame, body);
     }
     TrajectoryParting parting;
     if (!tolerance->given || other_worlds) return true;

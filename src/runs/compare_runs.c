@@ -41,10 +41,6 @@ bool trajectory_same_states(const Trajectory *a, int of_a, const Trajectory *b, 
     return memcmp(x, y, (size_t)columns_of(a, b) * sizeof *x) == 0;
 }
 
-bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
-    return trajectory_same_states(a, frame, b, frame, body);
-}
-
 StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
     StateDifference d = {.in_a = trajectory_there(a, frame, body), .in_b = trajectory_there(b, frame, body)};
     const int columns = columns_of(a, b);
@@ -133,7 +129,7 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
             const bool both = trajectory_there(a, frame, body) && trajectory_there(b, frame, body);
             const bool fixed = both && a->fixed[body] && b->fixed[body];
             count += !fixed && both;
-            if (same || trajectory_same_state(a, b, frame, body)) continue;
+            if (same || trajectory_same_states(a, frame, b, frame, body)) continue;
             const StateDifference state = trajectory_state_difference(a, b, frame, body);
             if (d->frame < 0) { /* the first */
                 d->frame = frame;
@@ -315,7 +311,7 @@ static void find_parted(const Trajectory *a, const Trajectory *b, const PoseTole
         bool equal = true, within = true;
         const int bodies = same_bytes(a, b, frame) ? 0 : most_bodies(a, b);
         for (int body = 0; body < bodies; body++) {
-            if (trajectory_same_state(a, b, frame, body)) continue;
+            if (trajectory_same_states(a, frame, b, frame, body)) continue;
             const StateDifference by = trajectory_state_difference(a, b, frame, body);
             equal = false;
             note(&parting->first, frame, body, &by);
@@ -336,7 +332,7 @@ static PartCause find_cause(const Trajectory *a, const Trajectory *b, const Traj
     /* Every body that differs has just been added. The previous frames are equal, so one run suffices. */
     bool launched = true;
     for (int body = 0; launched && body < most_bodies(a, b); body++)
-        launched = !trajectory_there(a, frame - 1, body) || trajectory_same_state(a, b, frame, body);
+        launched = !trajectory_there(a, frame - 1, body) || trajectory_same_states(a, frame, b, frame, body);
     if (launched) return PART_LAUNCH;
     if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
     if (parting->step < 0) return parting->no_impulses && parting->contacts.count_a > 0 ? PART_UNKNOWN : PART_ELSEWHERE;

@@ -51,11 +51,8 @@ typedef struct ComparedText {
 } ComparedText;
 ComparedText trajectory_compared(const Trajectory *a, const Trajectory *b);
 
-/* Equal bit by bit. 0 and -0 differ: the runs have computed differently. A body that exists in neither is equal. NaN is
-   equal to NaN. */
-bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body);
-
-/* The same of two frames. */
+/* States of a body in two frames, equal bit by bit. 0 and -0 differ: the runs have computed differently. A body that
+   exists in neither is equal. NaN is equal to NaN. */
 bool trajectory_same_states(const Trajectory *a, int of_a, const Trajectory *b, int of_b, int body);
 
 /* Zeros unless the body exists in both; speed and spin are 0 if the velocities of one are unknown. */
