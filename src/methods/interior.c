@@ -13,9 +13,9 @@
    4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
    The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. The analysis of the
-   matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to 1,000,
-   40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is left to sweeps. The difficulty, for all
-   methods, is to find which contacts open, stick and slide. */
+   matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to
+   1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is left to sweeps. The difficulty,
+   for all methods, is to find which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior_point_internal.h"
@@ -53,9 +53,9 @@ static const double last_work = 20;
 static const float trusted = 0.3f;
 
 /* Iterations from the start of the sweeps. If these break down or cycle, it is better to start from there again,
-   further inside, than from where they are. At rest one iteration mostly ends it, if it starts where the sweeps do; among
-   many bodies those that do not converge at once rarely do. Struck islands converge from near the bounds at once or not
-   at all; those with many bodies, or with a heavy one, begin further inside. */
+   further inside, than from where they are. At rest one iteration mostly ends it, if it starts where the sweeps do;
+   among many bodies those that do not converge at once rarely do. Struck islands converge from near the bounds at once
+   or not at all; those with many bodies, or with a heavy one, begin further inside. */
 enum { ATTEMPTS = 3 /* the last is empty */ };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
 static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_far, 1e-7, hasty, 10}, {&interior_far, 0.01, patient, 40}},
@@ -402,7 +402,8 @@ static void take_other(const State *solver, const ContactProblem *problem, Conta
 }
 
 /* After iterations that did not get there: what is left of the work goes to the reference's path, and what that leaves,
-   to sweeps. Calm islands of many bodies are left to the latter: their path is long, and sweeps lead to the tolerance. */
+   to sweeps. Calm islands of many bodies are left to the latter: their path is long, and sweeps lead to the tolerance.
+   */
 static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                         Error *error) {
     const double best = solver->best, work = path_work * solver->interior.iteration_work;

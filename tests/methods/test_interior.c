@@ -300,8 +300,8 @@ static World *make_boxes(int rows, bool stacks) {
     return world;
 }
 
-/* In a pyramid of 6,105 boxes an iteration costs more than the bound allows for eleven. The bits are those of sweeps with
-   momentum. */
+/* In a pyramid of 6,105 boxes an iteration costs more than the bound allows for eleven. The bits are those of sweeps
+   with momentum. */
 TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
         OWN(World) *world = make_boxes(stacks ? 40 : 110, stacks);
