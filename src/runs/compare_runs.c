@@ -34,11 +34,13 @@ bool trajectory_same_states(const Trajectory *a, int of_a, const Trajectory *b, 
     if (!in_a || !in_b) return in_a == in_b;
     if (trajectory_both_hashed(a, b) && a->hash[trajectory_at(a, of_a, body)] != b->hash[trajectory_at(b, of_b, body)])
         return false;
+    const int columns = columns_of(a, b);
+    if (columns == 0) return true;
     const bool exact = trajectory_both_exact(a, b);
     double x[STATE_COLUMNS], y[STATE_COLUMNS];
     take_state(a, trajectory_at(a, of_a, body), exact, x);
     take_state(b, trajectory_at(b, of_b, body), exact, y);
-    return memcmp(x, y, (size_t)columns_of(a, b) * sizeof *x) == 0;
+    return memcmp(x, y, (size_t)columns * sizeof *x) == 0;
 }
 
 StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
