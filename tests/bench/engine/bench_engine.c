@@ -174,11 +174,11 @@ int main(void) {
     double speedup = rollouts();
     for (int i = 0; i < 4; i++) {
         char name[64];
-        snprintf(name, sizeof name, "%s / chipmunk", names[i]);
+        snprintf(name, sizeof name, "step of %s: time / Chipmunk2D", names[i]);
         report_target(name, ratios[i], "at most", 0.40);
     }
     report_target("exponent of time over bodies", exponent, "at most", 1.1);
-    report_target("slowest size / box2d24", worst, "at most", 1.0);
+    report_target("step of the slowest size: time / Box2D 2.4", worst, "at most", 1.0);
     report_target("rollouts, two threads / one", speedup, "at least", 1.9);
     return 0;
 }

@@ -102,7 +102,7 @@ static void measure(int i) {
         free(of[k].found.impulses);
     }
     char name[64];
-    snprintf(name, sizeof name, "interior / engine at rest, %s", cases[i].name);
+    snprintf(name, sizeof name, "at rest, %s: time of interior / engine", cases[i].name);
     report_target(name, samples_median(&ratios), "at most", 1.5);
     scene_destroy(scene);
 }
