@@ -8,8 +8,8 @@
    2. From 34 bodies on, a few sweeps with momentum, where they save more than they cost, then iterations until the
       residual is at most what the step asks for: from near the bounds, and if these break down, from further inside.
    3. The reference's solver (methods/reference.h), which follows the central path, also where it turns back. Up to 33
-      bodies it takes 0.82 of the time of 2, with a fortieth of the error, and comes first; beyond, an iteration of its
-      takes 1.7 times as long, and it needs 1.5 times as many.
+      bodies it comes first: it takes 0.82 of the time of 2, with a fortieth of the error. Beyond, its iterations take
+      1.7 times as long, and it needs more of them.
    4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
    The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. The analysis of the
@@ -113,9 +113,9 @@ static const float still = 2e-5f, roundings = 0.3f;
 static const float restless_from = 2;
 /* Multiples of the other's mass, of two bodies that touch. Beyond the first, sweeps carry little between them. Beyond
    the second, iterations from near the bounds break down at impacts: on 36 boxes under a bomb of 1e5 times their mass,
-   the error of sweeps of the same work is 3.5 times that of interior if it tries them, 10 times if not. And what is a
-   rounding error of an impulse for the heavy body throws the light one, so that such an island at rest is neither
-   restless nor still by its roundings. */
+   the error of sweeps of the same work is 3.5 times that of interior if it tries them, 10 times if not. Beyond it, too,
+   the rounding error of an impulse between heavy bodies would throw a light one: at rest, such an island is never taken
+   for still by its roundings, nor for restless. */
 static const float uneven_from = 10, heavy_from = 100;
 /* The tolerance of uneven calm islands is divided by their multiple over the first, at most by this. Of 184 random
    structures at rest that the reference holds, with masses spread by up to a million, each at three tolerances, 2 runs
@@ -147,6 +147,9 @@ typedef struct State {
 static float smaller(float x, float y) { return x < y ? x : y; }
 
 static float larger(float x, float y) { return x > y ? x : y; }
+
+/* By which the tolerance of a calm island is divided. */
+static float exactness(const Look *look) { return smaller(larger(look->unlike / uneven_from, 1), most_exact); }
 
 static bool is_uneven(const Look *look) { return look->unlike > uneven_from; }
 static bool is_heavy(const Look *look) { return look->unlike > heavy_from; }
@@ -184,8 +187,7 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
                             : look->slender                  ? slender_near
                             : look->many && !is_uneven(look) ? many_near
                                                              : calm_near;
-        const float exact = smaller(larger(look->unlike / uneven_from, 1), most_exact);
-        look->near = look->calm ? smaller(near, share * look->pace / exact) : near;
+        look->near = look->calm ? smaller(near, share * look->pace / exactness(look)) : near;
         look->enough = look->calm && look->many ? look->near : near;
     }
 }
@@ -204,8 +206,7 @@ static void look_at_residuals(Look *looks, const Sweeps *sweeps, const int32_t *
 /* Whether the residual, root mean square over so many contacts, is little more than rounding errors. */
 static bool is_still(const Look *look, int contacts) {
     const float held = sqrtf(look->left.held / (float)contacts);
-    const float exact = smaller(larger(look->unlike / uneven_from, 1), most_exact);
-    const float least = look->slippery || look->slender ? 0 : still * look->pace / exact;
+    const float least = look->slippery || look->slender ? 0 : still * look->pace / exactness(look);
     const float rounding = is_heavy(look) ? 0 : roundings * 0x1p-24f * (look->pace + held);
     const float limit = larger(rounding, least);
     return look->calm && look->left.visit < limit * limit * (float)contacts;
@@ -409,7 +410,8 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Look
     const double best = solver->best, work = path_work * solver->interior.iteration_work;
     const int most = affordable(solver, load_work, work);
     if (most >= LEAST_ITERATIONS && !(step->calm && step->many)) {
-        const ReferenceAim aim = {(double)step->near, most, true, is_uneven(step)};
+        const ReferenceAim aim = {
+            .tolerance = (double)step->near, .most = most, .push_out = true, .by_heaviest = is_uneven(step)};
         if (!reserve_other(solver, problem)) return error_memory(error, "interior");
         if (!ask_reference(solver, problem, step, &aim, work, &solver->other, error)) return false;
         if (solver->best < INFINITY) {
@@ -430,7 +432,8 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     if (!reference_residual(&solver->reference, problem, solution->impulses, &swept, error)) return false;
     if (swept <= (double)step->enough) return true;
     if (!reserve_other(solver, problem)) return error_memory(error, "interior");
-    const ReferenceAim aim = {few_share * (double)step->near, JAM_ITERATIONS, false, is_uneven(step)};
+    const ReferenceAim aim = {
+        .tolerance = few_share * (double)step->near, .most = JAM_ITERATIONS, .by_heaviest = is_uneven(step)};
     if (!ask_reference(solver, problem, step, &aim, few_work, other, error)) return false;
     if (solver->best == INFINITY) return true;
     if (!reference_residual(&solver->reference, problem, other->impulses, &freed, error)) return false;
@@ -442,7 +445,10 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
    ever: sweeps begin from the warm start. False when memory is short. */
 static bool solve_few(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                       Error *error) {
-    const ReferenceAim aim = {few_share * (double)step->near, FEW_ITERATIONS, true, is_uneven(step)};
+    const ReferenceAim aim = {.tolerance = few_share * (double)step->near,
+                              .most = FEW_ITERATIONS,
+                              .push_out = true,
+                              .by_heaviest = is_uneven(step)};
     if (!ask_reference(solver, problem, step, &aim, few_work, solution, error)) return false;
     if (solver->best < INFINITY) return true;
     solver->left -= jam_work;

@@ -630,7 +630,7 @@ enum { FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 /* The first start is the warm start, the others the best answer or no impulses; then sweeps. */
 static const struct {
     int sweeps;
-    bool from_nothing, by_heaviest; /* the latter of the first start: the caller's */
+    bool from_nothing, by_heaviest;
 } starts[] = {{2, false, false},  {100, false, false}, {100, true, false}, {800, false, false}, {800, true, false},
               {100, false, true}, {100, true, true},   {800, false, true}, {800, true, true}};
 
@@ -698,7 +698,7 @@ static void run(Reference *r) {
     const int count = sizeof starts / sizeof *starts;
     apply(r);
     r->best = INFINITY;
-    weigh(r, r->by_heaviest);
+    weigh(r, r->by_heaviest || starts[0].by_heaviest);
     sweep_start(r, starts[0].sweeps);
     bool solved = try_all(r);
     for (int i = 1; r->persist && !solved && i < count && r->factorizations < r->most; i++) {
