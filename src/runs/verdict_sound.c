@@ -79,10 +79,14 @@ static bool has_passed(const WatchedBody *a, const WatchedBody *b, const Pose *o
         at[now][0] = way.x, reach[now][0] = halves.x;
         at[now][1] = way.y, reach[now][1] = halves.y;
     }
-    for (int k = 0; k < 2; k++)
-        if (at[0][k] * at[1][k] < 0 && fabs(at[0][k]) > reach[0][k] - half && fabs(at[1][k]) > reach[1][k] - half &&
-            fabs(at[0][!k] + at[1][!k]) < reach[0][!k] + reach[1][!k] - 2 * half)
+    for (int k = 0; k < 2; k++) {
+        if (at[0][k] * at[1][k] >= 0) continue;
+        const double share = at[0][k] / (at[0][k] - at[1][k]); /* of the way, where the two are side by side */
+        const double aside = at[0][!k] + share * (at[1][!k] - at[0][!k]);
+        const double within = reach[0][!k] + share * (reach[1][!k] - reach[0][!k]) - half;
+        if (fabs(at[0][k]) > reach[0][k] - half && fabs(at[1][k]) > reach[1][k] - half && fabs(aside) < within)
             return turn_between(&a->last, of_a) < M_PI / 3;
+    }
     return false;
 }
 

@@ -107,7 +107,7 @@ TEST(the_first_that_fell_is_told) {
     scene->frames = 80;
     judge(scene, "engine", made, &run);
     for (int frame = 30; frame < run->frames; frame++) {
-        run->position[frame * run->bodies + 10] = vec2(3, 0.5f);
+        run->position[frame * run->bodies + 10] = vec2(30, 0.5f);
         if (frame >= 60) run->position[frame * run->bodies + 9] = vec2(500, -50);
     }
     const VerdictReading reading = stored(scene, run, read);
