@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interior-point steps with a sparse direct solve over the bodies; equations and sources in
-   methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step
- (Look):
+   methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step (Look):
 
    1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at
       rest.
-   2. From 34 bodies on, a few sweeps with momentum, where they save more than they cost, then iterations until the
-      residual is at most what the step asks for: from near the bounds, and if these break down, from further inside.
+   2. From 34 bodies on, iterations until the residual is at most what the step asks for; from 129 on, a few sweeps with
+      momentum first, where they save more than they cost.
    3. The reference's solver (methods/reference.h), which follows the central path, also where it turns back. Up to 33
       bodies it comes first: it takes 0.82 of the time of 2, with a fortieth of the error. Beyond, its iterations take
       1.7 times as long, and it needs more of them.
@@ -45,23 +44,12 @@ static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and
    walls, 1.4 in piles. */
 static const double usual_products = 2;
-/* Kept for sweeps where iterations do not converge. */
-static const double last_work = 20;
 
-/* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which
-   exceed the residual more than those of iterations. */
-static const float trusted = 0.3f;
-
-/* Iterations from the start of the sweeps. If these break down or cycle, it is better to start from there again,
-   further inside, than from where they are. At rest one iteration mostly ends it, if it starts where the sweeps do;
-   among many bodies those that do not converge at once rarely do. Struck islands converge from near the bounds at once
-   or not at all; those with many bodies, or with a heavy one, begin further inside. */
-enum { ATTEMPTS = 3 /* the last is empty */ };
-static const double patient = 1e6, hasty = 10; /* for `lost` */
-static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_far, 1e-7, hasty, 10}, {&interior_far, 0.01, patient, 40}},
-                             at_rest_of_many[ATTEMPTS] = {{&interior_far, 1e-7, hasty, 10}},
-                             at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 20},
-                                                    {&interior_far, 0.3, patient, 40}};
+/* Iterations from the start of the sweeps. At rest one iteration mostly ends it, if it starts where the sweeps do; those
+   that do not converge at once rarely do. At impacts, and on the path of the reference, the residual may rise by any
+   multiple before it falls. */
+static const InteriorAttempt at_rest = {.least_scale = 1e-7, .lost = 10, .iterations = 10},
+                             at_impact = {.least_scale = 0.01, .lost = INFINITY, .iterations = 40};
 
 /* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
    that it has to reach.
@@ -69,8 +57,7 @@ static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_far, 1e-7, hasty, 1
    An island is calm if none of its bodies move fast relative to each other where they touch, whatever the bias: boxes
    that overlap and are pushed apart are calm, too. There errors add up from step to step: boxes creep at the speed of
    the error, until a card slides out of a house of cards or a stack leans. So the tolerance is smaller than that of
-   impacts, `near`. After an impact an island is restless for some frames: calm, but the first sweeps leave much. There
-   errors have no time to add up, and `near` will do.
+   impacts, `near`.
 
    No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest
    by gravity and the engine's slop. */
@@ -97,25 +84,20 @@ typedef struct Look {
 } Look;
 
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
-   An island is calm if bodies that touch move there, relative to each other, by less than `calm_below` and what gravity
-   adds in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance
-   of calm islands is at most `calm_near`, or `many_near` among many bodies, where smaller ones take a tenth more time;
-   `slippery_near` without friction, where nothing holds what an error moves: a stack of 12 stands 380 s, and 160 s at
-   2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks of 41 to 60 boxes sway for
-   seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack of 20 by 15 um in 10 s. */
-static const float calm_below = 1.03f, calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f,
-                   slender_near = 2e-5f;
-/* In calm islands plain sweeps are enough below this, or below so many roundings of what the impulses hold; without
-   friction, and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3 roundings. */
-static const float still = 2e-5f, roundings = 0.3f;
-/* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is
-   restless. */
-static const float restless_from = 2;
+   An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds in
+   a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of calm
+   islands is at most `calm_near`; `slippery_near` without friction, where nothing holds what an error moves: a stack of
+   12 stands 380 s, and 160 s at 2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks
+   of 41 to 60 boxes sway for seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack
+   of 20 by 15 um in 10 s. */
+static const float calm_near = 1e-4f, slippery_near = 1e-6f, slender_near = 2e-5f;
+/* In calm islands plain sweeps are enough below `slender_near`, or below so many roundings of what the impulses hold;
+   without friction, and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3
+   roundings. */
+static const float roundings = 0.3f;
 /* Multiples of the other's mass, of two bodies that touch. Beyond the first, sweeps carry little between them. Beyond
-   the second, iterations from near the bounds break down at impacts: on 36 boxes under a bomb of 1e5 times their mass,
-   the error of sweeps of the same work is 3.5 times that of interior if it tries them, 10 times if not. Beyond it, too,
-   the rounding error of an impulse between heavy bodies would throw a light one: at rest, such an island is never taken
-   for still by its roundings, nor for restless. */
+   the second, the rounding error of an impulse between heavy bodies would throw a light one: at rest, such an island is
+   never taken for still by its roundings. */
 static const float uneven_from = 10, heavy_from = 100;
 /* The tolerance of uneven calm islands is divided by their multiple over the first, at most by this. Of 184 random
    structures at rest that the reference holds, with masses spread by up to a million, each at three tolerances, 2 runs
@@ -133,8 +115,6 @@ typedef struct State {
     Momentum momentum;
     double left;            /* of the island's work, in sweeps */
     double work;            /* the most of an island in the last step */
-    bool analysed;          /* the island's matrix is, */
-    bool loaded;            /* and iterations may begin */
     double best;            /* m/s, residual of the solution that is stored */
     ContactPoint *contacts; /* [contact_count] with the best answer as warm start */
     size_t contact_capacity;
@@ -153,9 +133,6 @@ static float exactness(const Look *look) { return smaller(larger(look->unlike / 
 
 static bool is_uneven(const Look *look) { return look->unlike > uneven_from; }
 static bool is_heavy(const Look *look) { return look->unlike > heavy_from; }
-
-/* Sweeps carry little between its bodies. */
-static bool jams(const Look *look) { return look->slippery || is_uneven(look); }
 
 /* Before the step. near: of impacts, m/s. */
 static void look_at_islands(State *solver, const ContactProblem *problem, float near) {
@@ -181,12 +158,9 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
     }
     for (int k = 0; k < islands->count; k++) {
         Look *look = &solver->looks[k];
-        const float limit = look->fall + calm_below * look->pace;
+        const float limit = look->fall + look->pace;
         look->calm = look->fastest < limit * limit;
-        const float share = look->slippery                   ? slippery_near
-                            : look->slender                  ? slender_near
-                            : look->many && !is_uneven(look) ? many_near
-                                                             : calm_near;
+        const float share = look->slippery ? slippery_near : look->slender ? slender_near : calm_near;
         look->near = look->calm ? smaller(near, share * look->pace / exactness(look)) : near;
         look->enough = look->calm && look->many ? look->near : near;
     }
@@ -206,7 +180,7 @@ static void look_at_residuals(Look *looks, const Sweeps *sweeps, const int32_t *
 /* Whether the residual, root mean square over so many contacts, is little more than rounding errors. */
 static bool is_still(const Look *look, int contacts) {
     const float held = sqrtf(look->left.held / (float)contacts);
-    const float least = look->slippery || look->slender ? 0 : still * look->pace / exactness(look);
+    const float least = look->slippery || look->slender ? 0 : slender_near * look->pace / exactness(look);
     const float rounding = is_heavy(look) ? 0 : roundings * 0x1p-24f * (look->pace + held);
     const float limit = larger(rounding, least);
     return look->calm && look->left.visit < limit * limit * (float)contacts;
@@ -250,22 +224,20 @@ static bool start(State *solver, const ContactProblem *problem, bool calm) {
     return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) && (!calm || sweeps_run(sweeps, FIRST_SWEEPS));
 }
 
-/* Sweeps with momentum after the first ones, where they save as much of an iteration as they cost. At rest iterations
-   converge at once from the first sweeps, or not at all; but in calm islands of many bodies some nearly always slide
-   for long after an impact, iterations towards the small tolerance cycle, and sweeps reach it in less time. Sweeps
-   carry little where light bodies hold heavy ones, or where there is no friction. Impacts of many bodies that are not
-   solved by these sweeps are hard: iterations then converge sooner from the plain start. Sets *done if the sweeps are
-   enough: the solution is stored. False when memory is short. */
+/* Sweeps with momentum after the first ones, for islands of many bodies: many impacts are over with them, in a fraction
+   of an iteration's time. In calm islands of many bodies some nearly always slide for long after an impact: there
+   iterations towards the small tolerance cycle, and sweeps reach it. They carry little where light bodies hold heavy
+   ones, or where there is no friction. What these sweeps do not solve is hard: iterations then converge sooner from the
+   plain start. Sets *done if the sweeps are enough: the solution is stored. False when memory is short. */
 static bool try_sweeps(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                        bool *done) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    const float enough = step->calm ? step->near : trusted * solver->near;
     *done = false;
-    if (step->calm && (!step->many || jams(step))) return true;
+    if (!step->many || step->slippery || is_uneven(step)) return true;
     solver->left -= START_SWEEPS;
     if (!sweeps_run_momentum(sweeps, solver->start_factors, START_SWEEPS)) return false;
-    *done = !residual_of_visits_reaches(sweeps, problem->contact_count, enough) && sweeps_end(sweeps, solution);
-    return *done || !step->many || start(solver, problem, step->calm);
+    *done = !residual_of_visits_reaches(sweeps, problem->contact_count, step->near) && sweeps_end(sweeps, solution);
+    return *done || start(solver, problem, step->calm);
 }
 
 /* Of the matrix of an island. */
@@ -273,14 +245,13 @@ static double analysis_work(const Look *step) { return fmin(2 + step->bodies / 1
 
 /* False when memory is short. */
 static bool load_interior(State *solver, const ContactProblem *problem, const Look *step) {
-    solver->left -= load_work + (solver->analysed ? 0 : analysis_work(step));
-    solver->analysed = solver->loaded = true;
+    solver->left -= load_work + analysis_work(step);
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
 /* Iterations of that work that the island's has room for, after a step that takes `before` of it. */
 static int affordable(const State *solver, double before, double iteration_work) {
-    return (int)fmax((solver->left - before - last_work) / iteration_work, 0);
+    return (int)fmax((solver->left - before) / iteration_work, 0);
 }
 
 /* Whether there is room for enough iterations by what the island's loops tell, so that its matrix is not analysed in
@@ -291,29 +262,15 @@ static bool seems_cheap(const State *solver, const Look *step) {
     return affordable(solver, load_work + analysis_work(step), usual) >= (step->many ? LEAST_ITERATIONS : 0);
 }
 
-static const InteriorAttempt *attempts_of(const Look *step) {
-    if (step->calm) return step->many ? at_rest_of_many : at_rest;
-    return step->many || is_heavy(step) ? at_impact + 1 : at_impact;
-}
-
-/* The attempts, until the residual is at most `near` or the work is done. False when memory is short. */
-static bool iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
+/* Until the residual is at most `near`, or the work is done. */
+static void iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
     Interior *interior = &solver->interior;
-    const double near = (double)step->near;
-    for (const InteriorAttempt *attempt = attempts_of(step); attempt->rule != NULL && solver->best > near; attempt++) {
-        const double again = solver->loaded ? 0 : begin_work + FIRST_SWEEPS + load_work;
-        const int most = affordable(solver, again, interior->iteration_work);
-        if (most == 0) return true;
-        if (!solver->loaded && !(start(solver, problem, step->calm) && load_interior(solver, problem, step)))
-            return false;
-        solver->loaded = false;
-        const double speed = step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
-        interior_iterate(interior, interior_best(), attempt, speed, near, most);
-        solver->left -= interior->iterations * interior->iteration_work;
-        if (interior->residual < solver->best && interior_end(interior, &solver->momentum.sweeps, problem, solution))
-            solver->best = interior->residual;
-    }
-    return true;
+    const int most = affordable(solver, 0, interior->iteration_work);
+    const double speed = step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
+    if (most == 0) return;
+    interior_iterate(interior, interior_best(), step->calm ? &at_rest : &at_impact, speed, (double)step->near, most);
+    solver->left -= interior->iterations * interior->iteration_work;
+    if (interior_end(interior, &solver->momentum.sweeps, problem, solution)) solver->best = interior->residual;
 }
 
 /* After start(): as momentum:k=1,near=NEAR (residual: methods/residual.h), until the work is done.
@@ -367,6 +324,15 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
            error_memory(error, "interior");
 }
 
+/* What the reference is asked for, with a share of the tolerance. Struck islands of unlike masses converge sooner without
+   its patience. */
+static ReferenceAim aim_at(const Look *step, double share, int most) {
+    return (ReferenceAim){.tolerance = share * (double)step->near,
+                          .most = most,
+                          .push_out = true,
+                          .by_heaviest = step->calm && is_uneven(step)};
+}
+
 /* Sets `best`: INFINITY if the answer is not taken. work: of a factorization. Rounded impulses are put back into their
    cones. False when memory is short. */
 static bool ask_reference(State *solver, const ContactProblem *problem, const Look *step, const ReferenceAim *aim,
@@ -410,8 +376,7 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Look
     const double best = solver->best, work = path_work * solver->interior.iteration_work;
     const int most = affordable(solver, load_work, work);
     if (most >= LEAST_ITERATIONS && !(step->calm && step->many)) {
-        const ReferenceAim aim = {
-            .tolerance = (double)step->near, .most = most, .push_out = true, .by_heaviest = is_uneven(step)};
+        const ReferenceAim aim = aim_at(step, 1, most);
         if (!reserve_other(solver, problem)) return error_memory(error, "interior");
         if (!ask_reference(solver, problem, step, &aim, work, &solver->other, error)) return false;
         if (solver->best < INFINITY) {
@@ -432,8 +397,8 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     if (!reference_residual(&solver->reference, problem, solution->impulses, &swept, error)) return false;
     if (swept <= (double)step->enough) return true;
     if (!reserve_other(solver, problem)) return error_memory(error, "interior");
-    const ReferenceAim aim = {
-        .tolerance = few_share * (double)step->near, .most = JAM_ITERATIONS, .by_heaviest = is_uneven(step)};
+    ReferenceAim aim = aim_at(step, few_share, JAM_ITERATIONS);
+    aim.push_out = false;
     if (!ask_reference(solver, problem, step, &aim, few_work, other, error)) return false;
     if (solver->best == INFINITY) return true;
     if (!reference_residual(&solver->reference, problem, other->impulses, &freed, error)) return false;
@@ -445,10 +410,7 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
    ever: sweeps begin from the warm start. False when memory is short. */
 static bool solve_few(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                       Error *error) {
-    const ReferenceAim aim = {.tolerance = few_share * (double)step->near,
-                              .most = FEW_ITERATIONS,
-                              .push_out = true,
-                              .by_heaviest = is_uneven(step)};
+    const ReferenceAim aim = aim_at(step, few_share, FEW_ITERATIONS);
     if (!ask_reference(solver, problem, step, &aim, few_work, solution, error)) return false;
     if (solver->best < INFINITY) return true;
     solver->left -= jam_work;
@@ -466,19 +428,12 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     bool done = false;
     step->left = (PairResidual){0};
     solver->left = most_work(step);
-    solver->analysed = solver->loaded = false;
     if (!start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
         look_at_residuals(step, &solver->momentum.sweeps, NULL);
         if (is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
     }
     if (step->bodies <= FEW_BODIES) return solve_few(solver, problem, step, solution, error);
-    if (step->calm) {
-        const float limit = restless_from * solver->near;
-        const bool restless = !step->slippery && !step->slender && !is_heavy(step) &&
-                              step->left.visit > limit * limit * (float)problem->contact_count;
-        if (restless) step->near = step->enough = solver->near;
-    }
     if (step->many && !step->calm && !seems_cheap(solver, step))
         return solve_by_sweeps(solver, problem, solver->near, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
@@ -491,7 +446,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     if (!cheap)
         return start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->enough, solution, error)
                                              : error_memory(error, "interior");
-    if (!iterate(solver, problem, step, solution)) return error_memory(error, "interior");
+    iterate(solver, problem, step, solution);
     const float wanted = is_heavy(step) ? step->near : step->enough;
     return solver->best <= (double)wanted || follow_path(solver, problem, step, solution, error);
 }

@@ -10,14 +10,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Tuned on frozen impacts of stacks, towers, gates, pyramids, walls, piles and dominoes of 7 to 45 boxes, for the
-   fewest iterations to 0.02 and 0.001 m/s. On scenes of other kinds: scenes/families/heldout. */
-const InteriorRule interior_quick = {
-    .impulse = 3, .gap = 0.06, .slip = 0.11, .first = 0.005, .shrink = 0.04, .follow = 0.03};
-/* Hand-tuned, at rest and at impacts where quick iterations break down. */
-const InteriorRule interior_far = {
-    .impulse = 0.1, .gap = 0.2, .slip = 0.2, .by_heaviest = true, .first = 0.1, .shrink = 0.15, .follow = 0.05};
-static const double scale_of_residual = 4;
+/* The scale of velocities at the start is 4 times its residual plus the least scale of the attempt. Iterations start so
+   far beyond the values of the start, in shares of that scale: impulses in those of the heaviest body, as it passes
+   impulses on through light ones that are many times larger than those that move them. From a start by the contacts'
+   own masses it takes hundreds of iterations to get there, or they cycle. */
+static const double scale_of_residual = 4, impulse_share = 0.1, speed_share = 0.2;
+/* tau^2 at the start, as a share of the squared scale. Each iteration makes it `shrink` of itself, but no less than
+   `follow` of the squared residual. */
+static const double first_target = 0.1, shrink = 0.15, follow = 0.05;
 
 const InteriorKernels *interior_best(void) {
 #ifdef TWINBOX_AVX
@@ -29,22 +29,21 @@ const InteriorKernels *interior_best(void) {
 static double larger(double x, double y) { return x > y ? x : y; }
 
 /* Moves the start to the inside of all bounds and returns the first tau^2. */
-static double begin(Interior *s, const InteriorRule *rule, double scale) {
-    const double impulse = rule->impulse * scale, gap = rule->gap * scale, beyond = rule->slip * scale;
+static double begin(Interior *s, double scale) {
+    const double impulse = impulse_share * scale * s->heaviest, beyond = speed_share * scale;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         for (int k = 0; k < BLOCK_SLOTS; k++) {
-            const double mass = rule->by_heaviest ? s->heaviest : g->mass_normal[k];
-            const double l = g->answer_normal[k] + impulse * mass, t = g->answer_tangent[k];
+            const double l = g->answer_normal[k] + impulse, t = g->answer_tangent[k];
             const double bound = 0.9 * g->friction[k] * l, slip = g->tangent[k];
             g->l[k] = l;
             g->t[k] = t > bound ? bound : t < -bound ? -bound : t;
-            g->z[k] = larger(g->normal[k] - g->bias[k], 0) + gap;
+            g->z[k] = larger(g->normal[k] - g->bias[k], 0) + beyond;
             g->p[k] = larger(-slip, 0) + beyond;
             g->q[k] = larger(slip, 0) + beyond;
         }
     }
-    return rule->first * scale * scale;
+    return first_target * scale * scale;
 }
 
 static void keep_best(Interior *s) {
@@ -56,18 +55,17 @@ static void keep_best(Interior *s) {
 
 void interior_iterate(Interior *s, const InteriorKernels *kernels, const InteriorAttempt *attempt, double speed,
                       double near, int most) {
-    const InteriorRule *rule = attempt->rule;
     if (!(s->residual < speed)) { /* a warm start that is worse than none: a body that held others is gone */
         for (int i = 0; i < s->group_count; i++) s->groups[i].answer_normal = s->groups[i].answer_tangent = (Vec4){0};
         s->residual = kernels->answer(s);
     }
     const double scale = scale_of_residual * s->residual + attempt->least_scale * speed;
-    double target = begin(s, rule, scale), best = s->residual, estimate = 0;
+    double target = begin(s, scale), best = s->residual, estimate = 0;
     most = attempt->iterations < most ? attempt->iterations : most;
     bool solved = false;
     keep_best(s);
     for (s->iterations = 0; s->iterations < most && !solved;) {
-        const double next = larger(rule->shrink * target, rule->follow * estimate * estimate);
+        const double next = larger(shrink * target, follow * estimate * estimate);
         target = next < target ? next : target;
         estimate = kernels->iterate(s, target);
         s->iterations++;

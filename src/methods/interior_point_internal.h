@@ -106,29 +106,15 @@ double interior_work(double products, int pair_count);
 /* Friction below this holds nothing. */
 #define INTERIOR_SLIPPERY 0.01f
 
-/* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus the least scale
-   of the attempt. */
-typedef struct InteriorRule {
-    double impulse, gap, slip; /* how far they start beyond the values of the start, as shares of the scale */
-    bool by_heaviest; /* that share of impulses is of the heaviest body, not of each contact's effective mass */
-    double first;     /* tau^2 at the start, as a share of the squared scale */
-    double shrink,
-        follow; /* each makes tau^2 this share of itself, but no less than that share of the squared residual */
-} InteriorRule;
-
-/* far: a heavy body passes impulses on through light ones that are many times larger than those that move them. From a
-   start by the contacts' own masses it takes hundreds of iterations to get there, or they cycle. */
-extern const InteriorRule interior_quick, interior_far;
-
-/* Speeds are shares of a speed of the problem, so that no limit depends on its units. */
+/* How iterations begin, and when they end. Speeds are shares of a speed of the problem, so that no limit depends on its
+   units. */
 typedef struct InteriorAttempt {
-    const InteriorRule *rule;
     /* How far inside the bounds the iterations start if the residual is near 0. Contacts that should stick slide at up
        to about that speed until tau^2 is small: if it is tiny, one iteration from the impulses of the last step
        suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
     double least_scale;
     /* Iterations end if the residual exceeds this multiple of the best so far and 0.01 together. With friction the path
-       to the solution can turn back. Then iterations jump about for long, and may never converge. */
+       to the solution can turn back, and iterations jump about before they converge, or never do. */
     double lost;
     int iterations; /* at most */
 } InteriorAttempt;

@@ -174,7 +174,7 @@ TEST(momentum_is_exact) {
     for (int k = 0; k < 2; k++) assert_near(after[k], before[k], rounding);
 }
 
-static const InteriorAttempt quick = {&interior_quick, 1e-3, 1e6, 100};
+static const InteriorAttempt attempt = {.least_scale = 1e-3, .lost = INFINITY, .iterations = 100};
 
 static void kernels_agree(const ContactProblem *problem) {
     OWN(Sweeps) sweeps = {0};
@@ -185,7 +185,7 @@ static void kernels_agree(const ContactProblem *problem) {
     assert_true(sweeps_begin_coloured(&sweeps, SWEEP_ONE_BY_ONE, problem) && sweeps_run(&sweeps, 2));
     for (int k = 0; k < 2; k++) {
         assert_true(interior_load(&interior[k], kernels[k], &sweeps, problem));
-        interior_iterate(&interior[k], kernels[k], &quick, 1, 1e-3, 20);
+        interior_iterate(&interior[k], kernels[k], &attempt, 1, 1e-3, 20);
         interior_end(&interior[k], &sweeps, problem, &found[k]);
     }
     assert_same_bits(problem, &found[1], &found[0], "interior");
@@ -202,7 +202,7 @@ static double log_of_estimates(const ContactProblem *problem) {
     Interior interior = {0};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem) && sweeps_run(&sweeps, 2));
     assert_true(interior_load(&interior, kernels, &sweeps, problem));
-    interior_iterate(&interior, kernels, &quick, 10, 0, 1);
+    interior_iterate(&interior, kernels, &attempt, 10, 0, 1);
     double target = 1e-2, sum = 0;
     for (int i = 0; i < 8; i++, target *= 0.1) {
         const double estimate = kernels->iterate(&interior, target), residual = kernels->answer(&interior);
