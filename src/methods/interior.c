@@ -45,9 +45,8 @@ static const double begin_work = 3, load_work = 5.5;
    walls, 1.4 in piles. */
 static const double usual_products = 2;
 
-/* Iterations from the start of the sweeps. At rest one iteration mostly ends it, if it starts where the sweeps do; those
-   that do not converge at once rarely do. At impacts, and on the path of the reference, the residual may rise by any
-   multiple before it falls. */
+/* Iterations from the start of the sweeps. At rest one mostly ends it, if it starts where the sweeps do; those that do
+   not converge at once rarely do. From further inside the residual may rise by any multiple before it falls. */
 static const InteriorAttempt at_rest = {.least_scale = 1e-7, .lost = 10, .iterations = 10},
                              at_impact = {.least_scale = 0.01, .lost = INFINITY, .iterations = 40};
 
@@ -244,8 +243,8 @@ static bool try_sweeps(State *solver, const ContactProblem *problem, const Look 
 static double analysis_work(const Look *step) { return fmin(2 + step->bodies / 16.0, 14); }
 
 /* False when memory is short. */
-static bool load_interior(State *solver, const ContactProblem *problem, const Look *step) {
-    solver->left -= load_work + analysis_work(step);
+static bool load_interior(State *solver, const ContactProblem *problem) {
+    solver->left -= load_work;
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
@@ -263,14 +262,28 @@ static bool seems_cheap(const State *solver, const Look *step) {
 }
 
 /* Until the residual is at most `near`, or the work is done. */
-static void iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
+static void attempt(State *solver, const ContactProblem *problem, const Look *step, const InteriorAttempt *attempt,
+                    ContactSolution *solution) {
     Interior *interior = &solver->interior;
     const int most = affordable(solver, 0, interior->iteration_work);
     const double speed = step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
-    if (most == 0) return;
-    interior_iterate(interior, interior_best(), step->calm ? &at_rest : &at_impact, speed, (double)step->near, most);
+    interior_iterate(interior, interior_best(), attempt, speed, (double)step->near, most);
     solver->left -= interior->iterations * interior->iteration_work;
-    if (interior_end(interior, &solver->momentum.sweeps, problem, solution)) solver->best = interior->residual;
+    if (interior->residual < solver->best && interior_end(interior, &solver->momentum.sweeps, problem, solution))
+        solver->best = interior->residual;
+}
+
+/* Iterations that break down at rest begin again further inside, from the start of the sweeps: it is better than where
+   they are. False when memory is short. */
+static bool iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
+    const double again = begin_work + FIRST_SWEEPS + load_work;
+    attempt(solver, problem, step, step->calm ? &at_rest : &at_impact, solution);
+    if (!step->calm || step->many || solver->best <= (double)step->near ||
+        affordable(solver, again, solver->interior.iteration_work) == 0)
+        return true;
+    if (!start(solver, problem, true) || !load_interior(solver, problem)) return false;
+    attempt(solver, problem, step, &at_impact, solution);
+    return true;
 }
 
 /* After start(): as momentum:k=1,near=NEAR (residual: methods/residual.h), until the work is done.
@@ -441,12 +454,15 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     /* Iterations, unless they are too dear; then sweeps. */
     solver->best = INFINITY;
     bool cheap = seems_cheap(solver, step);
-    if (cheap && !load_interior(solver, problem, step)) return error_memory(error, "interior");
+    if (cheap) {
+        solver->left -= analysis_work(step);
+        if (!load_interior(solver, problem)) return error_memory(error, "interior");
+    }
     cheap = cheap && affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_ITERATIONS : 0);
     if (!cheap)
         return start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->enough, solution, error)
                                              : error_memory(error, "interior");
-    iterate(solver, problem, step, solution);
+    if (!iterate(solver, problem, step, solution)) return error_memory(error, "interior");
     const float wanted = is_heavy(step) ? step->near : step->enough;
     return solver->best <= (double)wanted || follow_path(solver, problem, step, solution, error);
 }
