@@ -350,13 +350,14 @@ TEST(deeper_than_a_quarter_for_half_a_unit_sinks) {
 }
 
 /* A box goes through a resting one, in steps of 0.3 m in which it is in it, by its middle or less than half of a side
-   deep; and in one leap; or it stays outside. */
+   deep; and in one leap, which may rise or sink: then it counts where the two are side by side; or it stays outside. */
 TEST(what_is_on_the_other_side_has_tunnelled) {
     static const struct {
-        float from, step, height;
+        float from, step, height, rise;
         bool tunnels;
-    } cases[] = {{-3, 1.5f, 0, false}, {-2, 0.3f, 0, true},   {-2, 0.3f, 0.45f, true}, {-2, 0.3f, 0.55f, false},
-                 {-2, 4, 0.45f, true}, {-2, 4, 0.55f, false}, {-3.75f, 1.5f, 0, true}};
+    } cases[] = {{-3, 1.5f, 0, 0, false},     {-2, 0.3f, 0, 0, true},     {-2, 0.3f, 0.45f, 0, true},
+                 {-2, 0.3f, 0.55f, 0, false}, {-2, 4, 0.45f, 0, true},    {-2, 4, 0.55f, 0, false},
+                 {-3.75f, 1.5f, 0, 0, true},  {-1.25f, 5, 0.2f, 1, true}, {-1.25f, 5, 1, -1.6f, false}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Trial trial = box_on_ground();
         trial.run.gravity.y = 0;
@@ -365,7 +366,9 @@ TEST(what_is_on_the_other_side_has_tunnelled) {
         const bool stops = i == 0;
         for (int frame = 1; frame < 30; frame++) {
             go(&trial, frame);
-            if (!stops || frame == 1) moving->position.x += cases[i].step;
+            if (stops && frame > 1) continue;
+            moving->position.x += cases[i].step;
+            moving->position.y += cases[i].rise;
         }
         const VerdictReading reading = end(&trial);
         assert_int_equal(reading.verdict == VERDICT_TUNNELS, cases[i].tunnels);
