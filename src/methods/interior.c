@@ -56,7 +56,8 @@ static const InteriorAttempt at_rest = {.least_scale = 1e-7, .lost = 10, .iterat
    An island is calm if none of its bodies move fast relative to each other where they touch, whatever the bias: boxes
    that overlap and are pushed apart are calm, too. There errors add up from step to step: boxes creep at the speed of
    the error, until a card slides out of a house of cards or a stack leans. So the tolerance is smaller than that of
-   impacts, `near`.
+   impacts, `near`. After an impact an island is restless for some frames: calm, but the first sweeps leave much. There
+   errors have no time to add up, and `near` will do.
 
    No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest
    by gravity and the engine's slop. */
@@ -85,15 +86,19 @@ typedef struct Look {
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
    An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds in
    a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of calm
-   islands is at most `calm_near`; `slippery_near` without friction, where nothing holds what an error moves: a stack of
+   islands is at most `calm_near`, or `many_near` among many bodies, where smaller ones take three times as long at rest;
+   `slippery_near` without friction, where nothing holds what an error moves: a stack of
    12 stands 380 s, and 160 s at 2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks
    of 41 to 60 boxes sway for seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack
    of 20 by 15 um in 10 s. */
-static const float calm_near = 1e-4f, slippery_near = 1e-6f, slender_near = 2e-5f;
+static const float calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f, slender_near = 2e-5f;
 /* In calm islands plain sweeps are enough below `slender_near`, or below so many roundings of what the impulses hold;
    without friction, and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3
    roundings. */
 static const float roundings = 0.3f;
+/* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is
+   restless. Without, pyramids come to a rest in which each step needs iterations, for twice the time. */
+static const float restless_from = 2;
 /* Multiples of the other's mass, of two bodies that touch. Beyond the first, sweeps carry little between them. Beyond
    the second, the rounding error of an impulse between heavy bodies would throw a light one: at rest, such an island is
    never taken for still by its roundings. */
@@ -159,7 +164,10 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
         Look *look = &solver->looks[k];
         const float limit = look->fall + look->pace;
         look->calm = look->fastest < limit * limit;
-        const float share = look->slippery ? slippery_near : look->slender ? slender_near : calm_near;
+        const float share = look->slippery                   ? slippery_near
+                            : look->slender                  ? slender_near
+                            : look->many && !is_uneven(look) ? many_near
+                                                             : calm_near;
         look->near = look->calm ? smaller(near, share * look->pace / exactness(look)) : near;
         look->enough = look->calm && look->many ? look->near : near;
     }
@@ -248,9 +256,11 @@ static bool load_interior(State *solver, const ContactProblem *problem) {
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
-/* Iterations of that work that the island's has room for, after a step that takes `before` of it. */
+/* Iterations of that work that the island's has room for, between a step that takes `before` of it and the least that
+   fall_back() takes. */
 static int affordable(const State *solver, double before, double iteration_work) {
-    return (int)fmax((solver->left - before) / iteration_work, 0);
+    const double behind = begin_work + 1;
+    return (int)fmax((solver->left - before - behind) / iteration_work, 0);
 }
 
 /* Whether there is room for enough iterations by what the island's loops tell, so that its matrix is not analysed in
@@ -447,6 +457,12 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
         if (is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
     }
     if (step->bodies <= FEW_BODIES) return solve_few(solver, problem, step, solution, error);
+    if (step->calm) {
+        const float limit = restless_from * solver->near;
+        const bool restless = !step->slippery && !step->slender && !is_uneven(step) &&
+                              step->left.visit > limit * limit * (float)problem->contact_count;
+        if (restless) step->near = step->enough = solver->near;
+    }
     if (step->many && !step->calm && !seems_cheap(solver, step))
         return solve_by_sweeps(solver, problem, solver->near, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
