@@ -84,13 +84,13 @@ typedef struct Look {
 } Look;
 
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
-   An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds in
-   a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of calm
-   islands is at most `calm_near`, or `many_near` among many bodies, where smaller ones take three times as long at rest;
-   `slippery_near` without friction, where nothing holds what an error moves: a stack of
-   12 stands 380 s, and 160 s at 2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks
-   of 41 to 60 boxes sway for seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack
-   of 20 by 15 um in 10 s. */
+   An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds
+   in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
+   calm islands is at most `calm_near`, or `many_near` among many bodies, where smaller ones take three times as long
+   at rest; `slippery_near` without friction, where nothing holds what an error moves: a stack of 12 stands 380 s, and
+   160 s at 2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks of 41 to 60 boxes
+   sway for seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack of 20 by 15 um in
+   10 s. */
 static const float calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f, slender_near = 2e-5f;
 /* In calm islands plain sweeps are enough below `slender_near`, or below so many roundings of what the impulses hold;
    without friction, and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3
@@ -347,8 +347,8 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
            error_memory(error, "interior");
 }
 
-/* What the reference is asked for, with a share of the tolerance. Struck islands of unlike masses converge sooner without
-   its patience. */
+/* What the reference is asked for, with a share of the tolerance. Struck islands of unlike masses converge sooner
+   without its patience. */
 static ReferenceAim aim_at(const Look *step, double share, int most) {
     return (ReferenceAim){.tolerance = share * (double)step->near,
                           .most = most,
