@@ -45,10 +45,10 @@ static const double begin_work = 3, load_work = 5.5;
    walls, 1.4 in piles. */
 static const double usual_products = 2;
 
-/* Iterations from the start of the sweeps. At rest one mostly ends it, if it starts where the sweeps do; those that do
-   not converge at once rarely do. From further inside the residual may rise by any multiple before it falls. */
-static const InteriorAttempt at_rest = {.least_scale = 1e-7, .lost = 10, .iterations = 10},
-                             at_impact = {.least_scale = 0.01, .lost = INFINITY, .iterations = 40};
+/* Iterations from the start of the sweeps. At rest one from near the bounds is mostly enough; what does not converge at
+   once from there rarely does. From further inside the residual may rise by any multiple before it falls. */
+static const InteriorAttempt near_bounds = {.least_scale = 1e-7, .lost = 10, .iterations = 10},
+                             further_inside = {.least_scale = 0.01, .lost = INFINITY, .iterations = 40};
 
 /* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
    that it has to reach.
@@ -233,7 +233,7 @@ static bool start(State *solver, const ContactProblem *problem, bool calm) {
 
 /* Sweeps with momentum after the first ones, for islands of many bodies: many impacts are over with them, in a fraction
    of an iteration's time. In calm islands of many bodies some nearly always slide for long after an impact: there
-   iterations towards the small tolerance cycle, and sweeps reach it. They carry little where light bodies hold heavy
+   iterations towards the small tolerance cycle, and sweeps reach it. Sweeps carry little where light bodies hold heavy
    ones, or where there is no friction. What these sweeps do not solve is hard: iterations then converge sooner from the
    plain start. Sets *done if the sweeps are enough: the solution is stored. False when memory is short. */
 static bool try_sweeps(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
@@ -272,27 +272,27 @@ static bool seems_cheap(const State *solver, const Look *step) {
 }
 
 /* Until the residual is at most `near`, or the work is done. */
-static void attempt(State *solver, const ContactProblem *problem, const Look *step, const InteriorAttempt *attempt,
+static void attempt(State *solver, const ContactProblem *problem, const Look *step, const InteriorAttempt *from,
                     ContactSolution *solution) {
     Interior *interior = &solver->interior;
     const int most = affordable(solver, 0, interior->iteration_work);
     const double speed = step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
-    interior_iterate(interior, interior_best(), attempt, speed, (double)step->near, most);
+    interior_iterate(interior, interior_best(), from, speed, (double)step->near, most);
     solver->left -= interior->iterations * interior->iteration_work;
     if (interior->residual < solver->best && interior_end(interior, &solver->momentum.sweeps, problem, solution))
         solver->best = interior->residual;
 }
 
-/* Iterations that break down at rest begin again further inside, from the start of the sweeps: it is better than where
-   they are. False when memory is short. */
+/* Iterations that break down at rest begin again further inside, from the start of the sweeps, which is better than
+   where they are. False when memory is short. */
 static bool iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
     const double again = begin_work + FIRST_SWEEPS + load_work;
-    attempt(solver, problem, step, step->calm ? &at_rest : &at_impact, solution);
+    attempt(solver, problem, step, step->calm ? &near_bounds : &further_inside, solution);
     if (!step->calm || step->many || solver->best <= (double)step->near ||
         affordable(solver, again, solver->interior.iteration_work) == 0)
         return true;
     if (!start(solver, problem, true) || !load_interior(solver, problem)) return false;
-    attempt(solver, problem, step, &at_impact, solution);
+    attempt(solver, problem, step, &further_inside, solution);
     return true;
 }
 
@@ -392,8 +392,7 @@ static void take_other(const State *solver, const ContactProblem *problem, Conta
 }
 
 /* After iterations that did not get there: what is left of the work goes to the reference's path, and what that leaves,
-   to sweeps. Calm islands of many bodies are left to the latter: their path is long, and sweeps lead to the tolerance.
-   */
+   to sweeps. Calm islands of many bodies are left to sweeps: their path is long, and sweeps reach the tolerance. */
 static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                         Error *error) {
     const double best = solver->best, work = path_work * solver->interior.iteration_work;
