@@ -2,13 +2,12 @@
 /* Interior-point steps with a sparse direct solve over the bodies; equations and sources in
    methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step (Look):
 
-   1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at
-      rest.
+   1. Two sweeps if it is calm. In most steps at rest they are the solution.
    2. From 34 bodies on, iterations until the residual is at most what the step asks for; from 129 on, a few sweeps with
       momentum first, where they save more than they cost.
    3. The reference's solver (methods/reference.h), which follows the central path, also where it turns back. Up to 33
       bodies it comes first: it takes 0.82 of the time of 2, with a fortieth of the error. Beyond, its iterations take
-      1.7 times as long, and it needs more of them.
+      1.7 times as long, and it needs more of them; but in calm towers it comes first, too: with 2 they sway.
    4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
    The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. The analysis of the
@@ -56,8 +55,7 @@ static const InteriorAttempt near_bounds = {.least_scale = 1e-7, .lost = 10, .it
    An island is calm if none of its bodies move fast relative to each other where they touch, whatever the bias: boxes
    that overlap and are pushed apart are calm, too. There errors add up from step to step: boxes creep at the speed of
    the error, until a card slides out of a house of cards or a stack leans. So the tolerance is smaller than that of
-   impacts, `near`. After an impact an island is restless for some frames: calm, but the first sweeps leave much. There
-   errors have no time to add up, and `near` will do.
+   impacts, `near`.
 
    No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest
    by gravity and the engine's slop. */
@@ -74,39 +72,27 @@ static const double few_work = 7.5, path_work = 1.7, jam_work = 10 + JAM_ITERATI
 typedef struct Look {
     int bodies, loops; /* bodies: that move */
     float fastest;     /* (m/s)^2, relative to each other where they touch */
+    float before;      /* (m/s)^2, the sum of that over contacts of two bodies that move */
     float fall;        /* m/s, that gravity adds in a step */
     float pace;        /* m/s, the unit of speeds at rest */
     bool calm, many, slippery;
-    float unlike;       /* the largest multiple of the other's mass, of two bodies that touch */
-    bool slender;       /* towers: errors below are larger above */
-    float near, enough; /* m/s: residuals at which iterations stop, and that are taken */
-    PairResidual left;  /* sum over its pairs, after the first sweeps */
+    float unlike; /* the largest multiple of the other's mass, of two bodies that touch */
+    bool slender; /* towers: few loops */
+    float near;   /* m/s, the largest residual of a solution */
+    float left;   /* (m/s)^2, residual after sweeps: sum over its contacts */
 } Look;
 
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
    An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds
    in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
-   calm islands is at most `calm_near`, or `many_near` among many bodies, where smaller ones take three times as long
-   at rest; `slippery_near` without friction, where nothing holds what an error moves: a stack of 12 stands 380 s, and
-   160 s at 2e-5; and `slender_near` in towers: at 1e-4 a stack of 40 falls, and at 3e-5 some stacks of 41 to 60 boxes
-   sway for seconds; at 1e-5 no step ends with sweeps, and rounding errors of iterations move a stack of 20 by 15 um in
-   10 s. */
-static const float calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f, slender_near = 2e-5f;
-/* In calm islands plain sweeps are enough below `slender_near`, or below so many roundings of what the impulses hold;
-   without friction, and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3
-   roundings. */
-static const float roundings = 0.3f;
-/* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is
-   restless. Without, pyramids come to a rest in which each step needs iterations, for twice the time. */
-static const float restless_from = 2;
-/* Multiples of the other's mass, of two bodies that touch. Beyond the first, sweeps carry little between them. Beyond
-   the second, the rounding error of an impulse between heavy bodies would throw a light one: at rest, such an island is
-   never taken for still by its roundings. */
-static const float uneven_from = 10, heavy_from = 100;
-/* The tolerance of uneven calm islands is divided by their multiple over the first, at most by this. Of 184 random
-   structures at rest that the reference holds, with masses spread by up to a million, each at three tolerances, 2 runs
-   fall; 55 without this and the reference's own measure of such islands (ReferenceAim). */
-static const float most_exact = 1000;
+   calm islands is at most `calm_near`; `many_near` among many bodies, where a wall takes half the time; and `fine_near`
+   where nothing holds what an error moves, without friction, and in towers, where errors below are larger above. */
+static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-6f;
+/* Sweeps may add this share of the tolerance to what errors moved before (is_solved). */
+static const float most_added = 0.5f;
+/* The tolerance of a calm island is divided by the largest multiple over this of the other's mass, of two bodies that
+   touch: what is a rounding error to the heavy one throws the light one. Beyond it sweeps carry little between them. */
+static const float uneven_from = 10;
 /* Of the pace. */
 static const float calm_speed = 10;
 
@@ -132,11 +118,7 @@ static float smaller(float x, float y) { return x < y ? x : y; }
 
 static float larger(float x, float y) { return x > y ? x : y; }
 
-/* By which the tolerance of a calm island is divided. */
-static float exactness(const Look *look) { return smaller(larger(look->unlike / uneven_from, 1), most_exact); }
-
 static bool is_uneven(const Look *look) { return look->unlike > uneven_from; }
-static bool is_heavy(const Look *look) { return look->unlike > heavy_from; }
 
 /* Before the step. near: of impacts, m/s. */
 static void look_at_islands(State *solver, const ContactProblem *problem, float near) {
@@ -147,6 +129,7 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
                                   .loops = islands->islands[k].loops,
                                   .fall = problem->fall,
                                   .pace = pace,
+                                  .near = near,
                                   .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
                                   .many = islands->islands[k].bodies > MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++) {
@@ -157,40 +140,38 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
                     inv_mass_b = problem->bodies[contact->b].inv_mass, motion = residual_of_motion(problem, i);
         if (!(motion <= look->fastest)) look->fastest = motion; /* NaN, too */
         look->slippery |= contact->friction < INTERIOR_SLIPPERY;
-        if (inv_mass_a > 0 && inv_mass_b > 0)
+        if (inv_mass_a > 0 && inv_mass_b > 0) {
+            look->before += motion;
             look->unlike = larger(look->unlike, larger(inv_mass_a / inv_mass_b, inv_mass_b / inv_mass_a));
+        }
     }
     for (int k = 0; k < islands->count; k++) {
         Look *look = &solver->looks[k];
         const float limit = look->fall + look->pace;
         look->calm = look->fastest < limit * limit;
-        const float share = look->slippery                   ? slippery_near
-                            : look->slender                  ? slender_near
+        const float share = look->slippery || look->slender  ? fine_near
                             : look->many && !is_uneven(look) ? many_near
                                                              : calm_near;
-        look->near = look->calm ? smaller(near, share * look->pace / exactness(look)) : near;
-        look->enough = look->calm && look->many ? look->near : near;
+        if (look->calm) look->near = smaller(near, share * look->pace / larger(look->unlike / uneven_from, 1));
     }
 }
 
-/* Adds up what the first sweeps left in each island. `island`: as Islands has it, or NULL if there is a single one. */
+/* Adds up what sweeps left in each island. `island`: as Islands has it, or NULL if there is a single one. */
 static void look_at_residuals(Look *looks, const Sweeps *sweeps, const int32_t *island) {
     for (int i = 0; i < sweeps->pair_count; i++) {
         const int32_t k = island != NULL ? island[sweeps->first[i]] : 0;
-        if (k < 0) continue;
-        const PairResidual residual = residual_of_pair(sweeps, i);
-        looks[k].left.visit += residual.visit;
-        looks[k].left.held += residual.held;
+        if (k >= 0) looks[k].left += residual_of_pair(sweeps, i);
     }
 }
 
-/* Whether the residual, root mean square over so many contacts, is little more than rounding errors. */
-static bool is_still(const Look *look, int contacts) {
-    const float held = sqrtf(look->left.held / (float)contacts);
-    const float least = look->slippery || look->slender ? 0 : slender_near * look->pace / exactness(look);
-    const float rounding = is_heavy(look) ? 0 : roundings * 0x1p-24f * (look->pace + held);
-    const float limit = larger(rounding, least);
-    return look->calm && look->left.visit < limit * limit * (float)contacts;
+/* Whether sweeps have solved the step: their residual, root mean square over so many contacts, is within the tolerance,
+   and is by no more than a share of it above the speeds before. At rest impulses with an error e add e to the speeds in
+   each step, and sweeps let them. When m e is out of tolerance, iterations stop the bodies, by impulses with an error
+   of -(m - 1) e. If sweeps let that be, too, steps would do the same for ever; but it is more than half of the
+   tolerance, as m is 2 or more. */
+static bool is_solved(const Look *look, int contacts) {
+    const float left = sqrtf(look->left / (float)contacts), before = sqrtf(look->before / (float)contacts);
+    return left < look->near && left < before + most_added * look->near;
 }
 
 static const SettingSpec settings[] = {
@@ -236,14 +217,16 @@ static bool start(State *solver, const ContactProblem *problem, bool calm) {
    iterations towards the small tolerance cycle, and sweeps reach it. Sweeps carry little where light bodies hold heavy
    ones, or where there is no friction. What these sweeps do not solve is hard: iterations then converge sooner from the
    plain start. Sets *done if the sweeps are enough: the solution is stored. False when memory is short. */
-static bool try_sweeps(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
+static bool try_sweeps(State *solver, const ContactProblem *problem, Look *step, ContactSolution *solution,
                        bool *done) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     *done = false;
     if (!step->many || step->slippery || is_uneven(step)) return true;
     solver->left -= START_SWEEPS;
     if (!sweeps_run_momentum(sweeps, solver->start_factors, START_SWEEPS)) return false;
-    *done = !residual_of_visits_reaches(sweeps, problem->contact_count, step->near) && sweeps_end(sweeps, solution);
+    step->left = 0;
+    look_at_residuals(step, sweeps, NULL);
+    *done = is_solved(step, problem->contact_count) && sweeps_end(sweeps, solution);
     return *done || start(solver, problem, step->calm);
 }
 
@@ -341,19 +324,19 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
         return error_memory(error, "interior");
     Look all = {0}; /* as the residual of the iterations, m/s: */
     look_at_residuals(&all, &solver->momentum.sweeps, NULL);
-    const double after = sqrt((double)all.left.visit / problem->contact_count);
+    const double after = sqrt((double)all.left / problem->contact_count);
     solution->fallbacks.by_sweeps = 1;
     return (finite && !(after < solver->best)) || momentum_end(&solver->momentum, solution) ||
            error_memory(error, "interior");
 }
 
-/* What the reference is asked for, with a share of the tolerance. Struck islands of unlike masses converge sooner
-   without its patience. */
+/* What the reference is asked for, with a share of the tolerance. Struck islands converge sooner without its
+   patience. */
 static ReferenceAim aim_at(const Look *step, double share, int most) {
     return (ReferenceAim){.tolerance = share * (double)step->near,
                           .most = most,
                           .push_out = true,
-                          .by_heaviest = step->calm && is_uneven(step)};
+                          .by_heaviest = step->calm};
 }
 
 /* Sets `best`: INFINITY if the answer is not taken. work: of a factorization. Rounded impulses are put back into their
@@ -375,7 +358,7 @@ static bool ask_reference(State *solver, const ContactProblem *problem, const Lo
         impulse->tangent = contact_clamp(impulse->tangent, -limit, limit);
         finite &= isfinite(limit) && isfinite(impulse->tangent);
     }
-    solver->best = finite && reference->residual <= (double)step->enough ? reference->residual : INFINITY;
+    solver->best = finite && reference->residual <= (double)step->near ? reference->residual : INFINITY;
     return true;
 }
 
@@ -407,7 +390,7 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Look
         }
         solver->best = best;
     }
-    return best <= (double)step->enough || fall_back(solver, problem, step->enough, solution, error);
+    return fall_back(solver, problem, step->near, solution, error);
 }
 
 /* After sweeps: the answer without position correction instead, if its residual is smaller. In a jam no answer has what
@@ -417,7 +400,7 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     ContactSolution *other = &solver->other;
     double swept, freed;
     if (!reference_residual(&solver->reference, problem, solution->impulses, &swept, error)) return false;
-    if (swept <= (double)step->enough) return true;
+    if (swept <= (double)step->near) return true;
     if (!reserve_other(solver, problem)) return error_memory(error, "interior");
     ReferenceAim aim = aim_at(step, few_share, JAM_ITERATIONS);
     aim.push_out = false;
@@ -428,15 +411,15 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     return true;
 }
 
-/* An island of few bodies. What is not solved in FEW_ITERATIONS may hold jammed bodies with impulses that grow for
+/* All by the reference. What is not solved in FEW_ITERATIONS may hold jammed bodies with impulses that grow for
    ever: sweeps begin from the warm start. False when memory is short. */
-static bool solve_few(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
+static bool follow_whole_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                       Error *error) {
     const ReferenceAim aim = aim_at(step, few_share, FEW_ITERATIONS);
     if (!ask_reference(solver, problem, step, &aim, few_work, solution, error)) return false;
     if (solver->best < INFINITY) return true;
     solver->left -= jam_work;
-    if (!fall_back(solver, problem, step->enough, solution, error)) return false;
+    if (!fall_back(solver, problem, step->near, solution, error)) return false;
     solver->left += jam_work;
     return answer_jam(solver, problem, step, solution, error);
 }
@@ -448,20 +431,15 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
                          Error *error) {
     Look look = *seen, *step = &look;
     bool done = false;
-    step->left = (PairResidual){0};
+    step->left = 0;
     solver->left = most_work(step);
     if (!start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
         look_at_residuals(step, &solver->momentum.sweeps, NULL);
-        if (is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
+        if (is_solved(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
     }
-    if (step->bodies <= FEW_BODIES) return solve_few(solver, problem, step, solution, error);
-    if (step->calm) {
-        const float limit = restless_from * solver->near;
-        const bool restless = !step->slippery && !step->slender && !is_uneven(step) &&
-                              step->left.visit > limit * limit * (float)problem->contact_count;
-        if (restless) step->near = step->enough = solver->near;
-    }
+    if (step->bodies <= FEW_BODIES || (step->calm && step->slender))
+        return follow_whole_path(solver, problem, step, solution, error);
     if (step->many && !step->calm && !seems_cheap(solver, step))
         return solve_by_sweeps(solver, problem, solver->near, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
@@ -475,11 +453,10 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     }
     cheap = cheap && affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_ITERATIONS : 0);
     if (!cheap)
-        return start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->enough, solution, error)
+        return start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->near, solution, error)
                                              : error_memory(error, "interior");
     if (!iterate(solver, problem, step, solution)) return error_memory(error, "interior");
-    const float wanted = is_heavy(step) ? step->near : step->enough;
-    return solver->best <= (double)wanted || follow_path(solver, problem, step, solution, error);
+    return solver->best <= (double)step->near || follow_path(solver, problem, step, solution, error);
 }
 
 static bool solve_islands(State *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -496,7 +473,7 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
     if (!swept) contact_solution_begin(problem, solution);
     for (int k = 0; k < islands->count; k++) {
         const Look *step = &solver->looks[k];
-        if (swept && is_still(step, islands->islands[k].contacts)) continue;
+        if (swept && step->calm && is_solved(step, islands->islands[k].contacts)) continue;
         ContactSolution of_part;
         const ContactProblem part = islands_take(islands, problem, k, &of_part);
         if (!solve_island(solver, &part, step, &of_part, error)) return false;

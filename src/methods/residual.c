@@ -20,8 +20,6 @@ static float squared_residual(float bias, float normal_velocity, float normal) {
 }
 
 /* Of point k of a pair, whose bodies move relative to each other at this velocity there. */
-typedef float OfPoint(const SweepPair *pair, int k, Vec2 velocity);
-
 static float squared_of_point(const SweepPair *pair, int k, Vec2 velocity) {
     return squared_residual(pair->points[k].bias, vec2_dot(velocity, pair->normal), pair->sums[k].normal);
 }
@@ -40,47 +38,35 @@ static float squared_of_visit(const SweepPair *pair, int k, Vec2 velocity) {
     return normal * normal + tangent * tangent + if_finite;
 }
 
-static inline float measure(OfPoint *of, const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
+static inline Vec2 velocity_at(const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
     const SweepPoint *point = &pair->points[k];
-    return of(pair, k,
-              relative_velocity(vec2(b->x, b->y), b->spin, point->arm_b, vec2(a->x, a->y), a->spin, point->arm_a));
+    return relative_velocity(vec2(b->x, b->y), b->spin, point->arm_b, vec2(a->x, a->y), a->spin, point->arm_a);
 }
 
-/* Whether the sum over all points reaches the limit; `or_nan`: or is NaN. Inline, so that the compiler knows the
-   summand. The second point is computed whether it is there or not: a branch would mispredict. */
-static inline bool sum_reaches(const Sweeps *sweeps, int contact_count, float limit, OfPoint *of, bool or_nan) {
+/* The second point is computed whether it is there or not: a branch would mispredict. */
+bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit) {
     const float enough = limit * limit * (float)contact_count;
     float sum = 0;
     for (int i = 0; i < sweeps->pair_count; i++) {
         const SweepPair *pair = &sweeps->pairs[i];
         const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
         const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-        const float first = measure(of, pair, 0, a, b), second = measure(of, pair, 1, a, b);
+        const float first = squared_of_point(pair, 0, velocity_at(pair, 0, a, b)),
+                    second = squared_of_point(pair, 1, velocity_at(pair, 1, a, b));
         sum += first;
         sum += sweep_pair_points(pair) == 2 ? second : 0;
-        if (or_nan ? !(sum < enough) : sum >= enough) return true;
+        if (sum >= enough) return true;
     }
     return false;
 }
 
-bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit) {
-    return sum_reaches(sweeps, contact_count, limit, squared_of_point, false);
-}
-
-bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float limit) {
-    return sum_reaches(sweeps, contact_count, limit, squared_of_visit, true);
-}
-
-PairResidual residual_of_pair(const Sweeps *sweeps, int i) {
+float residual_of_pair(const Sweeps *sweeps, int i) {
     const SweepPair *pair = &sweeps->pairs[i];
     const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
     const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-    PairResidual sum = {0};
-    for (int k = 0; k < sweep_pair_points(pair); k++) {
-        const float held = pair->sums[k].normal / pair->points[k].mass_normal;
-        sum.visit += measure(squared_of_visit, pair, k, a, b);
-        sum.held += held * held;
-    }
+    float sum = 0;
+    for (int k = 0; k < sweep_pair_points(pair); k++)
+        sum += squared_of_visit(pair, k, velocity_at(pair, k, a, b));
     return sum;
 }
 
@@ -88,7 +74,7 @@ void residual_of_pairs(const Sweeps *sweeps, float *squared) {
     if (sweeps->kernel == SWEEP_LANES)
         sweeps_residuals_in_lanes(sweeps, squared);
     else
-        for (int i = 0; i < sweeps->pair_count; i++) squared[i] = residual_of_pair(sweeps, i).visit;
+        for (int i = 0; i < sweeps->pair_count; i++) squared[i] = residual_of_pair(sweeps, i);
 }
 
 static float overshoot_of_point(const SweepPair *pair, int k, Vec2 velocity) {
@@ -118,7 +104,7 @@ void overshoot_of_pairs(const Sweeps *sweeps, float *overshoot) {
         const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
         overshoot[i] = 0;
         for (int k = 0; k < sweep_pair_points(pair) && sweep_pair_may_overshoot(pair); k++) {
-            const float of_point = measure(overshoot_of_point, pair, k, a, b);
+            const float of_point = overshoot_of_point(pair, k, velocity_at(pair, k, a, b));
             if (of_point > overshoot[i]) overshoot[i] = of_point;
         }
     }

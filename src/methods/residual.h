@@ -15,20 +15,12 @@ bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit);
 /* The same of a solution. Where the sweeps visit contacts in the problem's order, with the same answer. */
 bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit);
 
-/* True if the root mean square over the contacts of what one more visit would change, normal and tangent velocity, is
-   at least `limit` (m/s), or NaN. This is the residual of methods/interior_point_internal.h. */
-bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float limit);
+/* (m/s)^2, summed over the contacts of a pair of the sweeps: what one more visit would change, normal and tangent
+   velocity. NaN if a velocity of its bodies is NaN or infinite. Its root mean square over the contacts is the residual
+   of methods/interior_point_internal.h. */
+float residual_of_pair(const Sweeps *sweeps, int pair);
 
-/* (m/s)^2, summed over the contacts of a pair of the sweeps: what one more visit would change (see
-   residual_of_visits_reaches()), and the normal velocity that the impulses hold. */
-typedef struct PairResidual {
-    float visit, held;
-} PairResidual;
-
-PairResidual residual_of_pair(const Sweeps *sweeps, int pair);
-
-/* squared[pair_count]: `visit` of each pair; NaN if a velocity of its bodies is NaN or infinite. By the sweeps'
-   kernel. */
+/* squared[pair_count]: the same of all pairs, by the sweeps' kernel. */
 void residual_of_pairs(const Sweeps *sweeps, float *squared);
 
 /* overshoot[pair_count]: the share of a contact's error by which a visit carries its normal velocity past the aim,

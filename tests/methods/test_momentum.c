@@ -71,7 +71,7 @@ static int residuals_of(const Momentum *momentum, Islands *islands, const Contac
     for (int k = 0; k < islands->count; k++) left[k] = 0;
     for (int i = 0; i < momentum->sweeps.pair_count; i++) {
         const int32_t k = islands->island[momentum->sweeps.first[i]];
-        if (k >= 0) left[k] = fmax(left[k], (double)residual_of_pair(&momentum->sweeps, i).visit);
+        if (k >= 0) left[k] = fmax(left[k], (double)residual_of_pair(&momentum->sweeps, i));
     }
     return islands->count;
 }
@@ -110,7 +110,7 @@ static double plain_momentum(Course *course, const ContactProblem *problem, int 
     assert_true(sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem));
     assert_true(sweeps_run_momentum(sweeps, course->factors, count));
     sweeps_refresh(sweeps, problem, NULL);
-    for (int i = 0; i < sweeps->pair_count; i++) sum = fmax(sum, (double)residual_of_pair(sweeps, i).visit);
+    for (int i = 0; i < sweeps->pair_count; i++) sum = fmax(sum, (double)residual_of_pair(sweeps, i));
     return sum;
 }
 

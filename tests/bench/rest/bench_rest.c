@@ -16,7 +16,8 @@ enum { CASES = 8, METHODS = 2, RUNS = 31, SETTLED = 600, STEPS = 10, SOLVES = 20
 static const struct {
     const ContactSolverKind *kind;
     const char *settings, *name;
-} methods[METHODS] = {{&solver_interior, "", "interior"}, {&solver_engine, "k=10", "engine:k=10"}};
+    ContactRules contacts; /* that are its own */
+} methods[METHODS] = {{&solver_interior, "", "interior", {.mend = true}}, {&solver_engine, "k=10", "engine:k=10", {0}}};
 
 static const struct {
     const char *name, *scene;
@@ -60,6 +61,7 @@ static Contender settle(int k, const Scene *scene) {
         give_up(error.message);
     method.solver.state = methods[k].kind->create(&settings, &error);
     if (method.solver.state == NULL) give_up(error.message);
+    world_set_contacts(method.world, methods[k].contacts);
     for (int i = 0; i < SETTLED; i++) step(&method, scene->dt);
     const ContactProblem *problem = world_problem(method.world);
     method.found = (ContactSolution){
