@@ -333,10 +333,8 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
 /* What the reference is asked for, with a share of the tolerance. Struck islands converge sooner without its
    patience. */
 static ReferenceAim aim_at(const Look *step, double share, int most) {
-    return (ReferenceAim){.tolerance = share * (double)step->near,
-                          .most = most,
-                          .push_out = true,
-                          .by_heaviest = step->calm};
+    return (ReferenceAim){
+        .tolerance = share * (double)step->near, .most = most, .push_out = true, .by_heaviest = step->calm};
 }
 
 /* Sets `best`: INFINITY if the answer is not taken. work: of a factorization. Rounded impulses are put back into their
@@ -414,7 +412,7 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
 /* All by the reference. What is not solved in FEW_ITERATIONS may hold jammed bodies with impulses that grow for
    ever: sweeps begin from the warm start. False when memory is short. */
 static bool follow_whole_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
-                      Error *error) {
+                              Error *error) {
     const ReferenceAim aim = aim_at(step, few_share, FEW_ITERATIONS);
     if (!ask_reference(solver, problem, step, &aim, few_work, solution, error)) return false;
     if (solver->best < INFINITY) return true;

@@ -65,8 +65,7 @@ float residual_of_pair(const Sweeps *sweeps, int i) {
     const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
     const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
     float sum = 0;
-    for (int k = 0; k < sweep_pair_points(pair); k++)
-        sum += squared_of_visit(pair, k, velocity_at(pair, k, a, b));
+    for (int k = 0; k < sweep_pair_points(pair); k++) sum += squared_of_visit(pair, k, velocity_at(pair, k, a, b));
     return sum;
 }
 

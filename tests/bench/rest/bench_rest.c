@@ -16,8 +16,9 @@ enum { CASES = 8, METHODS = 2, RUNS = 31, SETTLED = 600, STEPS = 10, SOLVES = 20
 static const struct {
     const ContactSolverKind *kind;
     const char *settings, *name;
-    ContactRules contacts; /* that are its own */
-} methods[METHODS] = {{&solver_interior, "", "interior", {.mend = true}}, {&solver_engine, "k=10", "engine:k=10", {0}}};
+    ContactRules contacts; /* its own */
+} methods[METHODS] = {{&solver_interior, "", "interior", {.mend = true}},
+                      {&solver_engine, "k=10", "engine:k=10", {.keep = 0}}};
 
 static const struct {
     const char *name, *scene;
