@@ -88,7 +88,7 @@ typedef struct Look {
    calm islands is at most `calm_near`; `many_near` among many bodies, where a wall takes half the time; and `fine_near`
    where nothing holds what an error moves, without friction, and in towers, where errors below are larger above. */
 static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-6f;
-/* Sweeps may add this share of the tolerance to what errors moved before (is_solved). */
+/* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). */
 static const float most_added = 0.5f;
 /* The tolerance of a calm island is divided by the largest multiple over this of the other's mass, of two bodies that
    touch: what is a rounding error to the heavy one throws the light one. Beyond it sweeps carry little between them. */
@@ -120,8 +120,8 @@ static float larger(float x, float y) { return x > y ? x : y; }
 
 static bool is_uneven(const Look *look) { return look->unlike > uneven_from; }
 
-/* Before the step. near: of impacts, m/s. */
-static void look_at_islands(State *solver, const ContactProblem *problem, float near) {
+/* Before the step. */
+static void look_at_islands(State *solver, const ContactProblem *problem) {
     const Islands *islands = &solver->islands;
     const float pace = sqrtf(10 * CONTACT_SLOP * problem->fall / problem->dt);
     for (int k = 0; k < islands->count; k++)
@@ -129,7 +129,7 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
                                   .loops = islands->islands[k].loops,
                                   .fall = problem->fall,
                                   .pace = pace,
-                                  .near = near,
+                                  .near = solver->near,
                                   .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
                                   .many = islands->islands[k].bodies > MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++) {
@@ -152,7 +152,7 @@ static void look_at_islands(State *solver, const ContactProblem *problem, float 
         const float share = look->slippery || look->slender  ? fine_near
                             : look->many && !is_uneven(look) ? many_near
                                                              : calm_near;
-        if (look->calm) look->near = smaller(near, share * look->pace / larger(look->unlike / uneven_from, 1));
+        if (look->calm) look->near = smaller(look->near, share * look->pace / larger(look->unlike / uneven_from, 1));
     }
 }
 
@@ -165,10 +165,10 @@ static void look_at_residuals(Look *looks, const Sweeps *sweeps, const int32_t *
 }
 
 /* Whether sweeps have solved the step: their residual, root mean square over so many contacts, is within the tolerance,
-   and is by no more than a share of it above the speeds before. At rest impulses with an error e add e to the speeds in
-   each step, and sweeps let them. When m e is out of tolerance, iterations stop the bodies, by impulses with an error
-   of -(m - 1) e. If sweeps let that be, too, steps would do the same for ever; but it is more than half of the
-   tolerance, as m is 2 or more. */
+   and exceeds the speeds from before by no more than a share of it. At rest an error e of the impulses adds e to the
+   speeds in each step while sweeps leave it there. After m steps m e is out of tolerance; iterations then stop the
+   bodies by impulses whose error is -(m - 1) e. If sweeps left that there, too, this would go on for ever. As m is 2 or
+   more, it is more than half of the tolerance, so the next step takes iterations again, and ends it. */
 static bool is_solved(const Look *look, int contacts) {
     const float left = sqrtf(look->left / (float)contacts), before = sqrtf(look->before / (float)contacts);
     return left < look->near && left < before + most_added * look->near;
@@ -439,7 +439,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     if (step->bodies <= FEW_BODIES || (step->calm && step->slender))
         return follow_whole_path(solver, problem, step, solution, error);
     if (step->many && !step->calm && !seems_cheap(solver, step))
-        return solve_by_sweeps(solver, problem, solver->near, solution, error);
+        return solve_by_sweeps(solver, problem, step->near, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
     if (done) return true;
     /* Iterations, unless they are too dear; then sweeps. */
@@ -488,7 +488,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     if (!islands_find(&solver->islands, problem) ||
         !ARRAY_BLOCK_RESERVE(&solver->look_block, ARRAY_PART(solver->looks, islands->count)))
         return error_memory(error, "interior");
-    look_at_islands(solver, problem, solver->near);
+    look_at_islands(solver, problem);
     /* A body alone in the air would change the order of elimination. */
     const bool single = islands->count == 1 && islands->islands[0].bodies == islands->moving &&
                         islands->islands[0].contacts == problem->contact_count;

@@ -167,8 +167,8 @@ TEST(what_stands_on_many_contacts_stays_closed) {
     }
 }
 
-/* Sweeps may let an error be, but not what iterations make of it: else every other step of such a pyramid takes
-   iterations, for ever. Two sweeps and what begins them are 5 units of work. */
+/* If sweeps might leave any error that is within the tolerance, every other step of this pyramid would take iterations,
+   for ever. Two sweeps and what begins them are 5 units of work. */
 TEST(steps_at_rest_need_no_iterations) {
     const SceneSetting rows = {.name = "rows", .value = 28};
     OWN(Scene) *scene = scene_read_with(SOURCE_DIR "/scenes/stability/pyramid_rows.yaml", &rows, 1, &error);

@@ -16,9 +16,7 @@ enum { CASES = 8, METHODS = 2, RUNS = 31, SETTLED = 600, STEPS = 10, SOLVES = 20
 static const struct {
     const ContactSolverKind *kind;
     const char *settings, *name;
-    ContactRules contacts; /* its own */
-} methods[METHODS] = {{&solver_interior, "", "interior", {.mend = true}},
-                      {&solver_engine, "k=10", "engine:k=10", {.keep = 0}}};
+} methods[METHODS] = {{&solver_interior, "", "interior"}, {&solver_engine, "k=10", "engine:k=10"}};
 
 static const struct {
     const char *name, *scene;
@@ -62,7 +60,7 @@ static Contender settle(int k, const Scene *scene) {
         give_up(error.message);
     method.solver.state = methods[k].kind->create(&settings, &error);
     if (method.solver.state == NULL) give_up(error.message);
-    world_set_contacts(method.world, methods[k].contacts);
+    world_set_contacts(method.world, (ContactRules){.mend = !methods[k].kind->description.lite_contacts});
     for (int i = 0; i < SETTLED; i++) step(&method, scene->dt);
     const ContactProblem *problem = world_problem(method.world);
     method.found = (ContactSolution){
