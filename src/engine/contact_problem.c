@@ -12,6 +12,7 @@ void contact_set_free(ContactSet *set) {
     free(set->arbiters);
     free(set->contacts);
     free(set->impulses);
+    free(set->before);
     free(set->partners);
     *set = (ContactSet){0};
 }
@@ -20,7 +21,8 @@ void contact_set_free(ContactSet *set) {
 static bool reserve(ContactSet *set, size_t pairs) {
     return array_reserve((void **)&set->arbiters, &set->arbiter_capacity, pairs, sizeof *set->arbiters) &&
            array_reserve((void **)&set->contacts, &set->contact_capacity, 2 * pairs, sizeof *set->contacts) &&
-           array_reserve((void **)&set->impulses, &set->impulse_capacity, 2 * pairs, sizeof *set->impulses);
+           array_reserve((void **)&set->impulses, &set->impulse_capacity, 2 * pairs, sizeof *set->impulses) &&
+           array_reserve((void **)&set->before, &set->before_capacity, 2 * pairs, sizeof *set->before);
 }
 
 bool contact_set_copy(ContactSet *to, const ContactSet *from) {
@@ -265,21 +267,52 @@ bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxe
     return !rules.mend || mend_seams(set, boxes);
 }
 
-void contact_set_match(ContactSet *set, const ContactSet *last) {
+static void match_features(ContactSet *set, const Arbiter *arbiter, const ContactSet *last, const Arbiter *old) {
+    for (int k = arbiter->first; k < arbiter->first + arbiter->count; k++)
+        for (int j = old->first; j < old->first + old->count && set->before[k] < 0; j++)
+            if (last->contacts[j].feature == set->contacts[k].feature) set->before[k] = j;
+}
+
+/* By how much a point has moved over both boxes. */
+static float moved_over_boxes(const ContactPoint *now, const ContactPoint *then) {
+    const Vec2 over_a = vec2_sub(now->arm_a, then->arm_a), over_b = vec2_sub(now->arm_b, then->arm_b);
+    return sqrtf(vec2_dot(over_a, over_a)) + sqrtf(vec2_dot(over_b, over_b));
+}
+
+/* The two points that are nearest are the same; so are those beside them. Where corners meet corners, as between the
+   bricks of a wall, rounding decides in each step which edges make a point. */
+static void match_places(ContactSet *set, const Arbiter *arbiter, const ContactSet *last, const Arbiter *old) {
+    if (old->count == 0 ||
+        vec2_dot(set->contacts[arbiter->first].normal, last->contacts[old->first].normal) <= least_cosine)
+        return;
+    int now = 0, then = 0;
+    float least = INFINITY;
+    for (int k = 0; k < arbiter->count; k++)
+        for (int j = 0; j < old->count; j++) {
+            const float moved = moved_over_boxes(&set->contacts[arbiter->first + k], &last->contacts[old->first + j]);
+            if (moved < least) now = k, then = j, least = moved;
+        }
+    set->before[arbiter->first + now] = old->first + then;
+    if (arbiter->count == 2 && old->count == 2) set->before[arbiter->first + 1 - now] = old->first + 1 - then;
+}
+
+void contact_set_match(ContactSet *set, const ContactSet *last, ContactRules rules) {
     const Arbiter *old = last->arbiters, *end = old + last->arbiter_count;
+    for (int i = 0; i < set->contact_count; i++) set->before[i] = -1;
     for (int i = 0; i < set->arbiter_count; i++) {
         const Arbiter *arbiter = &set->arbiters[i];
         while (old < end && before(old->a, old->b, arbiter->a, arbiter->b)) old++;
         if (old == end) return;
-        if (before(arbiter->a, arbiter->b, old->a, old->b)) continue;
-        for (int k = arbiter->first; k < arbiter->first + arbiter->count; k++) {
-            for (int j = old->first; j < old->first + old->count; j++) {
-                if (last->contacts[j].feature != set->contacts[k].feature) continue;
-                set->contacts[k].warm_normal = last->impulses[j].normal;
-                set->contacts[k].warm_tangent = last->impulses[j].tangent;
-                break;
-            }
-        }
+        if (arbiter->count == 0 || before(arbiter->a, arbiter->b, old->a, old->b)) continue;
+        (rules.mend ? match_places : match_features)(set, arbiter, last, old);
+    }
+}
+
+void contact_set_warm_start(ContactSet *set, const ContactSet *last) {
+    for (int i = 0; i < set->contact_count; i++) {
+        if (set->before[i] < 0) continue;
+        set->contacts[i].warm_normal = last->impulses[set->before[i]].normal;
+        set->contacts[i].warm_tangent = last->impulses[set->before[i]].tangent;
     }
 }
 
@@ -305,6 +338,9 @@ static float correction(float separation, float rest, float inverse_dt) {
     return -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);
 }
 
+/* m, of the distance between two boxes there: two of the larger coordinate. */
+static float rounding(Vec2 position) { return 0x1p-22f * fmaxf(fabsf(position.x), fabsf(position.y)); }
+
 void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,
                          bool position_correction) {
     float inverse_dt = 1.0f / dt;
@@ -317,7 +353,7 @@ void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float
             Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
             contact->mass_tangent = effective_mass(a, b, contact->arm_a, contact->arm_b, tangent);
             contact->bias = position_correction ? correction(contact->separation, arbiter->rest, inverse_dt) : 0;
-            if (contact->separation > 0) contact->bias = -contact->separation * inverse_dt;
+            if (contact->separation > rounding(contact->position)) contact->bias = -contact->separation * inverse_dt;
             contact->friction = sqrtf(friction[contact->a] * friction[contact->b]);
         }
     }

@@ -28,8 +28,9 @@ typedef struct ContactSet {
     Arbiter *arbiters;
     ContactPoint *contacts;   /* [contact_count] */
     ContactImpulse *impulses; /* [contact_count] of the solution */
+    int *before;              /* [contact_count] index of the same point in the last step, or -1 */
     int *partners;            /* scratch: lists of the arbiters of each body */
-    size_t arbiter_capacity, contact_capacity, impulse_capacity, partner_capacity;
+    size_t arbiter_capacity, contact_capacity, impulse_capacity, before_capacity, partner_capacity;
 } ContactSet;
 
 /* Bounds of boxes that touch by these rules overlap. */
@@ -45,8 +46,12 @@ bool contact_set_copy(ContactSet *to, const ContactSet *from);
 bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last,
                          ContactRules rules);
 
-/* Sets warm-start impulses: those of the last step at the point with the same pair and feature id. */
-void contact_set_match(ContactSet *set, const ContactSet *last);
+/* Finds each point's `before`: in the same pair, the point with the same feature id, as Box2D-Lite does; of mended
+   contacts, the one at the same place. */
+void contact_set_match(ContactSet *set, const ContactSet *last, ContactRules rules);
+
+/* Sets warm-start impulses, after contact_set_match. */
+void contact_set_warm_start(ContactSet *set, const ContactSet *last);
 
 /* Forgets the arbiters of a body. Contacts and impulses stay in memory, for readers of the last step. */
 void contact_set_forget(ContactSet *set, int body);

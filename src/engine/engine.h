@@ -70,7 +70,7 @@ typedef struct ContactPoint {
     float mass_normal, mass_tangent; /* kg, effective masses along normal and tangent */
     float friction;                  /* coefficient of the pair */
     float bias;                      /* m/s, target normal velocity of position correction; 0 without it */
-    uint32_t feature;                /* feature id: the edges that make the point; identifies it in the next step */
+    uint32_t feature;                /* feature id: the edges that make the point */
     float warm_normal, warm_tangent; /* N s, impulses of the step before; 0 without warm starting or when new */
 } ContactPoint;
 
@@ -187,6 +187,10 @@ bool world_copy(World *to, const World *from, Error *error);
    arrays and the solution, which the caller fills; they are valid until the next step. False with error set when memory
    is short, or for more than BROAD_PHASE_MAX_PAIRS. */
 bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error);
+
+/* After a step has begun, and until it ends: [contact_count] for each contact the index of the same point in the step
+   before, or -1: one with the same feature id, or at the same place (ContactRules.mend). */
+const int *world_contacts_before(const World *world);
 
 /* Ends the step: moves the bodies by the velocities of the solution. On failure the world is unchanged and error names
    the first body whose state is NaN or infinite. */

@@ -133,6 +133,7 @@ int world_body_count(const World *world) { return world->body_count; }
 const Body *world_bodies(const World *world) { return world->bodies; }
 const ContactProblem *world_problem(const World *world) { return &world->problem; }
 const ContactSolution *world_solution(const World *world) { return &world->solution; }
+const int *world_contacts_before(const World *world) { return world->next.before; }
 
 static bool collide(World *world) {
     for (int i = 0; i < world->body_count; i++) {
@@ -154,7 +155,8 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
                    ? error_input(error, "world", "more than %d pairs of boxes overlap; move the boxes apart",
                                  BROAD_PHASE_MAX_PAIRS)
                    : error_memory(error, "world");
-    if (world->def.warm_starting) contact_set_match(&world->next, &world->last);
+    contact_set_match(&world->next, &world->last, world->rules);
+    if (world->def.warm_starting) contact_set_warm_start(&world->next, &world->last);
     for (int i = 0; i < world->body_count; i++) { /* with gravity */
         const Body *body = &world->bodies[i];
         ProblemBody *out = &world->problem_bodies[i];

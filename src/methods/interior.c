@@ -79,6 +79,7 @@ typedef struct Look {
     float unlike; /* the largest multiple of the other's mass, of two bodies that touch */
     bool slender; /* towers: few loops */
     float near;   /* m/s, the largest residual of a solution */
+    float enough; /* m/s, of an answer of the reference that could not get there */
     float left;   /* (m/s)^2, residual after sweeps: sum over its contacts */
 } Look;
 
@@ -87,7 +88,7 @@ typedef struct Look {
    in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
    calm islands is at most `calm_near`; `many_near` among many bodies, where a wall takes half the time; and `fine_near`
    where nothing holds what an error moves, without friction, and in towers, where errors below are larger above. */
-static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-6f;
+static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-5f;
 /* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). */
 static const float most_added = 0.5f;
 /* The tolerance of a calm island is divided by the largest multiple over this of the other's mass, of two bodies that
@@ -149,10 +150,11 @@ static void look_at_islands(State *solver, const ContactProblem *problem) {
         Look *look = &solver->looks[k];
         const float limit = look->fall + look->pace;
         look->calm = look->fastest < limit * limit;
-        const float share = look->slippery || look->slender  ? fine_near
+        const float share = look->slippery || look->slender  ? fine_near / (float)look->bodies
                             : look->many && !is_uneven(look) ? many_near
                                                              : calm_near;
         if (look->calm) look->near = smaller(look->near, share * look->pace / larger(look->unlike / uneven_from, 1));
+        look->enough = look->calm ? smaller(solver->near, calm_near * look->pace) : look->near;
     }
 }
 
@@ -356,7 +358,7 @@ static bool ask_reference(State *solver, const ContactProblem *problem, const Lo
         impulse->tangent = contact_clamp(impulse->tangent, -limit, limit);
         finite &= isfinite(limit) && isfinite(impulse->tangent);
     }
-    solver->best = finite && reference->residual <= (double)step->near ? reference->residual : INFINITY;
+    solver->best = finite && reference->residual <= (double)step->enough ? reference->residual : INFINITY;
     return true;
 }
 

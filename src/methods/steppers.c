@@ -26,7 +26,7 @@ bool stepping_step(const SteppingKind *kind, void *state, World *world, const St
 
 void step_memory_free(StepMemory *memory) {
     free(memory->bodies);
-    free(memory->contacts);
+    free(memory->pairs);
     free(memory->known);
     free(memory->before);
     *memory = (StepMemory){0};
@@ -39,26 +39,19 @@ bool step_memory_match(StepMemory *memory, const World *world, const Step *step)
     if (step->frame == 1) memory->body_count = memory->contact_count = 0;
     if (!step->scene->warm_starting) memory->contact_count = 0;
     if (!array_reserve((void **)&memory->bodies, &memory->body_capacity, bodies, sizeof *memory->bodies) ||
-        !array_reserve((void **)&memory->contacts, &memory->contact_capacity, contacts, sizeof *memory->contacts) ||
+        !array_reserve((void **)&memory->pairs, &memory->pair_capacity, contacts, sizeof *memory->pairs) ||
         !array_reserve((void **)&memory->known, &memory->known_capacity, bodies, sizeof *memory->known) ||
         !array_reserve((void **)&memory->before, &memory->before_capacity, contacts, sizeof *memory->before))
         return false;
     for (int i = 0; i < problem->body_count; i++) /* a body has no padding: eleven floats */
         memory->known[i] = i < memory->body_count && memcmp(&body[i], &memory->bodies[i], sizeof *body) == 0;
-    /* Both lists of contacts rise by (a, b). */
-    for (int i = 0, first = 0; i < problem->contact_count; i++) {
+    for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
-        memory->before[i] = -1;
-        if (!memory->known[contact->a] || !memory->known[contact->b]) continue;
-        for (; first < memory->contact_count; first++) {
-            const KeptContact *kept = &memory->contacts[first];
-            if (kept->a > contact->a || (kept->a == contact->a && kept->b >= contact->b)) break;
-        }
-        for (int j = first; j < memory->contact_count; j++) {
-            const KeptContact *kept = &memory->contacts[j];
-            if (kept->a != contact->a || kept->b != contact->b) break;
-            if (kept->feature == contact->feature) memory->before[i] = j;
-        }
+        const int before = world_contacts_before(world)[i];
+        const bool known = memory->known[contact->a] && memory->known[contact->b] && before >= 0 &&
+                           before < memory->contact_count && memory->pairs[before].a == contact->a &&
+                           memory->pairs[before].b == contact->b;
+        memory->before[i] = known ? before : -1;
     }
     return true;
 }
@@ -69,10 +62,8 @@ void step_memory_keep(StepMemory *memory, const World *world) {
     memory->contact_count = problem->contact_count;
     if (problem->body_count > 0)
         memcpy(memory->bodies, world_bodies(world), (size_t)problem->body_count * sizeof *memory->bodies);
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        memory->contacts[i] = (KeptContact){contact->a, contact->b, contact->feature};
-    }
+    for (int i = 0; i < problem->contact_count; i++)
+        memory->pairs[i] = (TouchingPair){problem->contacts[i].a, problem->contacts[i].b};
 }
 
 float free_flight_momentum(const ContactProblem *problem, const ContactSolution *solution, bool *touched) {

@@ -6,7 +6,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 /* The momentum_error of methods without impulses: where no contact is, only gravity may change a momentum. */
 
@@ -18,19 +17,18 @@ float free_flight_momentum(const ContactProblem *problem, const ContactSolution 
    step than the impulses that the world keeps. A body is known only if its state is, bit for bit, the one that the last
    step ended with: in another world, a copy of an earlier state or a new launch it is not. */
 
-typedef struct KeptContact {
+typedef struct TouchingPair {
     int a, b;
-    uint32_t feature;
-} KeptContact;
+} TouchingPair;
 
 /* Zero-initialise; free with step_memory_free. */
 typedef struct StepMemory {
     int body_count, contact_count; /* of the last step */
     Body *bodies;                  /* [body_count] after it */
-    KeptContact *contacts;         /* [contact_count] */
+    TouchingPair *pairs;           /* [contact_count] */
     bool *known;                   /* [bodies of this step] */
     int *before;                   /* [contacts of this step] index of the same point in the last step, or -1 */
-    size_t body_capacity, contact_capacity, known_capacity, before_capacity;
+    size_t body_capacity, pair_capacity, known_capacity, before_capacity;
 } StepMemory;
 
 void step_memory_free(StepMemory *memory);

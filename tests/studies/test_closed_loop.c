@@ -130,7 +130,7 @@ TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
 TEST(a_method_that_converges_follows_the_run_with_its_contacts) {
     static const struct {
         const char *few, *many;
-    } sweeps[] = {{"engine:k=10", "engine:k=3000"}, {"momentum:k=10", "momentum:k=1000"}};
+    } sweeps[] = {{"engine:k=10", "engine:k=3000"}, {"momentum:k=10", "momentum:k=4000"}};
     OWN(Scene) *scene = scene_named("stack");
     OWN(ConvergedLogs) own = {0};
     assert_ok(closed_loop_log_converged(&own, scene, &error), error);
