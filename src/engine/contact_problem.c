@@ -353,7 +353,8 @@ void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float
             Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
             contact->mass_tangent = effective_mass(a, b, contact->arm_a, contact->arm_b, tangent);
             contact->bias = position_correction ? correction(contact->separation, arbiter->rest, inverse_dt) : 0;
-            if (contact->separation > rounding(contact->position)) contact->bias = -contact->separation * inverse_dt;
+            if (contact->separation > 0 && contact->separation > rounding(contact->position))
+                contact->bias = -contact->separation * inverse_dt;
             contact->friction = sqrtf(friction[contact->a] * friction[contact->b]);
         }
     }

@@ -79,15 +79,16 @@ typedef struct Look {
     float unlike; /* the largest multiple of the other's mass, of two bodies that touch */
     bool slender; /* towers: few loops */
     float near;   /* m/s, the largest residual of a solution */
-    float enough; /* m/s, of an answer of the reference that could not get there */
+    float enough; /* m/s, of an answer of the reference, where its iterations end above that: no jam */
     float left;   /* (m/s)^2, residual after sweeps: sum over its contacts */
 } Look;
 
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
    An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds
    in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
-   calm islands is at most `calm_near`; `many_near` among many bodies, where a wall takes half the time; and `fine_near`
-   where nothing holds what an error moves, without friction, and in towers, where errors below are larger above. */
+   calm islands is at most `calm_near`, or `many_near` among many bodies, where a wall takes half the time. Where nothing
+   holds what an error moves, without friction, and in towers, where the top moves by the errors of all boxes below, it
+   is `fine_near` for all bodies together. */
 static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-5f;
 /* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). */
 static const float most_added = 0.5f;
@@ -339,8 +340,9 @@ static ReferenceAim aim_at(const Look *step, double share, int most) {
         .tolerance = share * (double)step->near, .most = most, .push_out = true, .by_heaviest = step->calm};
 }
 
-/* Sets `best`: INFINITY if the answer is not taken. work: of a factorization. Rounded impulses are put back into their
-   cones. False when memory is short. */
+/* Sets `best`: INFINITY if the answer is not taken. A tolerance for unlike masses may be below what rounding lets the
+   reference reach; a jam has no answer within that for equal ones. work: of a factorization. Rounded impulses are put
+   back into their cones. False when memory is short. */
 static bool ask_reference(State *solver, const ContactProblem *problem, const Look *step, const ReferenceAim *aim,
                           double work, ContactSolution *solution, Error *error) {
     Reference *reference = &solver->reference;

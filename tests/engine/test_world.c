@@ -170,6 +170,54 @@ static void expect_warm(const World *world, int contact, float warm) {
     assert_near(world_problem(world)->contacts[contact].warm_normal, warm, 0);
 }
 
+/* A box that passes over the edges of the one below has its points made by other edges, at the same places. */
+TEST(mended_contacts_keep_their_impulses_where_other_edges_make_the_points) {
+    OWN(World) *world = two_boxes_on_ground(vec2(1, 1));
+    world_set_contacts(world, (ContactRules){.mend = true});
+    uint32_t features[2] = {0};
+    for (int k = 0; k < 2; k++) {
+        ContactProblem problem;
+        ContactSolution *solution;
+        assert_ok(world_begin_step(world, dt, &problem, &solution, &error), error);
+        assert_int_equal(problem.contact_count, 4);
+        contact_solution_begin(&problem, solution);
+        for (int i = 2; i < 4; i++) {
+            const ContactPoint *contact = &problem.contacts[i];
+            const bool left = contact->arm_b.x < 0;
+            if (k == 0) {
+                assert_int_equal(world_contacts_before(world)[i], -1);
+                solution->impulses[i] = (ContactImpulse){left ? 5 : 7, left ? 1 : -1};
+                features[left] = contact->feature;
+            } else {
+                assert_int_not_equal(contact->feature, features[left]);
+                assert_near(contact->warm_normal, left ? 5 : 7, 0);
+                assert_near(contact->warm_tangent, left ? 1 : -1, 0);
+            }
+        }
+        const BodyPose poses[] = {{{0, -10}, 0}, {{0, 0.495f}, 0}, {{k == 0 ? -1e-4f : 1e-4f, 1.485f}, 0}};
+        if (k == 0) assert_ok(world_end_step_at(world, poses, &error), error);
+    }
+}
+
+/* At 1000 m a coordinate rounds to 61 micrometres: a gap of one rounding must not let a box fall, one of 5 mm must. */
+TEST(a_gap_below_rounding_is_none) {
+    for (int k = 0; k < 2; k++) {
+        OWN(World) *world = world_create(&(WorldDef){{0, -10}, true, true}, &error);
+        world_set_contacts(world, (ContactRules){.mend = true});
+        const float gap = k == 0 ? 0x1p-14f : 0x1.4p-8f;
+        assert_ok(world_add_body(world, &(BodyDef){.size = {9, 9}, .fixed = true, .position = {0, 1000}}, &error),
+                  error);
+        const BodyDef box = {.size = {1, 1}, .mass = 1, .position = {0, 1005 + gap}};
+        assert_ok(world_add_body(world, &box, &error), error);
+        FakeSolver fake = {0};
+        step(world, &fake);
+        const ContactProblem *problem = world_problem(world);
+        assert_int_equal(problem->contact_count, 2);
+        assert_near(problem->contacts[0].separation, gap, 1e-9);
+        assert_near(problem->contacts[0].bias, k == 0 ? 0 : -gap / dt, 1e-6);
+    }
+}
+
 /* What the step did can be read until the next, which has the others' contacts and their impulses. */
 TEST(a_body_taken_out_takes_its_contacts_with_it) {
     OWN(World) *world = two_boxes_on_ground(vec2(1, 1));
