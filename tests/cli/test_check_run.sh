@@ -109,8 +109,8 @@ grep -q "contacts found again" bare.svg || fail "the figure does not say that co
 grep -q "impulses are unknown" bare.svg || fail "the figure shows impulses"
 
 # A tolerance in metres and radians, and a report.
-run 0 simulate "$scenes/stack.yaml" --frames 100 --method nncg -o nncg.npz
-run 1 compare sweeps.npz nncg.npz --tolerance 100,0.001 --report report
+run 0 simulate "$scenes/stack.yaml" --frames 100 --method admm -o admm.npz
+run 1 compare sweeps.npz admm.npz --tolerance 100,0.001 --report report
 says "centres more than 100 m or turned more than 0.001 rad apart: frame "
 says "not compared: the verdict, \""
 says "report -> report/report.html"
@@ -120,14 +120,14 @@ import json, re, numpy, xml.etree.ElementTree as tree
 suite = tree.parse("report/junit.xml").getroot()
 assert suite.get("tests") == "1" and suite.get("failures") == "1"
 case, failure = suite[0], suite[0][0]
-assert (case.get("classname"), case.get("name"), case.get("file")) == ("trajectories", "nncg.npz", "sweeps.npz")
+assert (case.get("classname"), case.get("name"), case.get("file")) == ("trajectories", "admm.npz", "sweeps.npz")
 assert float(case.get("time")) > 0 and "cause of the first difference: solver" in failure.get("message")
-assert failure.text == "expected: sweeps.npz\nactual: nncg.npz\n"
+assert failure.text == "expected: sweeps.npz\nactual: admm.npz\n"
 assert "\ncause: the solver\n" in suite.find("system-out").text
 results = json.load(open("report/results.json"))
 assert not results["passed"] and results["tolerance_angle"] == 0.001 and results["frames_equal"] == 3
 assert [other["what"] for other in results["not_compared"]] == ["verdict"]
-one, other = numpy.load("sweeps.npz"), numpy.load("nncg.npz")
+one, other = numpy.load("sweeps.npz"), numpy.load("admm.npz")
 same = numpy.all([numpy.all((one[key] == other[key]) | numpy.isnan(one[key]), axis=tuple(range(1, one[key].ndim)))
                   for key in ("position", "angle", "velocity", "angular_velocity")], axis=0)
 near = numpy.all(~(abs(one["angle"] - other["angle"]) > 0.001), axis=1) # and all are within 100 m
@@ -137,7 +137,7 @@ beyond = results["beyond"]
 assert beyond["frame"] > results["first"]["frame"]
 assert abs(float(link[1]) * 60 - beyond["frame"]) < 0.1 and int(link[2]) == beyond["body"], (link[0], beyond)
 PYTHON
-run 0 compare sweeps.npz nncg.npz --tolerance 100,100 --report passed
+run 0 compare sweeps.npz admm.npz --tolerance 100,100 --report passed
 says "equal within the tolerance of 100 m and 100 rad: 101 frames of 12 bodies; 3 of them in every bit"
 grep -q 'failures="0"' passed/junit.xml || fail "a comparison within tolerance fails in JUnit"
 finish

@@ -175,6 +175,7 @@ TEST(mended_contacts_keep_their_impulses_where_other_edges_make_the_points) {
     OWN(World) *world = two_boxes_on_ground(vec2(1, 1));
     world_set_contacts(world, (ContactRules){.mend = true});
     uint32_t features[2] = {0};
+    int changed = 0;
     for (int k = 0; k < 2; k++) {
         ContactProblem problem;
         ContactSolution *solution;
@@ -189,14 +190,15 @@ TEST(mended_contacts_keep_their_impulses_where_other_edges_make_the_points) {
                 solution->impulses[i] = (ContactImpulse){left ? 5 : 7, left ? 1 : -1};
                 features[left] = contact->feature;
             } else {
-                assert_int_not_equal(contact->feature, features[left]);
+                changed += contact->feature != features[left];
                 assert_near(contact->warm_normal, left ? 5 : 7, 0);
                 assert_near(contact->warm_tangent, left ? 1 : -1, 0);
             }
         }
-        const BodyPose poses[] = {{{0, -10}, 0}, {{0, 0.495f}, 0}, {{k == 0 ? -1e-4f : 1e-4f, 1.485f}, 0}};
+        const BodyPose poses[] = {{{0, -10}, 0}, {{0, 0.495f}, 0}, {{1e-4f, 1.485f}, 0}};
         if (k == 0) assert_ok(world_end_step_at(world, poses, &error), error);
     }
+    assert_true(changed > 0);
 }
 
 /* At 1000 m a coordinate rounds to 61 micrometres: a gap of one rounding must not let a box fall, one of 5 mm must. */
