@@ -296,7 +296,7 @@ static void match_places(ContactSet *set, const Arbiter *arbiter, const ContactS
     if (arbiter->count == 2 && old->count == 2) set->before[arbiter->first + 1 - now] = old->first + 1 - then;
 }
 
-void contact_set_match(ContactSet *set, const ContactSet *last, ContactRules rules) {
+void contact_set_match(ContactSet *set, const ContactSet *last, ContactRules rules, bool warm_starting) {
     const Arbiter *old = last->arbiters, *end = old + last->arbiter_count;
     for (int i = 0; i < set->contact_count; i++) set->before[i] = -1;
     for (int i = 0; i < set->arbiter_count; i++) {
@@ -305,14 +305,11 @@ void contact_set_match(ContactSet *set, const ContactSet *last, ContactRules rul
         if (old == end) return;
         if (arbiter->count == 0 || before(arbiter->a, arbiter->b, old->a, old->b)) continue;
         (rules.mend ? match_places : match_features)(set, arbiter, last, old);
-    }
-}
-
-void contact_set_warm_start(ContactSet *set, const ContactSet *last) {
-    for (int i = 0; i < set->contact_count; i++) {
-        if (set->before[i] < 0) continue;
-        set->contacts[i].warm_normal = last->impulses[set->before[i]].normal;
-        set->contacts[i].warm_tangent = last->impulses[set->before[i]].tangent;
+        for (int k = arbiter->first; warm_starting && k < arbiter->first + arbiter->count; k++) {
+            if (set->before[k] < 0) continue;
+            set->contacts[k].warm_normal = last->impulses[set->before[k]].normal;
+            set->contacts[k].warm_tangent = last->impulses[set->before[k]].tangent;
+        }
     }
 }
 

@@ -46,12 +46,9 @@ bool contact_set_copy(ContactSet *to, const ContactSet *from);
 bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last,
                          ContactRules rules);
 
-/* Finds each point's `before`: in the same pair, the point with the same feature id, as Box2D-Lite does; of mended
-   contacts, the one at the same place. */
-void contact_set_match(ContactSet *set, const ContactSet *last, ContactRules rules);
-
-/* Sets warm-start impulses, after contact_set_match. */
-void contact_set_warm_start(ContactSet *set, const ContactSet *last);
+/* Finds each point's `before`, and with warm starting takes its impulses: in the same pair, the point with the same
+   feature id, as Box2D-Lite does; of mended contacts, the one at the same place. */
+void contact_set_match(ContactSet *set, const ContactSet *last, ContactRules rules, bool warm_starting);
 
 /* Forgets the arbiters of a body. Contacts and impulses stay in memory, for readers of the last step. */
 void contact_set_forget(ContactSet *set, int body);

@@ -155,8 +155,7 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
                    ? error_input(error, "world", "more than %d pairs of boxes overlap; move the boxes apart",
                                  BROAD_PHASE_MAX_PAIRS)
                    : error_memory(error, "world");
-    contact_set_match(&world->next, &world->last, world->rules);
-    if (world->def.warm_starting) contact_set_warm_start(&world->next, &world->last);
+    contact_set_match(&world->next, &world->last, world->rules, world->def.warm_starting);
     for (int i = 0; i < world->body_count; i++) { /* with gravity */
         const Body *body = &world->bodies[i];
         ProblemBody *out = &world->problem_bodies[i];

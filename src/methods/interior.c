@@ -86,8 +86,8 @@ typedef struct Look {
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
    An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds
    in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
-   calm islands is at most `calm_near`, or `many_near` among many bodies, where a wall takes half the time. Where nothing
-   holds what an error moves, without friction, and in towers, where the top moves by the errors of all boxes below, it
+   calm islands is at most `calm_near`, or `many_near` among many bodies, where a wall takes half the time. Where
+   nothing holds what an error moves, without friction, and in towers, where the top moves by all errors below, it
    is `fine_near` for all bodies together. */
 static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-5f;
 /* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). */
