@@ -138,10 +138,10 @@ typedef bool ContactSolve(void *state, const ContactProblem *problem, ContactSol
    still let boxes sink. Source: Catto, Box2D's contact recycling (2026), whose tolerance is a length.
 
    mend: boxes touch from a gap of 1% of the smaller side on, which a step may close and no more, and keep the sides
-   with which they touch, and the overlap with which they met; and there are no ghosts at seams (contact_problem.c). As
-   Box2D-Lite finds contacts, boxes that rounding or the end of sweeps sets apart fall until they overlap, each layer of
-   a stack a step after the one below; and thin ones are pressed past one another, and then pushed out on the wrong
-   side. Box2D v3, too, has contacts before boxes overlap: from four slops on. */
+   with which they touch, the overlap with which they met, and impulses by place; there are no ghosts at seams
+   (contact_problem.c). As Box2D-Lite finds contacts, boxes that rounding or the end of sweeps sets apart fall until
+   they overlap, each layer of a stack a step after the one below; thin ones are pressed past one another, and then
+   pushed out on the wrong side. Box2D v3, too, has contacts before boxes overlap: from four slops on. */
 typedef struct ContactRules {
     float keep;
     bool mend;
