@@ -279,8 +279,9 @@ static float moved_over_boxes(const ContactPoint *now, const ContactPoint *then)
     return sqrtf(vec2_dot(over_a, over_a)) + sqrtf(vec2_dot(over_b, over_b));
 }
 
-/* The two points that are nearest are the same; so are those beside them. Where corners meet corners, as between the
-   bricks of a wall, rounding decides in each step which edges make a point. */
+/* Of the points now and then, the two that are nearest are the same point; so are the other two. Feature ids cannot
+   tell: where corners meet corners, as between the bricks of a wall, rounding decides in each step which edges make a
+   point. */
 static void match_places(ContactSet *set, const Arbiter *arbiter, const ContactSet *last, const Arbiter *old) {
     if (old->count == 0 ||
         vec2_dot(set->contacts[arbiter->first].normal, last->contacts[old->first].normal) <= least_cosine)
@@ -335,7 +336,8 @@ static float correction(float separation, float rest, float inverse_dt) {
     return -bias_factor * inverse_dt * (depth < 0.0f ? depth : 0.0f);
 }
 
-/* m, of the distance between two boxes there: two of the larger coordinate. */
+/* m, what rounding may do to the distance between two boxes there: two units in the last place of the larger
+   coordinate. Most contacts overlap, and need not be compared with it. */
 static float rounding(Vec2 position) { return 0x1p-22f * fmaxf(fabsf(position.x), fabsf(position.y)); }
 
 void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,

@@ -79,7 +79,7 @@ typedef struct Look {
     float unlike; /* the largest multiple of the other's mass, of two bodies that touch */
     bool slender; /* towers: few loops */
     float near;   /* m/s, the largest residual of a solution */
-    float enough; /* m/s, of an answer of the reference, where its iterations end above that: no jam */
+    float enough; /* m/s, the largest residual at which an answer of the reference is taken; above it, a jam */
     float left;   /* (m/s)^2, residual after sweeps: sum over its contacts */
 } Look;
 
@@ -88,7 +88,7 @@ typedef struct Look {
    in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
    calm islands is at most `calm_near`, or `many_near` among many bodies, where a wall takes half the time. Where
    nothing holds what an error moves, without friction, and in towers, where the top moves by all errors below, it
-   is `fine_near` for all bodies together. */
+   is `fine_near` over the number of bodies. */
 static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-5f;
 /* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). */
 static const float most_added = 0.5f;

@@ -22,8 +22,8 @@ static double moved(World *world, const ContactSolver *solver, int steps) {
     return most;
 }
 
-/* Errors do not add up from step to step: the top of a stack moves by less than the tolerance times 10 s (fine_near of
-   the speed after a fall through five slops). The tolerance of pyramids would let a stack of 60 sway by 4 cm. */
+/* Errors do not add up from step to step: in 10 s the top of a stack moves by less than the tolerances of its boxes
+   together (fine_near of the speed after a fall through five slops) times that time. */
 TEST(stacks_at_rest_stay_in_place) {
     static const int heights[] = {1, 9, 20, 34, 60};
     for (int k = 0; k < 5; k++) {
