@@ -12,8 +12,8 @@
 
    The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. The analysis of the
    matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to
-   1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is left to sweeps. The difficulty,
-   for all methods, is to find which contacts open, stick and slide. */
+   1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, an impact is left to sweeps. The
+   difficulty, for all methods, is to find which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior_point_internal.h"
@@ -32,22 +32,15 @@
 
 enum {
     FIRST_SWEEPS = 2,
-    START_SWEEPS = 6,     /* with momentum */
-    LEAST_ITERATIONS = 11 /* fewer are rarely as good as sweeps; with 12 a pyramid of 20 rows creeps */
+    START_SWEEPS = 6,      /* with momentum */
+    LEAST_ITERATIONS = 11, /* for an impact. With 9 a pyramid of 2,850 boxes stops a bomb half as well as sweeps do */
+    MOST_ITERATIONS = 40   /* what does not converge in so many rarely does */
 };
 
 /* Work is counted, not timed, in coloured sweeps over the island's contacts. Its bound is 300 of the engine's own
    sweeps: each takes as long as 2.6 of these over 9 bodies, and as 4.9 to 6.8 over more (INTERIOR_MOST_WORK). */
 static const double few_most_work = 780;
 static const double begin_work = 3, load_work = 5.5;
-/* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and
-   walls, 1.4 in piles. */
-static const double usual_products = 2;
-
-/* Iterations from the start of the sweeps. At rest one from near the bounds is mostly enough; what does not converge at
-   once from there rarely does. From further inside the residual may rise by any multiple before it falls. */
-static const InteriorAttempt near_bounds = {.least_scale = 1e-7, .lost = 10, .iterations = 10},
-                             further_inside = {.least_scale = 0.01, .lost = INFINITY, .iterations = 40};
 
 /* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
    that it has to reach.
@@ -61,13 +54,13 @@ static const InteriorAttempt near_bounds = {.least_scale = 1e-7, .lost = 10, .it
    by gravity and the engine's slop. */
 
 /* More: an iteration takes as long as 10 sweeps or more. Few: the reference's own solver, with so many factorizations
-   at most, and so many more in a jam. */
-enum { FEW_BODIES = 33, FEW_ITERATIONS = 60, JAM_ITERATIONS = 35, MANY_BODIES = 128 };
+   at most. */
+enum { FEW_BODIES = 33, FEW_FACTORIZATIONS = 60, MANY_BODIES = 128 };
 /* Of the tolerance, which is a mean over contacts and the reference's the largest. */
 static const double few_share = 0.25;
 /* In sweeps, of a factorization of the reference with all that goes with it: for few bodies; for others, as a multiple
-   of an iteration's. Kept for an answer without position correction. */
-static const double few_work = 7.5, path_work = 1.7, jam_work = 10 + JAM_ITERATIONS * 7.5;
+   of an iteration's. */
+static const double few_work = 7.5, path_work = 1.7;
 
 typedef struct Look {
     int bodies, loops; /* bodies: that move */
@@ -79,24 +72,21 @@ typedef struct Look {
     float unlike; /* the largest multiple of the other's mass, of two bodies that touch */
     bool slender; /* towers: few loops */
     float near;   /* m/s, the largest residual of a solution */
-    float enough; /* m/s, the largest residual at which an answer of the reference is taken; above it, a jam */
+    float enough; /* m/s, the same for equal masses: an answer of the reference up to it is taken; above it, a jam */
     float left;   /* (m/s)^2, residual after sweeps: sum over its contacts */
 } Look;
 
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
    An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds
    in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
-   calm islands is at most `calm_near`, or `many_near` among many bodies, where a wall takes half the time. Where
-   nothing holds what an error moves, without friction, and in towers, where the top moves by all errors below, it
-   is `fine_near` over the number of bodies. */
-static const float calm_near = 1e-4f, many_near = 4e-4f, fine_near = 1e-5f;
+   calm islands is at most `calm_near`. Where nothing holds what an error moves, without friction, and in towers, where
+   the top moves by all errors below, it is `fine_near` over the number of bodies. */
+static const float calm_near = 1e-4f, fine_near = 3e-6f;
 /* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). */
 static const float most_added = 0.5f;
 /* The tolerance of a calm island is divided by the largest multiple over this of the other's mass, of two bodies that
-   touch: what is a rounding error to the heavy one throws the light one. Beyond it sweeps carry little between them. */
+   touch: what is a rounding error to the heavy one throws the light one. */
 static const float uneven_from = 10;
-/* Of the pace. */
-static const float calm_speed = 10;
 
 typedef struct State {
     float near; /* m/s */
@@ -120,8 +110,6 @@ static float smaller(float x, float y) { return x < y ? x : y; }
 
 static float larger(float x, float y) { return x > y ? x : y; }
 
-static bool is_uneven(const Look *look) { return look->unlike > uneven_from; }
-
 /* Before the step. */
 static void look_at_islands(State *solver, const ContactProblem *problem) {
     const Islands *islands = &solver->islands;
@@ -132,6 +120,7 @@ static void look_at_islands(State *solver, const ContactProblem *problem) {
                                   .fall = problem->fall,
                                   .pace = pace,
                                   .near = solver->near,
+                                  .enough = solver->near,
                                   .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
                                   .many = islands->islands[k].bodies > MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++) {
@@ -151,11 +140,11 @@ static void look_at_islands(State *solver, const ContactProblem *problem) {
         Look *look = &solver->looks[k];
         const float limit = look->fall + look->pace;
         look->calm = look->fastest < limit * limit;
-        const float share = look->slippery || look->slender  ? fine_near / (float)look->bodies
-                            : look->many && !is_uneven(look) ? many_near
-                                                             : calm_near;
-        if (look->calm) look->near = smaller(look->near, share * look->pace / larger(look->unlike / uneven_from, 1));
-        look->enough = look->calm ? smaller(solver->near, calm_near * look->pace) : look->near;
+        if (!look->calm) continue;
+        const bool fine = look->slippery || look->slender;
+        const float most = (fine ? fine_near : calm_near) * look->pace, shares = fine ? (float)look->bodies : 1;
+        look->near = smaller(solver->near, most / (shares * larger(look->unlike / uneven_from, 1)));
+        look->enough = larger(look->near, smaller(solver->near, most));
     }
 }
 
@@ -217,14 +206,14 @@ static bool start(State *solver, const ContactProblem *problem, bool calm) {
 
 /* Sweeps with momentum after the first ones, for islands of many bodies: many impacts are over with them, in a fraction
    of an iteration's time. In calm islands of many bodies some nearly always slide for long after an impact: there
-   iterations towards the small tolerance cycle, and sweeps reach it. Sweeps carry little where light bodies hold heavy
-   ones, or where there is no friction. What these sweeps do not solve is hard: iterations then converge sooner from the
-   plain start. Sets *done if the sweeps are enough: the solution is stored. False when memory is short. */
+   iterations towards the small tolerance cycle, and sweeps reach it. Without friction sweeps carry little. What these
+   sweeps do not solve is hard: iterations then converge sooner from the plain start. Sets *done if the sweeps are
+   enough: the solution is stored. False when memory is short. */
 static bool try_sweeps(State *solver, const ContactProblem *problem, Look *step, ContactSolution *solution,
                        bool *done) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     *done = false;
-    if (!step->many || step->slippery || is_uneven(step)) return true;
+    if (!step->many || step->slippery) return true;
     solver->left -= START_SWEEPS;
     if (!sweeps_run_momentum(sweeps, solver->start_factors, START_SWEEPS)) return false;
     step->left = 0;
@@ -233,12 +222,10 @@ static bool try_sweeps(State *solver, const ContactProblem *problem, Look *step,
     return *done || start(solver, problem, step->calm);
 }
 
-/* Of the matrix of an island. */
-static double analysis_work(const Look *step) { return fmin(2 + step->bodies / 16.0, 14); }
-
 /* False when memory is short. */
-static bool load_interior(State *solver, const ContactProblem *problem) {
-    solver->left -= load_work;
+static bool load_interior(State *solver, const ContactProblem *problem, const Look *step) {
+    const double analysis = fmin(2 + step->bodies / 16.0, 14); /* of the matrix */
+    solver->left -= analysis + load_work;
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
@@ -249,37 +236,15 @@ static int affordable(const State *solver, double before, double iteration_work)
     return (int)fmax((solver->left - before - behind) / iteration_work, 0);
 }
 
-/* Whether there is room for enough iterations by what the island's loops tell, so that its matrix is not analysed in
-   vain. */
-static bool seems_cheap(const State *solver, const Look *step) {
-    const double usual =
-        interior_work(usual_products * step->loops * sqrt(step->loops), solver->momentum.sweeps.pair_count);
-    return affordable(solver, load_work + analysis_work(step), usual) >= (step->many ? LEAST_ITERATIONS : 0);
-}
-
 /* Until the residual is at most `near`, or the work is done. */
-static void attempt(State *solver, const ContactProblem *problem, const Look *step, const InteriorAttempt *from,
-                    ContactSolution *solution) {
+static void iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
     Interior *interior = &solver->interior;
-    const int most = affordable(solver, 0, interior->iteration_work);
-    const double speed = step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
-    interior_iterate(interior, interior_best(), from, speed, (double)step->near, most);
+    const int room = affordable(solver, 0, interior->iteration_work),
+              most = room < MOST_ITERATIONS ? room : MOST_ITERATIONS;
+    const double speed = fmax(sqrt((double)step->fastest), (double)step->pace);
+    interior_iterate(interior, interior_best(), speed, (double)step->near, most);
     solver->left -= interior->iterations * interior->iteration_work;
-    if (interior->residual < solver->best && interior_end(interior, &solver->momentum.sweeps, problem, solution))
-        solver->best = interior->residual;
-}
-
-/* Iterations that break down at rest begin again further inside, from the start of the sweeps, which is better than
-   where they are. False when memory is short. */
-static bool iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
-    const double again = begin_work + FIRST_SWEEPS + load_work;
-    attempt(solver, problem, step, step->calm ? &near_bounds : &further_inside, solution);
-    if (!step->calm || step->many || solver->best <= (double)step->near ||
-        affordable(solver, again, solver->interior.iteration_work) == 0)
-        return true;
-    if (!start(solver, problem, true) || !load_interior(solver, problem)) return false;
-    attempt(solver, problem, step, &further_inside, solution);
-    return true;
+    if (interior_end(interior, &solver->momentum.sweeps, problem, solution)) solver->best = interior->residual;
 }
 
 /* After start(): as momentum:k=1,near=NEAR (residual: methods/residual.h), until the work is done.
@@ -290,14 +255,6 @@ static bool sweep(State *solver, const ContactProblem *problem, float near) {
     solver->left -= 1 + more;
     return momentum_begin(&solver->momentum, problem) && momentum_run(&solver->momentum, solver->fallback_factors, 1) &&
            momentum_run_more(&solver->momentum, &rule, solver->fallback_factors);
-}
-
-/* After start(): all by sweeps with momentum. */
-static bool solve_by_sweeps(State *solver, const ContactProblem *problem, float near, ContactSolution *solution,
-                            Error *error) {
-    solution->fallbacks.by_sweeps = 1;
-    return (sweep(solver, problem, near) && momentum_end(&solver->momentum, solution)) ||
-           error_memory(error, "interior");
 }
 
 /* The problem with that solution as its warm start, valid until the next call. False when memory is short. */
@@ -316,8 +273,8 @@ static bool begin_from(State *solver, const ContactProblem *problem, const Conta
     return true;
 }
 
-/* Sweeps from the best answer of the iterations, which is stored as the solution. Replaces it if their residual is
-   smaller. */
+/* Sweeps from the best answer of the iterations, which is stored as the solution, if there is one. Replaces it if their
+   residual is smaller. */
 static bool fall_back(State *solver, const ContactProblem *problem, float near, ContactSolution *solution,
                       Error *error) {
     const bool finite = solver->best < INFINITY;
@@ -340,7 +297,7 @@ static ReferenceAim aim_at(const Look *step, double share, int most) {
         .tolerance = share * (double)step->near, .most = most, .push_out = true, .by_heaviest = step->calm};
 }
 
-/* Sets `best`: INFINITY if the answer is not taken. A tolerance for unlike masses may be below what rounding lets the
+/* Sets `best`: INFINITY if the answer is not taken. The tolerance for unlike masses may be below what rounding lets the
    reference reach; a jam has no answer within that for equal ones. work: of a factorization. Rounded impulses are put
    back into their cones. False when memory is short. */
 static bool ask_reference(State *solver, const ContactProblem *problem, const Look *step, const ReferenceAim *aim,
@@ -382,7 +339,7 @@ static bool follow_path(State *solver, const ContactProblem *problem, const Look
                         Error *error) {
     const double best = solver->best, work = path_work * solver->interior.iteration_work;
     const int most = affordable(solver, load_work, work);
-    if (most >= LEAST_ITERATIONS && !(step->calm && step->many)) {
+    if (most > 0 && !(step->calm && step->many)) {
         const ReferenceAim aim = aim_at(step, 1, most);
         if (!reserve_other(solver, problem)) return error_memory(error, "interior");
         if (!ask_reference(solver, problem, step, &aim, work, &solver->other, error)) return false;
@@ -404,7 +361,7 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     if (!reference_residual(&solver->reference, problem, solution->impulses, &swept, error)) return false;
     if (swept <= (double)step->near) return true;
     if (!reserve_other(solver, problem)) return error_memory(error, "interior");
-    ReferenceAim aim = aim_at(step, few_share, JAM_ITERATIONS);
+    ReferenceAim aim = aim_at(step, few_share, affordable(solver, load_work, few_work));
     aim.push_out = false;
     if (!ask_reference(solver, problem, step, &aim, few_work, other, error)) return false;
     if (solver->best == INFINITY) return true;
@@ -413,16 +370,17 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     return true;
 }
 
-/* All by the reference. What is not solved in FEW_ITERATIONS may hold jammed bodies with impulses that grow for
-   ever: sweeps begin from the warm start. False when memory is short. */
+/* All by the reference. What is not solved in so many factorizations may hold jammed bodies with impulses that grow for
+   ever: sweeps begin from the warm start, with half of the work that is left. False when memory is short. */
 static bool follow_whole_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                               Error *error) {
-    const ReferenceAim aim = aim_at(step, few_share, FEW_ITERATIONS);
+    const ReferenceAim aim = aim_at(step, few_share, FEW_FACTORIZATIONS);
     if (!ask_reference(solver, problem, step, &aim, few_work, solution, error)) return false;
     if (solver->best < INFINITY) return true;
-    solver->left -= jam_work;
+    const double half = solver->left / 2;
+    solver->left = half;
     if (!fall_back(solver, problem, step->near, solution, error)) return false;
-    solver->left += jam_work;
+    solver->left += half;
     return answer_jam(solver, problem, step, solution, error);
 }
 
@@ -442,22 +400,13 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     }
     if (step->bodies <= FEW_BODIES || (step->calm && step->slender))
         return follow_whole_path(solver, problem, step, solution, error);
-    if (step->many && !step->calm && !seems_cheap(solver, step))
-        return solve_by_sweeps(solver, problem, step->near, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
     if (done) return true;
-    /* Iterations, unless they are too dear; then sweeps. */
     solver->best = INFINITY;
-    bool cheap = seems_cheap(solver, step);
-    if (cheap) {
-        solver->left -= analysis_work(step);
-        if (!load_interior(solver, problem)) return error_memory(error, "interior");
-    }
-    cheap = cheap && affordable(solver, 0, solver->interior.iteration_work) >= (step->many ? LEAST_ITERATIONS : 0);
-    if (!cheap)
-        return start(solver, problem, false) ? solve_by_sweeps(solver, problem, step->near, solution, error)
-                                             : error_memory(error, "interior");
-    if (!iterate(solver, problem, step, solution)) return error_memory(error, "interior");
+    if (!load_interior(solver, problem, step)) return error_memory(error, "interior");
+    if (affordable(solver, 0, solver->interior.iteration_work) < (step->calm ? 1 : LEAST_ITERATIONS))
+        return fall_back(solver, problem, step->near, solution, error);
+    iterate(solver, problem, step, solution);
     return solver->best <= (double)step->near || follow_path(solver, problem, step, solution, error);
 }
 

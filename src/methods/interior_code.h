@@ -10,8 +10,6 @@
 /* In an iteration l and z keep at least this share of themselves, as do p and q, and the distances of t to its
    bounds. */
 static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27;
-/* The targets of friction, as a multiple of those of normal impulses. */
-static const double slip_aim = 4;
 /* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
 static const double stiffest = 1e12;
 
@@ -27,8 +25,7 @@ static inline void push_right_side(const InteriorGroup *g, const BlockPair pairs
 static inline void linearise(InteriorGroup *g, double target) {
     const Vec4 softest = all4(1 / stiffest), held = g->friction * g->l;
     g->aim_normal = larger4(target * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
-    g->aim_tangent =
-        larger4(slip_aim * target * g->mass_tangent * g->friction, softest * held * held * g->inverse_tangent);
+    g->aim_tangent = larger4(target * g->mass_tangent * g->friction, softest * held * held * g->inverse_tangent);
     const Vec4 bound = g->friction * g->l, u = bound - g->t, w = bound + g->t;
     const Vec4 p = g->p * w, q = g->q * u, both = u * w, sum = p + q, all = both * sum;
     const Vec4 over = 1 / (g->z * all), over_both = over * (g->z * sum), over_sum = over * (g->z * both);

@@ -7,7 +7,7 @@
 
        M (v - v') = J_n^T l + J_t^T t
        z = J_n v - b,        l z = tau^2 m_n
-       J_t v = q - p,        p (mu l - t) = q (mu l + t) = 4 tau^2 m_t mu
+       J_t v = q - p,        p (mu l - t) = q (mu l + t) = tau^2 m_t mu
 
    For tau = 0 these are the contact problem: normal complementarity and Coulomb friction (in two dimensions the cone is
    an interval). An iteration linearises them at the current point. Impulses are eliminated contact by contact,
@@ -106,24 +106,10 @@ double interior_work(double products, int pair_count);
 /* Friction below this holds nothing. */
 #define INTERIOR_SLIPPERY 0.01f
 
-/* How iterations begin, and when they end. Speeds are shares of a speed of the problem, so that no limit depends on its
-   units. */
-typedef struct InteriorAttempt {
-    /* How far inside the bounds the iterations start if the residual is near 0. Contacts that should stick slide at up
-       to about that speed until tau^2 is small: if it is tiny, one iteration from the impulses of the last step
-       suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts. */
-    double least_scale;
-    /* Iterations end if the residual exceeds this multiple of the best so far and 0.01 together. With friction the path
-       to the solution can turn back, and iterations jump about before they converge, or never do. */
-    double lost;
-    int iterations; /* at most */
-} InteriorAttempt;
-
-/* After interior_load(): iterates until the residual is at most `near` (m/s), at most as often as the attempt says and
-   `most` times, and sets `residual` and `iterations`. If it ends above, its answer is the best so far, the start
-   included. speed: m/s. */
-void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorAttempt *attempt, double speed,
-                      double near, int most);
+/* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
+   and `iterations`. If it ends above, its answer is the best so far, the start included. speed: m/s, of the problem, so
+   that no limit depends on its units. */
+void interior_iterate(Interior *interior, const InteriorKernels *kernels, double speed, double near, int most);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */
