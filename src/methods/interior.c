@@ -292,11 +292,13 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
            error_memory(error, "interior");
 }
 
-/* What the reference is asked for, with a share of the tolerance. Struck islands converge sooner without its
-   patience. */
+/* What the reference is asked for: a share of the tolerance, and no less than its own tolerance. Struck islands converge
+   sooner without its patience. */
 static ReferenceAim aim_at(const Look *step, double share, int most) {
-    return (ReferenceAim){
-        .tolerance = share * (double)step->near, .most = most, .push_out = true, .by_heaviest = step->calm};
+    return (ReferenceAim){.tolerance = fmax(share * (double)step->near, REFERENCE_TOLERANCE),
+                          .most = most,
+                          .push_out = true,
+                          .by_heaviest = step->calm};
 }
 
 /* Sets `best`: INFINITY if the answer is not taken. The tolerance for unlike masses may be below what rounding lets the
