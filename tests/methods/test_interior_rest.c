@@ -40,13 +40,14 @@ TEST(stacks_at_rest_stay_in_place) {
 /* Structures whose bodies have 1 to a million times each other's mass, all of which the reference holds: a light box
    below a heavy one must not let it tip. */
 TEST(light_boxes_carry_heavy_ones) {
-    static const int seeds[] = {7012, 7078, 7102, 7116, 7180, 7266, 7392, 7442, 7464, 20390, 20446, 21408, 22008};
+    static const int seeds[] = {7012, 7078,  7102,  7116,  7180,  7266,  7392,  7442,
+                                7464, 20018, 20390, 20446, 20740, 21408, 22008, 30366};
     for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
         OWN(Scene) *scene = random_structure(seeds[k]);
         OWN(World) *world = world_of(scene);
         world_set_contacts(world, (ContactRules){.mend = true});
         OWN(ContactSolver) solver = make_solver(&solver_interior, "");
-        run(world, &solver, 240);
+        run(world, &solver, 600);
         const float unit = scene->bodies[0].size.x / 500;
         for (int i = 1; i < scene->body_count; i++) {
             const Vec2 by = vec2_sub(world_bodies(world)[i].position, scene->bodies[i].position);
