@@ -292,8 +292,8 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
            error_memory(error, "interior");
 }
 
-/* What the reference is asked for: a share of the tolerance, and no less than its own tolerance. Struck islands converge
-   sooner without its patience. */
+/* What the reference is asked for: a share of the tolerance, and no less than its own. Struck islands converge sooner
+   without its patience. */
 static ReferenceAim aim_at(const Look *step, double share, int most) {
     return (ReferenceAim){.tolerance = fmax(share * (double)step->near, REFERENCE_TOLERANCE),
                           .most = most,
