@@ -103,9 +103,6 @@ bool interior_load(Interior *interior, const InteriorKernels *kernels, const Swe
 /* The work of an iteration, in sweeps over as many pairs. products: of blocks in the factorization. */
 double interior_work(double products, int pair_count);
 
-/* Friction below this holds nothing. */
-#define INTERIOR_SLIPPERY 0.01f
-
 /* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
    and `iterations`. If it ends above, its answer is the best so far, the start included. speed: m/s, of the problem, so
    that no limit depends on its units. */

@@ -283,7 +283,7 @@ TEST(a_nan_ends_in_the_fallback) {
     assert_int_equal(found.fallbacks.by_sweeps, 1);
 }
 
-/* `rows` rows of a pyramid, or as many boxes in stacks of ten, and the last one falls on the others at 20 m/s. */
+/* `rows` rows of a pyramid, or as many boxes in stacks of ten. The last box falls at 20 m/s. */
 static World *make_boxes(int rows, bool stacks) {
     World *world = make_world();
     add_ground(world, 0.5f);
