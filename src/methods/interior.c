@@ -33,7 +33,6 @@
 enum {
     FIRST_SWEEPS = 2,
     START_SWEEPS = 6,      /* with momentum. Without them a wall of 314 boxes at rest takes 2.4 times as long */
-    LEAST_ITERATIONS = 11, /* for an impact: where fewer fit in, the island is left to sweeps */
     MOST_ITERATIONS = 40   /* what takes more rarely converges; with 10 that wall takes 1.5 times as long */
 };
 
@@ -41,6 +40,9 @@ enum {
    sweeps: each takes as long as 2.6 of these over 9 bodies, and as 4.9 to 6.8 over more (INTERIOR_MOST_WORK). */
 static const double few_most_work = 780;
 static const double begin_work = 3, load_work = 5.5;
+/* Of the work that is left, for each attempt; sweeps get what is left in the end. With half an impact on a pyramid of 21
+   boxes fails, with all one on 7,260. */
+static const double attempt_share = 2.0 / 3;
 
 /* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
    that it has to reach.
@@ -54,8 +56,8 @@ static const double begin_work = 3, load_work = 5.5;
    by gravity and the engine's slop. */
 
 /* Many: an iteration takes as long as 10 sweeps or more; with the limit at 33 rest takes 1.4 to 3 times as long. Few:
-   the reference's own solver, with so many factorizations at most; with 50 it fails at a pyramid of 21 boxes. */
-enum { FEW_BODIES = 33, FEW_FACTORIZATIONS = 60, MANY_BODIES = 128 };
+   the reference's own solver. */
+enum { FEW_BODIES = 33, MANY_BODIES = 128 };
 /* Friction below this holds nothing. */
 static const float slippery_below = 0.01f;
 /* Of the tolerance, which is a mean over contacts and the reference's the largest. With 1 impacts have 1.5 times the
@@ -122,7 +124,7 @@ static void look_at_islands(State *solver, const ContactProblem *problem) {
                                   .pace = pace,
                                   .near = solver->near,
                                   .enough = solver->near,
-                                  .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
+                                  .slender = islands->islands[k].bodies > 8 * (islands->islands[k].loops + 1),
                                   .many = islands->islands[k].bodies > MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++) {
         if (islands->island[i] < 0) continue;
@@ -230,20 +232,15 @@ static bool load_interior(State *solver, const ContactProblem *problem, const Lo
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
-/* Iterations of that work that the island's has room for, between a step that takes `before` of it and the least that
-   fall_back() takes. */
-static int affordable(const State *solver, double before, double iteration_work) {
-    const double behind = begin_work + 1;
-    return (int)fmax((solver->left - before - behind) / iteration_work, 0);
-}
+/* How many of `each` that work has room for. */
+static int room(double work, double each) { return (int)fmax(work / each, 0); }
 
 /* Until the residual is at most `near`, or the work is done. */
 static void iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
     Interior *interior = &solver->interior;
-    const int room = affordable(solver, 0, interior->iteration_work),
-              most = room < MOST_ITERATIONS ? room : MOST_ITERATIONS;
+    const int most = room(attempt_share * solver->left, interior->iteration_work);
     const double speed = fmax(sqrt((double)step->fastest), (double)step->pace);
-    interior_iterate(interior, interior_best(), speed, (double)step->near, most);
+    interior_iterate(interior, interior_best(), speed, (double)step->near, most < MOST_ITERATIONS ? most : MOST_ITERATIONS);
     solver->left -= interior->iterations * interior->iteration_work;
     if (interior_end(interior, &solver->momentum.sweeps, problem, solution)) solver->best = interior->residual;
 }
@@ -341,8 +338,8 @@ static void take_other(const State *solver, const ContactProblem *problem, Conta
 static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                         Error *error) {
     const double best = solver->best, work = path_work * solver->interior.iteration_work;
-    const int most = affordable(solver, load_work, work);
-    if (most > 0 && !(step->calm && step->many)) {
+    const int most = room(attempt_share * solver->left - load_work, work);
+    if (most > 0 && !step->many) {
         const ReferenceAim aim = aim_at(step, 1, most);
         if (!reserve_other(solver, problem)) return error_memory(error, "interior");
         if (!ask_reference(solver, problem, step, &aim, work, &solver->other, error)) return false;
@@ -364,7 +361,7 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     if (!reference_residual(&solver->reference, problem, solution->impulses, &swept, error)) return false;
     if (swept <= (double)step->near) return true;
     if (!reserve_other(solver, problem)) return error_memory(error, "interior");
-    ReferenceAim aim = aim_at(step, few_share, affordable(solver, load_work, few_work));
+    ReferenceAim aim = aim_at(step, few_share, room(solver->left - load_work, few_work));
     aim.push_out = false;
     if (!ask_reference(solver, problem, step, &aim, few_work, other, error)) return false;
     if (solver->best == INFINITY) return true;
@@ -377,7 +374,7 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
    ever: sweeps begin from the warm start, with half of the work that is left. False when memory is short. */
 static bool follow_whole_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                               Error *error) {
-    const ReferenceAim aim = aim_at(step, few_share, FEW_FACTORIZATIONS);
+    const ReferenceAim aim = aim_at(step, few_share, room(attempt_share * solver->left - load_work, few_work));
     if (!ask_reference(solver, problem, step, &aim, few_work, solution, error)) return false;
     if (solver->best < INFINITY) return true;
     const double half = solver->left / 2;
@@ -407,8 +404,6 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     if (done) return true;
     solver->best = INFINITY;
     if (!load_interior(solver, problem, step)) return error_memory(error, "interior");
-    if (affordable(solver, 0, solver->interior.iteration_work) < (step->calm ? 1 : LEAST_ITERATIONS))
-        return fall_back(solver, problem, step->near, solution, error);
     iterate(solver, problem, step, solution);
     return solver->best <= (double)step->near || follow_path(solver, problem, step, solution, error);
 }

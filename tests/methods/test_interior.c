@@ -299,9 +299,9 @@ static World *make_boxes(int rows, bool stacks) {
     return world;
 }
 
-/* In a pyramid of 7,260 boxes an iteration costs more than the bound allows for eleven, so at an impact the bits are
-   those of sweeps with momentum. */
-TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
+/* The bound has room for few iterations in a pyramid of 7,260 boxes; what they leave, sweeps get. The answer is as good
+   as that of sweeps alone with all of the work. */
+TEST(large_pyramids_end_in_sweeps_and_stacks_do_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
         OWN(World) *world = make_boxes(stacks ? 40 : 120, stacks);
         const ContactProblem *problem = next_problem(world);
@@ -309,8 +309,8 @@ TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
         solve_with(&solver_interior, "near=0.00005", problem, &found);
         solve_with(&solver_momentum, "k=1,near=0.00005,more=1448", problem, &swept);
         assert_int_equal(found.fallbacks.by_sweeps, !stacks);
-        const size_t size = (size_t)problem->body_count * sizeof *found.velocities;
-        assert_int_equal(memcmp(found.velocities, swept.velocities, size) == 0, !stacks);
+        printf("%g %g\n", residual_of(problem, &found), residual_of(problem, &swept));
+        assert_true(residual_of(problem, &found) <= residual_of(problem, &swept));
     }
 }
 
