@@ -124,7 +124,7 @@ static void look_at_islands(State *solver, const ContactProblem *problem) {
                                   .pace = pace,
                                   .near = solver->near,
                                   .enough = solver->near,
-                                  .slender = islands->islands[k].bodies > 8 * (islands->islands[k].loops + 1),
+                                  .slender = islands->islands[k].bodies > 16 * (islands->islands[k].loops + 1),
                                   .many = islands->islands[k].bodies > MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++) {
         if (islands->island[i] < 0) continue;
@@ -398,7 +398,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
         look_at_residuals(step, &solver->momentum.sweeps, NULL);
         if (is_solved(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
     }
-    if (step->bodies <= FEW_BODIES || (step->calm && step->slender))
+    if (step->bodies <= FEW_BODIES)
         return follow_whole_path(solver, problem, step, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
     if (done) return true;
