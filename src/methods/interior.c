@@ -7,13 +7,13 @@
       momentum first, where they save more than they cost.
    3. The reference's solver (methods/reference.h), which follows the central path, also where it turns back. Up to 33
       bodies it comes first: it takes 0.82 of the time of 2, with a fortieth of the error. Beyond, its iterations take
-      1.7 times as long, and it needs more of them; but in calm towers it comes first, too: with 2 they sway.
+      1.7 times as long, and it needs more of them; from 129 on, sweeps get farther in that time.
    4. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
 
-   The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. The analysis of the
-   matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a pyramid of 500 to
-   1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, an impact is left to sweeps. The
-   difficulty, for all methods, is to find which contacts open, stick and slide. */
+   The work of all this is counted in sweeps, and is at most 30 times that of the engine's ten. Each attempt gets two
+   thirds of what is left. The analysis of the matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred
+   boxes, 13 in a pile or a pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all sides. The difficulty, for
+   all methods, is to find which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/interior_point_internal.h"
@@ -31,17 +31,17 @@
 #include <string.h>
 
 enum {
-    FIRST_SWEEPS = 2,
-    START_SWEEPS = 6,      /* with momentum. Without them a wall of 314 boxes at rest takes 2.4 times as long */
-    MOST_ITERATIONS = 40   /* what takes more rarely converges; with 10 that wall takes 1.5 times as long */
+    FIRST_SWEEPS = 2,    /* with 1 a wall of 85 boxes at rest takes 2.2 times as long, with 4 some impacts 1.7 times */
+    START_SWEEPS = 6,    /* with momentum. Without them a wall of 314 boxes takes 2.2 times as long, struck 2.8 times */
+    MOST_ITERATIONS = 40 /* what takes more rarely converges; with 10 struck pyramids take up to twice the work */
 };
 
 /* Work is counted, not timed, in coloured sweeps over the island's contacts. Its bound is 300 of the engine's own
    sweeps: each takes as long as 2.6 of these over 9 bodies, and as 4.9 to 6.8 over more (INTERIOR_MOST_WORK). */
 static const double few_most_work = 780;
 static const double begin_work = 3, load_work = 5.5;
-/* Of the work that is left, for each attempt; sweeps get what is left in the end. With half an impact on a pyramid of 21
-   boxes fails, with all one on 7,260. */
+/* Of the work that is left, for an attempt. With half an impact on a pyramid of 21 boxes is left to sweeps, with all
+   nothing is left for those on 7,260. */
 static const double attempt_share = 2.0 / 3;
 
 /* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
@@ -58,7 +58,10 @@ static const double attempt_share = 2.0 / 3;
 /* Many: an iteration takes as long as 10 sweeps or more; with the limit at 33 rest takes 1.4 to 3 times as long. Few:
    the reference's own solver. */
 enum { FEW_BODIES = 33, MANY_BODIES = 128 };
-/* Friction below this holds nothing. */
+/* A tower has more than this many bodies for each loop and one loop more. With 4 a pile of 70 boxes at rest takes ten
+   times as long; without any towers, stacks of 32 boxes and more sway. */
+enum { TOWER_BODIES = 16 };
+/* Friction below this holds nothing. Without this limit three bridges and two towers without friction fall. */
 static const float slippery_below = 0.01f;
 /* Of the tolerance, which is a mean over contacts and the reference's the largest. With 1 impacts have 1.5 times the
    error. */
@@ -83,14 +86,16 @@ typedef struct Look {
 /* Speeds at rest are multiples of the island's pace, which a body has after a fall through five slops: 1 m/s on Earth.
    An island is calm if bodies that touch move there, relative to each other, by less than that and what gravity adds
    in a step. Each contact counts, not the mean, which is small if a bomb strikes one of many boxes. The tolerance of
-   calm islands is at most `calm_near`: with four times that, a pyramid of 990 boxes sways by 0.1 m. Where nothing holds
+   calm islands is at most `calm_near`: with four times that, a pyramid of 990 boxes moves 8 times as far. Where nothing holds
    what an error moves, without friction, and in towers, where the top moves by all errors below, it is `fine_near` over
-   the number of bodies: with 1e-5 a bridge falls. */
+   the number of bodies: with 1e-5 a tower falls. */
 static const float calm_near = 1e-4f, fine_near = 3e-6f;
-/* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). */
+/* Sweeps may add this share of the tolerance to the speeds from before the step (is_solved). With all of it a pile of 70
+   boxes moves 30 times as far. */
 static const float most_added = 0.5f;
 /* The tolerance of a calm island is divided by the largest multiple over this of the other's mass, of two bodies that
-   touch: what is a rounding error to the heavy one throws the light one. With 3 rest takes 1.2 times as long. */
+   touch: what is a rounding error to the heavy one throws the light one. With 3 a pile of 70 boxes takes
+   1.2 times as long. */
 static const float uneven_from = 10;
 
 typedef struct State {
@@ -120,12 +125,13 @@ static void look_at_islands(State *solver, const ContactProblem *problem) {
     const Islands *islands = &solver->islands;
     const float pace = sqrtf(10 * CONTACT_SLOP * problem->fall / problem->dt);
     for (int k = 0; k < islands->count; k++)
-        solver->looks[k] = (Look){.bodies = islands->islands[k].bodies,
-                                  .pace = pace,
-                                  .near = solver->near,
-                                  .enough = solver->near,
-                                  .slender = islands->islands[k].bodies > 16 * (islands->islands[k].loops + 1),
-                                  .many = islands->islands[k].bodies > MANY_BODIES};
+        solver->looks[k] =
+            (Look){.bodies = islands->islands[k].bodies,
+                   .pace = pace,
+                   .near = solver->near,
+                   .enough = solver->near,
+                   .slender = islands->islands[k].bodies > TOWER_BODIES * (islands->islands[k].loops + 1),
+                   .many = islands->islands[k].bodies > MANY_BODIES};
     for (int i = 0; i < problem->contact_count; i++) {
         if (islands->island[i] < 0) continue;
         Look *look = &solver->looks[islands->island[i]];
@@ -232,15 +238,16 @@ static bool load_interior(State *solver, const ContactProblem *problem, const Lo
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
-/* How many of `each` that work has room for. */
-static int room(double work, double each) { return (int)fmax(work / each, 0); }
+/* How many steps of that size are within the work. */
+static int room(double work, double step) { return (int)fmax(work / step, 0); }
 
 /* Until the residual is at most `near`, or the work is done. */
 static void iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
     Interior *interior = &solver->interior;
     const int most = room(attempt_share * solver->left, interior->iteration_work);
     const double speed = fmax(sqrt((double)step->fastest), (double)step->pace);
-    interior_iterate(interior, interior_best(), speed, (double)step->near, most < MOST_ITERATIONS ? most : MOST_ITERATIONS);
+    interior_iterate(interior, interior_best(), speed, (double)step->near,
+                     most < MOST_ITERATIONS ? most : MOST_ITERATIONS);
     solver->left -= interior->iterations * interior->iteration_work;
     if (interior_end(interior, &solver->momentum.sweeps, problem, solution)) solver->best = interior->residual;
 }
@@ -333,14 +340,13 @@ static void take_other(const State *solver, const ContactProblem *problem, Conta
     memcpy(solution->impulses, other->impulses, (size_t)problem->contact_count * sizeof *other->impulses);
 }
 
-/* After iterations that did not get there: what is left of the work goes to the reference's path, and what that leaves,
-   to sweeps. Calm islands of many bodies are left to sweeps: their path is long, and sweeps reach the tolerance. */
+/* After iterations that did not get there: the reference's path, and what that leaves is left to sweeps. In islands of
+   many bodies the path is long: there sweeps get all. */
 static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                         Error *error) {
-    const double best = solver->best, work = path_work * solver->interior.iteration_work;
-    const int most = room(attempt_share * solver->left - load_work, work);
-    if (most > 0 && !step->many) {
-        const ReferenceAim aim = aim_at(step, 1, most);
+    if (!step->many) {
+        const double best = solver->best, work = path_work * solver->interior.iteration_work;
+        const ReferenceAim aim = aim_at(step, 1, room(attempt_share * solver->left - load_work, work));
         if (!reserve_other(solver, problem)) return error_memory(error, "interior");
         if (!ask_reference(solver, problem, step, &aim, work, &solver->other, error)) return false;
         if (solver->best < INFINITY) {
@@ -370,8 +376,8 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     return true;
 }
 
-/* All by the reference. What is not solved in so many factorizations may hold jammed bodies with impulses that grow for
-   ever: sweeps begin from the warm start, with half of the work that is left. False when memory is short. */
+/* All by the reference. What it does not solve may hold jammed bodies with impulses that grow for
+   ever: sweeps begin from the warm start, with half of what is left. False when memory is short. */
 static bool follow_whole_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                               Error *error) {
     const ReferenceAim aim = aim_at(step, few_share, room(attempt_share * solver->left - load_work, few_work));
@@ -398,8 +404,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
         look_at_residuals(step, &solver->momentum.sweeps, NULL);
         if (is_solved(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
     }
-    if (step->bodies <= FEW_BODIES)
-        return follow_whole_path(solver, problem, step, solution, error);
+    if (step->bodies <= FEW_BODIES) return follow_whole_path(solver, problem, step, solution, error);
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
     if (done) return true;
     solver->best = INFINITY;

@@ -299,18 +299,17 @@ static World *make_boxes(int rows, bool stacks) {
     return world;
 }
 
-/* The bound has room for few iterations in a pyramid of 7,260 boxes; what they leave, sweeps get. The answer is as good
-   as that of sweeps alone with all of the work. */
+/* The bound has room for few iterations in a pyramid of 7,260 boxes. What they leave, sweeps get: in a third of the work
+   these leave a hundredth of the first residual. */
 TEST(large_pyramids_end_in_sweeps_and_stacks_do_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
         OWN(World) *world = make_boxes(stacks ? 40 : 120, stacks);
         const ContactProblem *problem = next_problem(world);
         OWN(ContactSolution) found = make_solution(problem), swept = make_solution(problem);
         solve_with(&solver_interior, "near=0.00005", problem, &found);
-        solve_with(&solver_momentum, "k=1,near=0.00005,more=1448", problem, &swept);
+        solve_with(&solver_momentum, "k=1", problem, &swept);
         assert_int_equal(found.fallbacks.by_sweeps, !stacks);
-        printf("%g %g\n", residual_of(problem, &found), residual_of(problem, &swept));
-        assert_true(residual_of(problem, &found) <= residual_of(problem, &swept));
+        assert_true(residual_of(problem, &found) < residual_of(problem, &swept) / 100);
     }
 }
 
