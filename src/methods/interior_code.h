@@ -11,8 +11,8 @@
    bounds. With 0.1 for all three a struck pyramid of 990 boxes takes 2.5 times as long; with 0.2 impacts have 1.1 times
    the error. */
 static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27;
-/* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. With 1e9 a
-   pyramid of boxes of unlike masses falls. */
+/* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. With 1e9
+   a pyramid of boxes of unlike masses falls. */
 static const double stiffest = 1e12;
 
 static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger4(smaller4(x, limit), -limit); }
