@@ -59,7 +59,7 @@ static const double attempt_share = 2.0 / 3;
    the reference's own solver. */
 enum { FEW_BODIES = 33, MANY_BODIES = 128 };
 /* A tower has more than this many bodies for each loop and one loop more. With 4 a pile of 70 boxes at rest takes ten
-   times as long; without any towers, stacks of 32 boxes and more sway. */
+   times as long; with 16 nine boxes drift by 0.9 mm in 10,000 steps. */
 enum { TOWER_BODIES = 8 };
 /* Friction below this holds nothing. Without this limit three bridges and two towers without friction fall. */
 static const float slippery_below = 0.01f;
