@@ -63,11 +63,9 @@ enum { FEW_BODIES = 33, MANY_BODIES = 128 };
 enum { TOWER_BODIES = 8 };
 /* Friction below this holds nothing. Without this limit three bridges and two towers without friction fall. */
 static const float slippery_below = 0.01f;
-/* Of the tolerance, which is a mean over contacts and the reference's the largest. With 1 impacts have 1.5 times the
-   error. */
+/* Of the tolerance, a mean over contacts; the reference's is the largest. With 1 impacts have 1.5 times the error. */
 static const double few_share = 0.25;
-/* In sweeps, of a factorization of the reference with all that goes with it: for few bodies; for others, as a multiple
-   of an iteration's. */
+/* A factorization of the reference with all that goes with it: for few bodies, in sweeps; for others, in iterations. */
 static const double few_work = 7.5, path_work = 1.7;
 
 typedef struct Look {
@@ -95,8 +93,8 @@ static const float calm_near = 1e-4f, fine_near = 3e-6f;
    70 boxes moves 30 times as far. */
 static const float most_added = 0.5f;
 /* The tolerance of a calm island is divided by the largest multiple over this of the other's mass, of two bodies that
-   touch: what is a rounding error to the heavy one throws the light one. With 3 a pile of 70 boxes takes
-   1.2 times as long. */
+   touch: what is a rounding error to the heavy one throws the light one. With 3 a pile of 70
+   boxes takes 1.2 times as long. */
 static const float uneven_from = 10;
 
 typedef struct State {
@@ -377,8 +375,8 @@ static bool answer_jam(State *solver, const ContactProblem *problem, const Look 
     return true;
 }
 
-/* All by the reference. What it does not solve may hold jammed bodies with impulses that grow for
-   ever: sweeps begin from the warm start, with half of what is left. False when memory is short. */
+/* All by the reference. What it does not solve may hold jammed bodies with impulses that grow for ever: sweeps begin
+   from the warm start, with half of what is left. False when memory is short. */
 static bool follow_whole_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                               Error *error) {
     const ReferenceAim aim = aim_at(step, few_share, room(attempt_share * solver->left - load_work, few_work));
