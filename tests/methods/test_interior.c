@@ -299,8 +299,8 @@ static World *make_boxes(int rows, bool stacks) {
     return world;
 }
 
-/* The bound has room for few iterations in a pyramid of 7,260 boxes. What they leave, sweeps get: in a third of the work
-   these leave a hundredth of the first residual. */
+/* The bound has room for few iterations in a pyramid of 7,260 boxes. What they leave, sweeps get: less than a tenth of
+   what a first sweep leaves. Without their third of the work it is more than that. */
 TEST(large_pyramids_end_in_sweeps_and_stacks_do_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
         OWN(World) *world = make_boxes(stacks ? 40 : 120, stacks);
@@ -309,7 +309,7 @@ TEST(large_pyramids_end_in_sweeps_and_stacks_do_not) {
         solve_with(&solver_interior, "near=0.00005", problem, &found);
         solve_with(&solver_momentum, "k=1", problem, &swept);
         assert_int_equal(found.fallbacks.by_sweeps, !stacks);
-        assert_true(residual_of(problem, &found) < residual_of(problem, &swept) / 100);
+        assert_true(residual_of(problem, &found) < residual_of(problem, &swept) / 10);
     }
 }
 
