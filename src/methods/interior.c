@@ -40,8 +40,8 @@ enum {
    sweeps: each takes as long as 2.6 of these over 9 bodies, and as 4.9 to 6.8 over more (INTERIOR_MOST_WORK). */
 static const double few_most_work = 780;
 static const double begin_work = 3, load_work = 5.5;
-/* Of the work that is left, for an attempt. With half an impact on a pyramid of 21 boxes is left to sweeps, with all
-   nothing is left for those on 7,260. */
+/* Of the work that is left, for an attempt. With 1/2, an impact on a pyramid of 21 boxes ends in sweeps; with 1, sweeps
+   get nothing after iterations on 7,260 boxes. */
 static const double attempt_share = 2.0 / 3;
 
 /* What a step is for each island, as the method interior sees it: calm or struck, few bodies or many, and the residuals
@@ -58,8 +58,8 @@ static const double attempt_share = 2.0 / 3;
 /* Many: an iteration takes as long as 10 sweeps or more; with the limit at 33 rest takes 1.4 to 3 times as long. Few:
    the reference's own solver. */
 enum { FEW_BODIES = 33, MANY_BODIES = 128 };
-/* A tower has more than this many bodies for each loop and one loop more. With 4 a pile of 70 boxes at rest takes ten
-   times as long; with 16 nine boxes drift by 0.9 mm in 10,000 steps. */
+/* A tower has more bodies than this times its loops plus one: 9 without a loop, 17 with one. With 4 a pile of
+   70 boxes at rest takes ten times as long; with 16 nine boxes drift by 0.9 mm in 10,000 steps. */
 enum { TOWER_BODIES = 8 };
 /* Friction below this holds nothing. Without this limit three bridges and two towers without friction fall. */
 static const float slippery_below = 0.01f;
@@ -93,8 +93,8 @@ static const float calm_near = 1e-4f, fine_near = 3e-6f;
    70 boxes moves 30 times as far. */
 static const float most_added = 0.5f;
 /* The tolerance of a calm island is divided by the largest multiple over this of the other's mass, of two bodies that
-   touch: what is a rounding error to the heavy one throws the light one. With 3 a pile of 70
-   boxes takes 1.2 times as long. */
+   touch: what is a rounding error to the heavy one throws the light one. With 3 a pile of 70 boxes takes 1.2 times as
+   long. */
 static const float uneven_from = 10;
 
 typedef struct State {
@@ -237,8 +237,8 @@ static bool load_interior(State *solver, const ContactProblem *problem, const Lo
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
-/* How many steps of that size are within the work. */
-static int room(double work, double step) { return (int)fmax(work / step, 0); }
+/* How many steps, each of that work, there is room for. */
+static int room(double work, double each) { return (int)fmax(work / each, 0); }
 
 /* Until the residual is at most `near`, or the work is done. */
 static void iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
@@ -339,8 +339,8 @@ static void take_other(const State *solver, const ContactProblem *problem, Conta
     memcpy(solution->impulses, other->impulses, (size_t)problem->contact_count * sizeof *other->impulses);
 }
 
-/* After iterations that did not get there: the reference's path, and what that leaves is left to sweeps. In islands of
-   many bodies the path is long: there sweeps get all. */
+/* After iterations that did not get there: the reference's path, then sweeps. With many bodies the path is long, so
+   sweeps follow at once. */
 static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                         Error *error) {
     if (!step->many) {

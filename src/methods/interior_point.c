@@ -12,10 +12,10 @@
 
 /* The scale of velocities at the start is 4 times its residual (with 1 impacts take 0.7 to 1.4 times as long), and no
    less than a millionth of the speed: at rest, one iteration from the impulses of the last step mostly suffices.
-   Iterations start inside the bounds by a share of that scale: impulses by the share that moves the heaviest body by as
-   much, as it passes impulses on through light ones that are many times larger than those that move them. From a start
-   by the contacts' own masses it takes hundreds of iterations to get there, or they cycle. With a share of 0.05 a
-   struck pyramid of 171 boxes takes three times as long, with 0.3 impacts have 1.2 times the error. */
+   Iterations start inside the bounds: speeds by a share of that scale, impulses by what changes the heaviest body's
+   speed by as much. Light bodies may carry it by impulses far larger than those that move themselves: from a start by
+   the contacts' own masses it takes hundreds of iterations to get there, or they cycle. With a share of 0.05 a struck
+   pyramid of 171 boxes takes three times as long, with 0.3 impacts have 1.2 times the error. */
 static const double scale_of_residual = 4, least_scale = 1e-6, start_share = 0.2;
 /* tau^2 at the start, as a share of the squared scale. Each iteration makes it `shrink` of itself, but no less than
    `follow` of the squared residual. Little depends on these: with a third or three times the first, impacts have 0.94
@@ -33,7 +33,7 @@ static double larger(double x, double y) { return x > y ? x : y; }
 
 /* Moves the start to the inside of all bounds and returns the first tau^2. */
 static double begin(Interior *s, double scale) {
-    const double impulse = start_share * scale * s->heaviest, beyond = start_share * scale;
+    const double beyond = start_share * scale, impulse = beyond * s->heaviest;
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
         for (int k = 0; k < BLOCK_SLOTS; k++) {

@@ -300,7 +300,7 @@ static World *make_boxes(int rows, bool stacks) {
 }
 
 /* The bound has room for few iterations in a pyramid of 7,260 boxes. What they leave, sweeps get: less than a tenth of
-   what a first sweep leaves. Without their third of the work it is more than that. */
+   what one sweep leaves. Without work for them it would be more than that. */
 TEST(large_pyramids_end_in_sweeps_and_stacks_do_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
         OWN(World) *world = make_boxes(stacks ? 40 : 120, stacks);
