@@ -10,6 +10,10 @@
 
 static const double start_power = 0.2, step_power = 0.05, share = 0.5, balance = 10, least_penalty = 1e-8;
 
+/* Iterations end, too, where neither residual exceeds this share of the largest velocity: the answer is rounded to
+   float, by 2^-24, and rows of masses a million times apart are scaled by roots 2^10 apart. */
+static const double rounding = 0x1p-34;
+
 static const SettingSpec settings[] = {
     {"k", "iterations per step (default: the scene's, else 10)", SETTING_INT(StoppingRule, k, 1, SWEEPS_MAX)},
     STOPPING_SETTINGS("iterations"),
@@ -52,7 +56,8 @@ static void iterate(Admm *admm) {
     for (int iterations = 1;; iterations++) {
         const int done = iterations - rule->k;
         kernels->iterate(admm);
-        if (done >= 0 && done % STOPPING_BLOCK == 0) {
+        const bool exact = !(fmax(admm->primal, admm->dual) > rounding * admm->largest_g);
+        if (exact || (done >= 0 && done % STOPPING_BLOCK == 0)) {
             /* The answer: y, and the velocities that it makes. */
             for (int i = 0; i < admm->interior.group_count; i++) {
                 const AdmmGroup *g = &admm->groups[i];
@@ -60,7 +65,7 @@ static void iterate(Admm *admm) {
                 admm->interior.groups[i].answer_tangent = g->root_tangent * g->y_tangent;
             }
             admm->interior.residual = interior_best()->answer(&admm->interior);
-            if (done >= rule->more || !(admm->interior.residual >= (double)rule->near)) return;
+            if (exact || done >= rule->more || !(admm->interior.residual >= (double)rule->near)) return;
         }
         /* The spectral rule. */
         const bool larger = admm->primal > balance * admm->dual, smaller = admm->dual > balance * admm->primal;

@@ -61,8 +61,16 @@ static inline void begin_group(AdmmGroup *g, const InteriorGroup *from) {
     g->x_tangent = g->y_tangent;
 }
 
+static double largest4(Vec4 x) { return fmax(fmax(x[0], x[1]), fmax(x[2], x[3])); }
+
 static void begin(Admm *admm) {
-    for (int i = 0; i < admm->interior.group_count; i++) begin_group(&admm->groups[i], &admm->interior.groups[i]);
+    Vec4 velocity = all4(0);
+    for (int i = 0; i < admm->interior.group_count; i++) {
+        AdmmGroup *g = &admm->groups[i];
+        begin_group(g, &admm->interior.groups[i]);
+        velocity = larger4(larger4(size4(g->g_normal), size4(g->g_tangent)), velocity);
+    }
+    admm->largest_g = largest4(velocity);
 }
 
 /* The next q, and what J^T makes of it. */
@@ -87,8 +95,6 @@ static inline void advance(AdmmGroup *g, double r, Relative jw, Vec4 *primal, Ve
     const Vec4 moved_tangent = r * (g->y_tangent - y_tangent) + admm_proximal * (g->x_tangent - x_tangent);
     *dual = larger4(larger4(size4(moved_normal), size4(moved_tangent)), *dual);
 }
-
-static double largest4(Vec4 x) { return fmax(fmax(x[0], x[1]), fmax(x[2], x[3])); }
 
 static void iterate(Admm *admm) {
     Interior *s = &admm->interior;

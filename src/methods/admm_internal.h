@@ -45,6 +45,7 @@ typedef struct Admm {
     Sweeps sweeps;       /* they load the problem */
     Interior interior;   /* its rows and graph, and the answer: y with the velocities that it makes */
     AdmmGroup *groups;   /* [interior.group_count] */
+    double largest_g;    /* the largest |g| */
     double penalty;      /* r, in units of scaled rows */
     double primal, dual; /* in the last iteration, the largest |x - y| and |r dy + e dx| */
     ArrayBlock memory;   /* of `groups` */

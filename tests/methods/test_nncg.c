@@ -23,12 +23,15 @@ static void from_numbers(const ContactProblem *problem, const float *numbers, Co
     memcpy(solution->impulses, numbers + bodies, contacts * sizeof *numbers);
 }
 
-/* Sum of x * y over the impulses of an island in the order that nncg.c promises. */
-static float multiply(const ContactProblem *problem, const int *islands, int island, const float *x, const float *y) {
+/* Sum of x * y over the impulses of an island in the order that nncg.c promises: that of the visits. */
+static float multiply(const ContactProblem *problem, const int32_t *visits, const int *islands, int island,
+                      const float *x, const float *y) {
     float partial[8] = {0};
-    for (int i = 0, pair = -1, point = 1; i < problem->contact_count; i++) {
+    for (int v = 0, pair = -1, point = 1; v < problem->contact_count; v++) {
+        const int i = visits[v];
         const ContactPoint *contact = &problem->contacts[i];
-        bool second = point == 0 && contact->a == contact[-1].a && contact->b == contact[-1].b;
+        bool second =
+            point == 0 && i == visits[v - 1] + 1 && contact->a == contact[-1].a && contact->b == contact[-1].b;
         point = second ? 1 : 0;
         if (islands[i] != island) continue;
         pair += second ? 0 : 1;
@@ -68,26 +71,27 @@ static int island_of(const ContactProblem *problem, const int *islands, int numb
 }
 
 /* Returns how often an island began anew. */
-static int solve_plainly(const ContactProblem *problem, int count, ContactSolution *solution) {
+static int solve_plainly(const ContactProblem *problem, const int32_t *visits, int count, ContactSolution *solution) {
     static float p[NUMBERS_MAX], after[NUMBERS_MAX], d[NUMBERS_MAX], step[NUMBERS_MAX];
     static int island[NUMBERS_MAX];
     static Plain plain;
     static int islands[CONTACTS_MAX];
     const int count_of_islands = find_islands(problem, islands);
-    sequential_impulses_begin(problem, &engine_options, solution);
+    begin_scalar(problem, visits, solution);
     int numbers = to_numbers(problem, solution, p), impulses = 3 * problem->body_count, begun_anew = 0;
     for (int i = 0; i < numbers; i++) island[i] = island_of(problem, islands, i);
     memset(d, 0, sizeof d);
     memset(&plain, 0, sizeof plain);
     for (int sweep = 0; sweep < count; sweep++) {
-        sequential_impulses_sweep(problem, &engine_options, solution);
+        for (int i = 0; i < problem->contact_count; i++)
+            sequential_impulses_visit(problem, &engine_options, visits[i], 1, solution);
         if (sweep == count - 1) break;
         to_numbers(problem, solution, after);
         for (int i = 0; i < numbers; i++) step[i] = after[i] - p[i];
         for (int k = 0; k < count_of_islands; k++) {
-            const float squared = multiply(problem, islands, k, step + impulses, step + impulses);
+            const float squared = multiply(problem, visits, islands, k, step + impulses, step + impulses);
             plain.beta[k] = squared < plain.before[k] ? squared / plain.before[k] : 1;
-            plain.anew[k] = multiply(problem, islands, k, step + impulses, d + impulses) < 0;
+            plain.anew[k] = multiply(problem, visits, islands, k, step + impulses, d + impulses) < 0;
             plain.before[k] = squared;
             begun_anew += plain.anew[k];
         }
@@ -107,6 +111,7 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
     const int counts[] = {1, 2, 3, 10, 25};
     int begun_anew = 0;
     Islands islands = {0};
+    Colours colours = {0};
     for (int c = 0; c < 5; c++) {
         const char *text = printed("k=%d", counts[c]);
         OWN(ContactSolver) nncg = make_solver(&solver_nncg, text);
@@ -115,7 +120,8 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
             make_random(&random, &seed, bodies, i % 2 == 0 ? 0.5f : 4.0f / (float)bodies, 2);
             if (i % 5 == 0) calm_down(&random, &seed);
             OWN(ContactSolution) plain = make_solution(&random.problem), found = make_solution(&random.problem);
-            begun_anew += solve_plainly(&random.problem, counts[c], &plain);
+            assert_true(colours_order(&colours, &random.problem));
+            begun_anew += solve_plainly(&random.problem, colours.visits, counts[c], &plain);
             assert_true(islands_take_gain(&islands, &random.problem, &plain));
             assert_ok(solver_nncg.solve(nncg.state, &random.problem, &found, &error), error);
             assert_same_bits(&random.problem, &found, &plain, text);
@@ -123,6 +129,7 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
     }
     assert_true(begun_anew > 10);
     islands_free(&islands);
+    colours_free(&colours);
 }
 
 /* A stack put down without a warm start: the impulses under box i must carry m g dt (n - i). Plain sweeps pass the
