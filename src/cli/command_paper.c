@@ -34,7 +34,7 @@ static const CommandSpec spec = {
         "Reproduce the paper (Avatavului, Ifrim, Voncila 2023) from seed to report: train its networks in every "
         "reading, one factor at a time, rate them, replace the solver by them, and try what the paper leaves to future "
         "work. Score the systems that it cites. Writes every table as CSV, every figure as PNG and SVG, and "
-        "report.md, which shows them. Takes about twenty minutes on two cores. An interrupted run continues where "
+        "report.md, which shows them. Takes some six minutes on two cores. An interrupted run continues where "
         "it stopped.\v"
         "Example: twinbox paper -o out/paper\n"
         "         twinbox paper -o out/paper-quick --quick"};

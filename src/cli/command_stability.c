@@ -222,7 +222,7 @@ static const CommandSpec spec = {
         "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, "
         "...): every border between holding and failing, and how it fails there. Over two parameters: maps. A run "
         "holds if no box falls, also where a bomb or a moving body strikes; figures of such scenes are hatched where "
-        "a method does not what the converged run does. Takes some ten minutes on two cores. An interrupted run "
+        "a method does not what the converged run does. Takes some four minutes on two cores. An interrupted run "
         "continues where it stopped.\n"
         "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "
         "of every method and about ten more for each border, a map 100, each as long as the scene's frames.\n"

@@ -27,10 +27,10 @@ static bool islands_reserve(Islands *s, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count,
                  all = bodies + contacts;
     return ARRAY_BLOCK_RESERVE(&s->by_body, ARRAY_PART(s->islands, bodies), ARRAY_PART(s->gains, bodies),
-                               ARRAY_PART(s->parent, bodies), ARRAY_PART(s->number, bodies),
-                               ARRAY_PART(s->members, bodies), ARRAY_PART(s->behind_members, bodies),
-                               ARRAY_PART(s->behind_contacts, bodies), ARRAY_PART(s->place, bodies),
-                               ARRAY_PART(s->in_island, bodies)) &&
+                               ARRAY_PART(s->parent, bodies), ARRAY_PART(s->grounded, bodies),
+                               ARRAY_PART(s->number, bodies), ARRAY_PART(s->members, bodies),
+                               ARRAY_PART(s->behind_members, bodies), ARRAY_PART(s->behind_contacts, bodies),
+                               ARRAY_PART(s->place, bodies), ARRAY_PART(s->in_island, bodies)) &&
            ARRAY_BLOCK_RESERVE(&s->by_contact, ARRAY_PART(s->island, contacts), ARRAY_PART(s->contacts, contacts),
                                ARRAY_PART(s->bodies, all), ARRAY_PART(s->body_copies, all),
                                ARRAY_PART(s->contact_copies, contacts), ARRAY_PART(s->velocities, all),
@@ -49,9 +49,12 @@ static void islands_connect(Islands *s, const ContactProblem *problem) {
         parent[i] = problem_body_moves(&problem->bodies[i]) ? i : -1;
         s->moving += parent[i] >= 0;
         s->number[i] = -1;
+        s->grounded[i] = false;
     }
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
+        s->grounded[contact->a] |= parent[contact->b] < 0;
+        s->grounded[contact->b] |= parent[contact->a] < 0;
         if (!is_new_pair(problem, i) || parent[contact->a] < 0 || parent[contact->b] < 0) continue;
         const int32_t a = islands_root(parent, contact->a), b = islands_root(parent, contact->b);
         parent[b] = a;
@@ -59,7 +62,7 @@ static void islands_connect(Islands *s, const ContactProblem *problem) {
 }
 
 /* Of the pair that contact i begins. An island's bodies less one are as many pairs as a tree has; each further pair
-   closes a loop. */
+   closes a loop, and so does each further body on the ground. */
 static int32_t count_pair(Islands *s, const ContactProblem *problem, int i) {
     const ContactPoint *contact = &problem->contacts[i];
     const bool a = s->parent[contact->a] >= 0, b = s->parent[contact->b] >= 0;
@@ -90,6 +93,7 @@ bool islands_find(Islands *s, const ContactProblem *problem) {
         if (k < 0) continue;
         s->islands[k].bodies++;
         s->islands[k].loops--;
+        if (s->grounded[i] && s->islands[k].grounded++ > 0) s->islands[k].loops++;
     }
     s->sorted = false;
     return true;

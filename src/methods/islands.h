@@ -15,8 +15,9 @@ static inline int32_t islands_root(int32_t *parent, int32_t body) {
 
 typedef struct Island {
     int bodies, contacts; /* their numbers; bodies: those that move */
-    /* Touching pairs of its bodies that could open without dividing it. A stack has none, a pyramid or a wall almost as
-       many as boxes. A factorization fills in only where loops are. */
+    int grounded;         /* bodies that touch one that does not move */
+    /* Touching pairs that could open without dividing it, where all that does not move is one body. A stack has none, a
+       gate one, a pyramid or a wall almost as many as boxes. */
     int loops;
 } Island;
 
@@ -30,6 +31,7 @@ typedef struct Islands {
     bool shortened;              /* whether its last answer was */
     bool sorted;                 /* `members` and `contacts` are filled */
     int32_t *parent;             /* [body_count] another body of the island, or itself; -1: does not move */
+    bool *grounded;              /* [body_count] touches a body that does not move */
     int32_t *number;             /* [body_count] of the island of which the body is the root */
     int32_t *members, *contacts; /* those of the first island, of the second, ... */
     int32_t *behind_members, *behind_contacts; /* [count] where each island's end */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Islands: their loops, as many as edges that are left when a tree through the island is taken away; and each as a
-   problem of its own. */
+/* Islands: their loops, as many as edges that are left when a tree through the island and the ground is taken away; and
+   each as a problem of its own. */
 #include "testing.h"
 
 #include "methods/islands.h"
@@ -40,10 +40,21 @@ TEST(without_contacts_there_are_no_loops) {
     assert_most_loops(0);
 }
 
-TEST(the_ground_connects_nothing) {
+TEST(all_that_does_not_move_is_one_body) {
     begin(101);
-    for (int i = 1; i <= 100; i++) touch(0, i); /* a row of boxes */
-    for (int i = 1; i < 100; i++) touch(i, i + 1);
+    for (int i = 1; i <= 100; i++) touch(0, i); /* boxes on the ground: an island each */
+    assert_most_loops(0);
+    for (int i = 1; i < 100; i++) touch(i, i + 1); /* a row */
+    assert_most_loops(99);
+    begin(12);
+    for (int i = 1; i <= 10; i++) touch(i == 6 ? 0 : i - 1, i); /* two stacks of five */
+    assert_most_loops(0);
+    touch(5, 11), touch(10, 11); /* a beam on them */
+    assert_most_loops(1);
+    begin(12);
+    bodies[11].inv_mass = 0;
+    for (int i = 1; i <= 10; i++) touch(i - 1, i); /* a stack, on the seam of two bodies */
+    touch(1, 11);
     assert_most_loops(0);
 }
 
