@@ -58,8 +58,8 @@ static const double attempt_share = 2.0 / 3;
 /* Many: an iteration takes as long as 10 sweeps or more; with the limit at 33 rest takes 1.4 to 3 times as long. Few:
    the reference's own solver. */
 enum { FEW_BODIES = 33, MANY_BODIES = 128 };
-/* A tower has more bodies than this times its loops plus one: 9 without a loop, 17 with one, as in a gate. With 4 a gate
-   of 11 boxes at rest takes up to 1.8 times as long; with 16 nine boxes drift by 0.9 mm in 10,000 steps. */
+/* A tower has more bodies than this times its loops plus one: 9 without a loop, 17 with one, as in a gate. With 4 a
+   gate of 11 boxes at rest takes up to 1.8 times as long; with 16 nine boxes drift by 0.9 mm in 10,000 steps. */
 enum { TOWER_BODIES = 8 };
 /* Friction below this holds nothing. Without this limit three bridges and two towers without friction fall. */
 static const float slippery_below = 0.01f;
