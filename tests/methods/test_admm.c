@@ -96,6 +96,20 @@ TEST(iterations_end_near_the_solution) {
     assert_velocities(found.velocities, other.velocities, problem->body_count, 2e-5);
 }
 
+/* Where nothing is left but rounding, iterations would divide the penalty until it is the least, 1e-8. */
+TEST(iterations_end_at_rounding) {
+    OWN(World) *world = make_world();
+    add_ground(world, 0.4f);
+    for (int i = 0; i < 8; i++) add_box(world, 1, 0.4f, vec2(0, 0.5f + 0.995f * (float)i));
+    run_engine(world, "", 1);
+    OWN(ContactSolver) solver = make_solver(&solver_admm, "k=10000");
+    OWN(ContactSolution) found = make_solution(world_problem(world));
+    assert_ok(solver_admm.solve(solver.state, world_problem(world), &found, &error), error);
+    const Admm *admm = solver.state;
+    assert_true(fmax(admm->primal, admm->dual) <= 0x1p-34 * admm->largest_g);
+    assert_true(admm->penalty > 1e-7);
+}
+
 /* Masses 1024 times as large: the same velocities, 1024 times the impulses, to the last bit. */
 TEST(the_unit_of_mass_changes_no_bit) {
     OWN(World) *world = make_struck_stack(1), *heavy = make_struck_stack(1024);
