@@ -15,7 +15,7 @@
    fifths of the error at impacts. Sweeps visit contacts in the order of colours: only visits of one sweep can overlap,
    as the next one waits for beta. That takes 0.4 to 0.7 of the time in the problem's order, and leaves less error at
    impacts, but stacks at rest need more sweeps: ten hold 19 boxes instead of 22. A sweep costs as much as one with
-   momentum. Fails with few sweeps: with five to twenty, dominoes have more error than with as many of the engine's.
+   momentum. Fails with few sweeps: with five, dominoes have more error than with as many of the engine's.
 
    Bit-exact: products are summed in a fixed order, that of the visits. */
 #include "base/base.h"
