@@ -70,16 +70,14 @@ typedef struct AvbdContact {
 typedef struct Avbd {
     int iterations;
     float alpha, beta, gamma; /* alpha < 0: post-stabilization */
-    StepMemory memory;
+    StepMemory memory;        /* of each contact: an AvbdContact; of each body: its velocity at the start of the step */
     AvbdBody *bodies;
-    Mat22 *rotations;             /* [bodies] */
-    BodyPose *poses;              /* [bodies] */
-    Vec2 *before;                 /* [bodies of the last step] velocity at its start */
-    AvbdContact *contacts, *last; /* [contacts] of this step and the last */
-    int *visits;                  /* [2 contacts] contacts of a body, body after body */
+    Mat22 *rotations; /* [bodies] */
+    BodyPose *poses;  /* [bodies] */
+    AvbdContact *contacts;
+    int *visits; /* [2 contacts] contacts of a body, body after body */
     int body_count, contact_count;
     ArrayBlock arrays; /* of this step */
-    size_t before_capacity, last_capacity;
 } Avbd;
 
 /* The start of a step: where bodies and contacts begin, with what forces and penalties. */
@@ -92,9 +90,10 @@ static void begin_body(Avbd *avbd, const Body *body, int i, Vec2 gravity, float 
     if (!(body->inv_mass > 0)) return;
     const Vec2 way = vec2_scale(dt, body->velocity), fall = vec2_scale(dt * dt, gravity);
     const float square = vec2_dot(gravity, gravity);
+    const Vec2 *before = avbd->memory.of_bodies;
     float falling = 0; /* the share of gravity that the last step's acceleration had: 0 at rest, 1 in free fall */
     if (avbd->memory.known[i] && square > 0) {
-        const Vec2 acceleration = vec2_scale(1.0f / dt, vec2_sub(body->velocity, avbd->before[i]));
+        const Vec2 acceleration = vec2_scale(1.0f / dt, vec2_sub(body->velocity, before[i]));
         falling = contact_clamp(vec2_dot(acceleration, gravity) / square, 0, 1);
     }
     const Vec2 guess = vec2_add(way, vec2_scale(falling, fall));
@@ -123,7 +122,7 @@ static float first_penalty(const Avbd *avbd, const AvbdRow *last, bool loaded, f
 
 static void begin_contact(Avbd *avbd, const ContactPoint *point, int i, float dt) {
     const int before = avbd->memory.before[i];
-    const AvbdContact *last = before >= 0 ? &avbd->last[before] : NULL;
+    const AvbdContact *last = before >= 0 ? (const AvbdContact *)avbd->memory.of_contacts + before : NULL;
     const Mat22 *of_a = &avbd->rotations[point->a], *of_b = &avbd->rotations[point->b];
     AvbdContact contact = {.a = point->a, .b = point->b, .friction = point->friction};
     if (last != NULL && last->sticks) {
@@ -174,8 +173,6 @@ static bool begin(Avbd *avbd, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     if (!step_memory_match(&avbd->memory, begun->world, begun->step) ||
-        !array_reserve((void **)&avbd->before, &avbd->before_capacity, bodies, sizeof *avbd->before) ||
-        !array_reserve((void **)&avbd->last, &avbd->last_capacity, contacts, sizeof *avbd->last) ||
         !ARRAY_BLOCK_RESERVE(&avbd->arrays, ARRAY_PART(avbd->bodies, bodies), ARRAY_PART(avbd->rotations, bodies),
                              ARRAY_PART(avbd->poses, bodies), ARRAY_PART(avbd->contacts, contacts),
                              ARRAY_PART(avbd->visits, 2 * contacts)))
@@ -313,13 +310,15 @@ static void destroy(void *state) {
     Avbd *avbd = state;
     step_memory_free(&avbd->memory);
     free(avbd->arrays.memory);
-    free(avbd->before);
-    free(avbd->last);
     free(avbd);
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
-    static const Avbd standard = {.iterations = 10, .alpha = -1, .beta = 1e5f, .gamma = 0.99f};
+    static const Avbd standard = {.iterations = 10,
+                                  .alpha = -1,
+                                  .beta = 1e5f,
+                                  .gamma = 0.99f,
+                                  .memory = {.each_body = sizeof(Vec2), .each_contact = sizeof(AvbdContact)}};
     (void)scene;
     return settings_make(chosen, settings, &standard, sizeof standard, "avbd", error);
 }
@@ -368,11 +367,15 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
 }
 
 static void keep(void *state, const World *world) {
+    (void)world;
     Avbd *avbd = state;
-    for (int i = 0; i < avbd->contact_count; i++) avbd->last[i] = avbd->contacts[i];
-    for (int i = 0; i < avbd->body_count; i++) avbd->before[i] = avbd->bodies[i].start;
-    step_memory_keep(&avbd->memory, world);
+    AvbdContact *last = avbd->memory.of_contacts;
+    Vec2 *before = avbd->memory.of_bodies;
+    for (int i = 0; i < avbd->contact_count; i++) last[i] = avbd->contacts[i];
+    for (int i = 0; i < avbd->body_count; i++) before[i] = avbd->bodies[i].start;
 }
+
+static StepMemory *memory_of(void *state) { return &((Avbd *)state)->memory; }
 
 const SteppingKind stepping_avbd = {
     .description = {.name = "avbd",
@@ -388,4 +391,5 @@ const SteppingKind stepping_avbd = {
     .solve = solve,
     .measure = measure,
     .keep = keep,
+    .memory = memory_of,
     .destroy = destroy};

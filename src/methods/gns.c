@@ -35,20 +35,24 @@
 /* Accelerations beyond this multiple of the strongest in training are discarded. */
 static const float beyond_strongest = 2.0f;
 
+/* The particles of a body that moves, as a step leaves them. */
+typedef struct BodyPast {
+    Vec2 position[BOX_PARTICLES], velocity[BOX_PARTICLES][GNS_HISTORY];
+} BodyPast;
+
 typedef struct Gns {
     GnsNet net;
     bool uses_net, rigid;
-    GnsParticles particles, last; /* of this step, and as the last step left them */
-    int *body, *place; /* [particles.bodies] bodies of the world; [bodies of the world] its place in `last`, or -1 */
-    Box *ground;       /* [ground_count] static boxes */
+    GnsParticles particles;
+    int *body;   /* [particles.bodies] bodies of the world */
+    Box *ground; /* [ground_count] static boxes */
     int ground_count;
-    BodyPose *poses; /* [bodies of the world] after the step */
-    bool *touched;   /* [bodies of the world] */
-    StepMemory memory;
+    BodyPose *poses;   /* [bodies of the world] after the step */
+    bool *touched;     /* [bodies of the world] */
+    StepMemory memory; /* of each body of the world: a BodyPast */
     GnsGraph graph;
     GnsPass pass;
-    ArrayBlock arrays; /* but `place` and `last`, which outlive a step */
-    size_t place_capacity, position_capacity, velocity_capacity;
+    ArrayBlock arrays; /* of this step */
 } Gns;
 
 static const SettingSpec settings[] = {
@@ -61,9 +65,6 @@ static void destroy(void *state) {
     Gns *gns = state;
     gns_net_free(&gns->net);
     free(gns->arrays.memory);
-    free(gns->last.position);
-    free(gns->last.velocity);
-    free(gns->place);
     step_memory_free(&gns->memory);
     gns_graph_free(&gns->graph);
     gns_pass_free(&gns->pass);
@@ -71,7 +72,7 @@ static void destroy(void *state) {
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
-    static const Gns standard = {.uses_net = true, .rigid = true};
+    static const Gns standard = {.uses_net = true, .rigid = true, .memory.each_body = sizeof(BodyPast)};
     Gns *gns = settings_make(chosen, settings, &standard, sizeof standard, "gns", error);
     if (gns == NULL || !gns->uses_net) return gns;
     const char *path = settings_get(chosen, "network");
@@ -103,11 +104,8 @@ static void begin_past(Gns *gns, int i, const Body *body, float dt) {
 static bool begin(Gns *gns, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
     const size_t count = (size_t)problem->body_count + 1, particles = count * BOX_PARTICLES;
-    GnsParticles *now = &gns->particles, *last = &gns->last;
-    if (!array_reserve((void **)&gns->place, &gns->place_capacity, count, sizeof *gns->place) ||
-        !array_reserve((void **)&last->position, &gns->position_capacity, particles, sizeof *last->position) ||
-        !array_reserve((void **)&last->velocity, &gns->velocity_capacity, particles, sizeof *last->velocity) ||
-        !ARRAY_BLOCK_RESERVE(&gns->arrays, ARRAY_PART(now->body, count), ARRAY_PART(now->position, particles),
+    GnsParticles *now = &gns->particles;
+    if (!ARRAY_BLOCK_RESERVE(&gns->arrays, ARRAY_PART(now->body, count), ARRAY_PART(now->position, particles),
                              ARRAY_PART(now->velocity, particles), ARRAY_PART(gns->body, count),
                              ARRAY_PART(gns->ground, count), ARRAY_PART(gns->poses, count),
                              ARRAY_PART(gns->touched, count)) ||
@@ -129,9 +127,9 @@ static bool begin(Gns *gns, const BegunStep *begun) {
             begin_past(gns, at, body, problem->dt);
             continue;
         }
-        const ptrdiff_t to = (ptrdiff_t)at * BOX_PARTICLES, from = (ptrdiff_t)gns->place[i] * BOX_PARTICLES;
-        memcpy(now->position + to, last->position + from, BOX_PARTICLES * sizeof *now->position);
-        memcpy(now->velocity + to, last->velocity + from, BOX_PARTICLES * sizeof *now->velocity);
+        const BodyPast *past = (const BodyPast *)gns->memory.of_bodies + i;
+        memcpy(now->position + (ptrdiff_t)at * BOX_PARTICLES, past->position, sizeof past->position);
+        memcpy(now->velocity + (ptrdiff_t)at * BOX_PARTICLES, past->velocity, sizeof past->velocity);
     }
     return true;
 }
@@ -203,13 +201,17 @@ static void measure(void *state, const BegunStep *begun) {
 }
 
 static void keep(void *state, const World *world) {
+    (void)world;
     Gns *gns = state;
-    const size_t count = (size_t)gns_particle_count(&gns->particles);
-    memcpy(gns->last.position, gns->particles.position, count * sizeof *gns->last.position);
-    memcpy(gns->last.velocity, gns->particles.velocity, count * sizeof *gns->last.velocity);
-    for (int i = 0; i < gns->particles.bodies; i++) gns->place[gns->body[i]] = i;
-    step_memory_keep(&gns->memory, world);
+    const GnsParticles *now = &gns->particles;
+    for (int i = 0; i < now->bodies; i++) {
+        BodyPast *past = (BodyPast *)gns->memory.of_bodies + gns->body[i];
+        memcpy(past->position, now->position + (ptrdiff_t)i * BOX_PARTICLES, sizeof past->position);
+        memcpy(past->velocity, now->velocity + (ptrdiff_t)i * BOX_PARTICLES, sizeof past->velocity);
+    }
 }
+
+static StepMemory *memory_of(void *state) { return &((Gns *)state)->memory; }
 
 const SteppingKind stepping_gns = {
     .description = {.name = "gns",
@@ -228,4 +230,5 @@ const SteppingKind stepping_gns = {
     .solve = solve,
     .measure = measure,
     .keep = keep,
+    .memory = memory_of,
     .destroy = destroy};

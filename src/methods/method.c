@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "methods/steppers.h"
 #include "scenes/scenes.h"
 
 #include <stdio.h>
@@ -162,6 +163,22 @@ void stepper_destroy(Stepper *stepper) {
     else
         stepper->solver.kind->destroy(stepper->solver.state);
     free(stepper);
+}
+
+/* NULL: the world is enough. */
+static StepMemory *memory_of(const Stepper *stepper) {
+    const SteppingKind *stepping = stepper->stepping;
+    return stepping != NULL && stepping->memory != NULL ? stepping->memory(stepper->state) : NULL;
+}
+
+bool stepper_remember(const Stepper *stepper, StepMemory *memory, Error *error) {
+    const StepMemory *own = memory_of(stepper);
+    return own == NULL || step_memory_copy(memory, own) || error_memory(error, stepper->description->name);
+}
+
+bool stepper_recall(Stepper *stepper, const StepMemory *memory, Error *error) {
+    StepMemory *own = memory_of(stepper);
+    return own == NULL || step_memory_copy(own, memory) || error_memory(error, stepper->description->name);
 }
 
 const MethodDescription *stepper_describe(const Stepper *stepper) { return stepper->description; }

@@ -144,6 +144,9 @@ typedef struct BegunStep {
     const BodyPose *poses;     /* out: [body_count] where the bodies end; NULL: where their velocities lead */
 } BegunStep;
 
+/* What a stepper carries from a step to the next one, besides the world (methods/steppers.h). */
+typedef struct StepMemory StepMemory;
+
 typedef struct SteppingKind {
     MethodDescription description;
     /* Returns the state for a scene with any launch; NULL with error set if the scene or a setting is refused. */
@@ -152,6 +155,7 @@ typedef struct SteppingKind {
     bool (*solve)(void *state, BegunStep *begun, Error *error);
     void (*measure)(void *state, const BegunStep *begun); /* momentum_error of the solution; NULL: it is 0 */
     void (*keep)(void *state, const World *world);        /* what the next step begins with; NULL: nothing */
+    StepMemory *(*memory)(void *state);                   /* where that is; NULL: the next step needs none of it */
     void (*destroy)(void *state);
 } SteppingKind;
 
@@ -225,6 +229,11 @@ Stepper *stepper_create(const Method *method, const Scene *scene, Error *error);
 /* Of a solver in memory, which is destroyed with it, or at once where memory is short. */
 Stepper *stepper_of_solver(const ContactSolver *solver, Error *error);
 void stepper_destroy(Stepper *stepper);
+
+/* Several runs go on from one step before the bomb: what the stepper carries besides the world, copied from it and back.
+   *memory: zero-initialise; free with step_memory_free(). Not of external methods, whose runs begin at the start. */
+bool stepper_remember(const Stepper *stepper, StepMemory *memory, Error *error);
+bool stepper_recall(Stepper *stepper, const StepMemory *memory, Error *error);
 
 /* The description of its method. */
 const MethodDescription *stepper_describe(const Stepper *stepper);

@@ -58,15 +58,13 @@ typedef struct SoftStep {
     int substeps;
     float hertz, damping, keep;
     Softness moving, fixed; /* of contacts between moving bodies; with a static body: twice the frequency */
-    StepMemory memory;
+    StepMemory memory;      /* of each contact: the impulses of the last substep */
     SoftBody *bodies;
     BodyPose *poses;
     SoftPair *pairs;
     SoftPoint *points;
-    ContactImpulse *kept; /* [contacts of the last step] impulses of its last substep */
     int pair_count, body_count, point_count;
     ArrayBlock arrays; /* of this step */
-    size_t kept_capacity;
 } SoftStep;
 
 #define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
@@ -173,12 +171,12 @@ static void destroy(void *state) {
     SoftStep *stepping = state;
     step_memory_free(&stepping->memory);
     free(stepping->arrays.memory);
-    free(stepping->kept);
     free(stepping);
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
-    static const SoftStep standard = {.substeps = 4, .hertz = 30, .damping = 10};
+    static const SoftStep standard = {
+        .substeps = 4, .hertz = 30, .damping = 10, .memory.each_contact = sizeof(ContactImpulse)};
     (void)scene;
     return settings_make(chosen, settings, &standard, sizeof standard, "soft-step", error);
 }
@@ -206,10 +204,10 @@ static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) 
     }
     /* The impulses of the last substep. In a step of unknown past an equal share of those of the last step. */
     const int before = stepping->memory.before[i];
+    const ContactImpulse *kept = stepping->memory.of_contacts;
     const float share = 1.0f / (float)stepping->substeps;
-    const ContactImpulse start = before >= 0
-                                     ? stepping->kept[before]
-                                     : (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
+    const ContactImpulse start =
+        before >= 0 ? kept[before] : (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
     const Vec2 between = vec2_sub(contact->arm_b, contact->arm_a);
     stepping->points[i] = (SoftPoint){.arm_a = contact->arm_a,
                                       .arm_b = contact->arm_b,
@@ -223,7 +221,6 @@ static bool begin(SoftStep *stepping, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     if (!step_memory_match(&stepping->memory, begun->world, begun->step) ||
-        !array_reserve((void **)&stepping->kept, &stepping->kept_capacity, contacts, sizeof *stepping->kept) ||
         !ARRAY_BLOCK_RESERVE(&stepping->arrays, ARRAY_PART(stepping->bodies, bodies),
                              ARRAY_PART(stepping->poses, bodies), ARRAY_PART(stepping->pairs, contacts),
                              ARRAY_PART(stepping->points, contacts)))
@@ -275,10 +272,13 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
 }
 
 static void keep(void *state, const World *world) {
+    (void)world;
     SoftStep *stepping = state;
-    step_memory_keep(&stepping->memory, world);
-    for (int i = 0; i < stepping->point_count; i++) stepping->kept[i] = stepping->points[i].impulse;
+    ContactImpulse *kept = stepping->memory.of_contacts;
+    for (int i = 0; i < stepping->point_count; i++) kept[i] = stepping->points[i].impulse;
 }
+
+static StepMemory *memory_of(void *state) { return &((SoftStep *)state)->memory; }
 
 const SteppingKind stepping_soft_step = {
     .description = {.name = "soft-step",
@@ -294,4 +294,5 @@ const SteppingKind stepping_soft_step = {
     .create = create,
     .solve = solve,
     .keep = keep,
+    .memory = memory_of,
     .destroy = destroy};

@@ -21,21 +21,23 @@ typedef struct TouchingPair {
     int a, b;
 } TouchingPair;
 
-/* Zero-initialise; free with step_memory_free. */
-typedef struct StepMemory {
-    int body_count, contact_count; /* of the last step */
-    Body *bodies;                  /* [body_count] after it */
-    TouchingPair *pairs;           /* [contact_count] */
-    bool *known;                   /* [bodies of this step] */
-    int *before;                   /* [contacts of this step] index of the same point in the last step, or -1 */
-    size_t body_capacity, pair_capacity, known_capacity, before_capacity;
-} StepMemory;
+/* Zero-initialise but for the sizes, which a stepper sets once; free with step_memory_free. */
+struct StepMemory {
+    size_t each_body, each_contact; /* bytes that the stepper carries for each */
+    int body_count, contact_count;  /* of the last step */
+    Body *bodies;                   /* [body_count] after it */
+    TouchingPair *pairs;            /* [contact_count] */
+    void *of_bodies, *of_contacts;  /* [body_count], [contact_count] what it carries, filled in `keep` */
+    bool *known;                    /* [bodies of this step] */
+    int *before;                    /* [contacts of this step] index of the same point in the last step, or -1 */
+    size_t body_capacity, pair_capacity, of_body_capacity, of_contact_capacity, known_capacity, before_capacity;
+};
 
 void step_memory_free(StepMemory *memory);
 
-/* Fills `known` and `before` for a step that has begun; nothing is known in the first step of a run, and no contact
-   without warm starting. False when memory is short. */
+/* Fills `known` and `before` for a step that has begun, and makes room for what is carried on from it; nothing is known
+   in the first step of a run, and no contact without warm starting. False when memory is short. */
 bool step_memory_match(StepMemory *memory, const World *world, const Step *step);
 
-/* Call it after the step has ended; it does not fail, as step_memory_match has reserved the arrays. */
-void step_memory_keep(StepMemory *memory, const World *world);
+/* What a stepper with *to knows is then what one with *from does. False when memory is short: it knows nothing. */
+bool step_memory_copy(StepMemory *to, const StepMemory *from);

@@ -15,11 +15,9 @@ typedef struct Contender {
     Method method;                    /* both, parsed */
 } Contender;
 
-/* Whether its steps follow from the world alone: a contact solver of this program. So what launches share, all steps
-   before the bomb, need to be taken only once. */
-static inline bool contender_forgets(const Contender *contender) {
-    const MethodKind *kind = contender->method.kind;
-    return kind->solver != NULL && !kind->description->external;
+/* Whether what launches share, all steps before the bomb, need to be taken only once (stepper_memory()). */
+static inline bool contender_shares(const Contender *contender) {
+    return !contender->method.kind->description->external;
 }
 
 typedef struct ContenderList {

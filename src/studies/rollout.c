@@ -206,6 +206,7 @@ void rollout_free(Rollout *rollout) {
 
 void shared_steps_free(SharedSteps *shared) {
     rollout_free(&shared->rollout);
+    step_memory_free(&shared->memory);
     for (int phase = 0; phase < PHASES; phase++) step_scores_free(&shared->scores[phase]);
     shared->ended = false;
 }
@@ -235,9 +236,10 @@ static bool copy_scores(StepScores *to, const StepScores *from) {
     return true;
 }
 
-static bool copy_shared(Rollout *rollout, StepScores scores[PHASES], Error *error) {
+static bool copy_shared(Rollout *rollout, Stepper *stepper, StepScores scores[PHASES], Error *error) {
     const SharedSteps *shared = rollout->shared;
-    if (!world_copy(rollout->world, shared->rollout.world, error)) return false;
+    if (!world_copy(rollout->world, shared->rollout.world, error) || !stepper_recall(stepper, &shared->memory, error))
+        return false;
     copy_log(&rollout->log, &shared->rollout.log);
     rollout->unconverged = shared->rollout.unconverged;
     for (int phase = 0; scores != NULL && phase < PHASES; phase++)
@@ -251,7 +253,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
     rollout->world = scene_world(launched, error);
     if (rollout->world == NULL) return false;
     if (!run_log_begin(&rollout->log, launched, rollout->world)) return error_memory(error, "study");
-    if (rollout->shared != NULL && !copy_shared(rollout, scores, error)) return false;
+    if (rollout->shared != NULL && !copy_shared(rollout, stepper, scores, error)) return false;
     if (rollout->shared != NULL && rollout->shared->ended) return true;
     const bool push_out = !stepper_describe(stepper)->no_push_out;
     PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
@@ -287,7 +289,8 @@ bool shared_steps_run(SharedSteps *shared, Stepper *stepper, const Scene *launch
     Scene first = *launched;
     first.frames = steps;
     const bool ok =
-        rollout_run(&shared->rollout, stepper, &first, sampling, sampling != NULL ? shared->scores : NULL, error);
+        rollout_run(&shared->rollout, stepper, &first, sampling, sampling != NULL ? shared->scores : NULL, error) &&
+        stepper_remember(stepper, &shared->memory, error);
     converged_step_free(&shared->rollout.converged);
     shared->ended = shared->rollout.log.frames < steps;
     return ok;

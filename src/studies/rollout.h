@@ -6,6 +6,7 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
+#include "methods/steppers.h"
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
@@ -138,6 +139,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
 /* The first steps of several launches, before the bomb appears. Zero-initialise; free with shared_steps_free(). */
 typedef struct SharedSteps {
     Rollout rollout;
+    StepMemory memory; /* after them */
     StepScores scores[PHASES];
     bool ended; /* one of them failed */
 } SharedSteps;

@@ -177,7 +177,7 @@ static bool score(void *context, int i, Error *error) {
     Stepper *stepper = own->stepper;
     Rollout rollout = {0};
     bool ok = stepper != NULL;
-    if (study->shared_steps > 0 && contender_forgets(study->contenders[contender])) {
+    if (study->shared_steps > 0 && contender_shares(study->contenders[contender])) {
         ok = ok &&
              shared_steps_run(&own->shared, stepper, &piece->launched, study->shared_steps, &study->size.closed, error);
         rollout.shared = &own->shared;

@@ -5,6 +5,7 @@
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "methods/steppers.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 #include "studies/chart_table.h"
@@ -97,6 +98,7 @@ typedef struct Timed {
     Stepper *stepper;
     World *world;       /* in which it runs */
     World *start;       /* after the shared steps */
+    StepMemory memory;  /* the same */
     bool shares, ended; /* there are such steps; one of them failed */
     StepLog *logs;      /* [parts][repetitions] */
     bool *due;          /* [parts] to be measured */
@@ -129,13 +131,16 @@ static bool run_part(const Timing *timing, Timed *timed, int part, StepLog *log,
     const int shared = timed->shares ? options->shared_steps : 0;
     const Scene *launched = &options->launches[part > 0 ? part - 1 : 0];
     if (part == 0 ? shared == 0 : timed->ended) return true;
+    Stepper *stepper = timed->stepper;
     World *world = scene_world(launched, error);
     if (world == NULL) return false;
     bool ended = false;
-    const bool ok = (part == 0 || shared == 0 || world_copy(world, timed->start, error)) &&
-                    run_closed(timed->stepper, launched, world, part == 0 ? 1 : shared + 1,
-                               part == 0 ? shared : options->last_frame, timing->overhead, log, &ended, error) &&
-                    (part > 0 || world_copy(timed->start, world, error));
+    const bool ok =
+        (part == 0 || shared == 0 ||
+         (world_copy(world, timed->start, error) && stepper_recall(stepper, &timed->memory, error))) &&
+        run_closed(stepper, launched, world, part == 0 ? 1 : shared + 1, part == 0 ? shared : options->last_frame,
+                   timing->overhead, log, &ended, error) &&
+        (part > 0 || (world_copy(timed->start, world, error) && stepper_remember(stepper, &timed->memory, error)));
     if (part == 0) timed->ended = ended;
     world_destroy(world);
     return ok;
@@ -250,7 +255,7 @@ static bool make_timed(const Timing *timing, const Contender *contender, Timed *
     timed->world = timed->stepper != NULL ? scene_world(scene, error) : NULL;
     timed->start = timed->world != NULL ? scene_world(scene, error) : NULL;
     if (timed->start == NULL) return false;
-    timed->shares = contender_forgets(contender) && timing->options->shared_steps > 0;
+    timed->shares = contender_shares(contender) && timing->options->shared_steps > 0;
     timed->logs = calloc(parts * repetitions, sizeof *timed->logs);
     timed->due = malloc(parts * sizeof *timed->due);
     if (timed->logs == NULL || timed->due == NULL) return error_memory(error, "timing");
@@ -294,11 +299,12 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
                                                                    : error_memory(error, "timing");
     if (pinned) sched_setaffinity(0, sizeof before, &before);
     for (int i = 0; timing.items != NULL && i < count; i++) {
-        const Timed *timed = &timing.items[i];
+        Timed *timed = &timing.items[i];
         for (int k = 0; timed->logs != NULL && k < timing.parts * options->repetitions; k++) free(timed->logs[k].items);
         stepper_destroy(timed->stepper);
         world_destroy(timed->world);
         world_destroy(timed->start);
+        step_memory_free(&timed->memory);
         free(timed->logs);
         free(timed->due);
     }

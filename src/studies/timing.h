@@ -33,7 +33,7 @@ typedef struct TimingOptions {
     const Scene *launches;         /* [launch_count] launched scenes, run in closed loop */
     int launch_count, repetitions; /* each repetition runs all launches */
     int last_frame;                /* of each run, which ends with the phase after the impact */
-    int shared_steps;              /* of all launches: measured once (contender_forgets()) */
+    int shared_steps;              /* of all launches: measured once (contender_shares()) */
 } TimingOptions;
 
 /* Fills closed[count][PHASES] (closed loop) and frozen[count][PHASES] (frozen steps). */

@@ -229,7 +229,7 @@ TEST(push_out_counts_for_methods_that_have_it) {
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
 }
 
-/* Of every method that says so (contender_forgets()): the first steps of another launch lead to the same bits. */
+/* Of every method but external ones (contender_shares()): the first steps of another launch lead to the same bits. */
 TEST(runs_that_share_their_first_steps_are_whole_runs) {
     OWN(Scene) *scene = scene_named("families/gate");
     scene->frames = 100; /* the bomb appears after step 60 */
@@ -237,7 +237,7 @@ TEST(runs_that_share_their_first_steps_are_whole_runs) {
     other.bomb.x.value += 0.5f;
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         const Contender contender = {.method = {.kind = kind}};
-        if (!contender_forgets(&contender) || method_lacks_network(&contender.method, scene)) continue;
+        if (!contender_shares(&contender) || method_lacks_network(&contender.method, scene)) continue;
         OWN(Stepper) *stepper = stepper_by(scene, kind->description->name);
         SharedSteps shared = {0};
         OWN(Rollout) whole = {0};
