@@ -22,7 +22,7 @@ void colours_free(Colours *colours) {
 
 bool colours_order(Colours *colours, const ContactProblem *problem) {
     const size_t contacts = (size_t)problem->contact_count, bodies = (size_t)problem->body_count;
-    int begin[COLOURS + 1] = {0}, pairs = 0;
+    int begin[COLOURS + 1] = {0}, pairs = 0, used = 0;
     if (!ARRAY_BLOCK_RESERVE(&colours->arrays, ARRAY_PART(colours->visits, contacts),
                              ARRAY_PART(colours->pairs, contacts + 1), ARRAY_PART(colours->colour, contacts),
                              ARRAY_PART(colours->taken, bodies)))
@@ -40,10 +40,11 @@ bool colours_order(Colours *colours, const ContactProblem *problem) {
         *a |= (uint64_t)problem_body_moves(&problem->bodies[contact->a]) << colour;
         *b |= (uint64_t)problem_body_moves(&problem->bodies[contact->b]) << colour;
         colours->colour[i] = (uint8_t)colour;
+        used = colour < used ? used : colour + 1;
         begin[colour + 1] += colours->pairs[i + 1] - colours->pairs[i];
     }
     /* Counting sort by colour. */
-    for (int i = 0; i < COLOURS; i++) begin[i + 1] += begin[i];
+    for (int i = 0; i < used; i++) begin[i + 1] += begin[i];
     for (int i = 0; i < pairs; i++) {
         int32_t *visit = &colours->visits[begin[colours->colour[i]]];
         begin[colours->colour[i]] += colours->pairs[i + 1] - colours->pairs[i];
