@@ -73,8 +73,10 @@ static Vec2 moved_by(Vec2 turn, Vec2 arm) {
     return vec2_sub(vec2(turn.x * arm.x - turn.y * arm.y, turn.y * arm.x + turn.x * arm.y), arm);
 }
 
+static float smaller(float x, float y) { return x < y ? x : y; }
+
 static float smallest_half(const Box *a, const Box *b) {
-    return fminf(fminf(a->half.x, a->half.y), fminf(b->half.x, b->half.y));
+    return smaller(smaller(a->half.x, a->half.y), smaller(b->half.x, b->half.y));
 }
 
 static float radius(const Box *box) { return sqrtf(vec2_dot(box->half, box->half)); }
@@ -97,7 +99,7 @@ static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter 
     const Vec2 turn_a = turn_from(old->found.axis_a, a->rotation.column1);
     const Vec2 turn_b = turn_from(old->found.axis_b, b->rotation.column1);
     const Vec2 normal = last->contacts[old->first].normal;
-    const float most = keep * 2.0f * smallest_half(a, b), reach = fminf(radius(a), radius(b));
+    const float most = keep * 2.0f * smallest_half(a, b), reach = smaller(radius(a), radius(b));
     const float drift = fabsf(vec2_cross(shift, normal)) + reach * fabsf(vec2_cross(turn_a, turn_b));
     if (!(turn_a.x > least_cosine && turn_b.x > least_cosine && drift < most && vec2_dot(shift, normal) < most))
         return false;
