@@ -238,7 +238,7 @@ static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool 
         manifold_compute(&manifold, a, b);
     if (manifold.count == 0) return;
     float rest = old != NULL ? old->rest : mended_slop;
-    for (int k = 0; k < manifold.count && old == NULL; k++) rest = fmaxf(rest, -manifold.points[k].separation);
+    for (int k = 0; mend && old == NULL && k < manifold.count; k++) rest = fmaxf(rest, -manifold.points[k].separation);
     if (!mend || rest > CONTACT_SLOP) rest = CONTACT_SLOP;
     Arbiter *arbiter = &set->arbiters[set->arbiter_count++];
     write_arbiter(set, arbiter, pair, set->contact_count, &manifold, rest, boxes);
