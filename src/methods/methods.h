@@ -230,8 +230,9 @@ Stepper *stepper_create(const Method *method, const Scene *scene, Error *error);
 Stepper *stepper_of_solver(const ContactSolver *solver, Error *error);
 void stepper_destroy(Stepper *stepper);
 
-/* Several runs go on from one step before the bomb: what the stepper carries besides the world, copied from it and back.
-   *memory: zero-initialise; free with step_memory_free(). Not of external methods, whose runs begin at the start. */
+/* What the stepper carries besides the world, copied from it and back, so that several runs go on from one step before
+   the bomb. *memory: zero-initialise; free with step_memory_free(). Not of external methods, whose runs begin at the
+   start. */
 bool stepper_remember(const Stepper *stepper, StepMemory *memory, Error *error);
 bool stepper_recall(Stepper *stepper, const StepMemory *memory, Error *error);
 
