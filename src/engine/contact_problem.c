@@ -73,6 +73,7 @@ static Vec2 moved_by(Vec2 turn, Vec2 arm) {
     return vec2_sub(vec2(turn.x * arm.x - turn.y * arm.y, turn.y * arm.x + turn.x * arm.y), arm);
 }
 
+/* Unlike fminf(), which is a call. */
 static float smaller(float x, float y) { return x < y ? x : y; }
 
 static float smallest_half(const Box *a, const Box *b) {
@@ -237,9 +238,9 @@ static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool 
     else
         manifold_compute(&manifold, a, b);
     if (manifold.count == 0) return;
-    float rest = old != NULL ? old->rest : mended_slop;
+    float rest = !mend ? CONTACT_SLOP : old != NULL ? old->rest : mended_slop;
     for (int k = 0; mend && old == NULL && k < manifold.count; k++) rest = fmaxf(rest, -manifold.points[k].separation);
-    if (!mend || rest > CONTACT_SLOP) rest = CONTACT_SLOP;
+    rest = smaller(rest, CONTACT_SLOP);
     Arbiter *arbiter = &set->arbiters[set->arbiter_count++];
     write_arbiter(set, arbiter, pair, set->contact_count, &manifold, rest, boxes);
     /* Whether the way along which they touch is short beside their sides, as a covered side is touched. */

@@ -154,8 +154,8 @@ typedef struct SteppingKind {
     /* Solves the step; this is what a meter measures. Allocates nothing once it has seen a problem of that size. */
     bool (*solve)(void *state, BegunStep *begun, Error *error);
     void (*measure)(void *state, const BegunStep *begun); /* momentum_error of the solution; NULL: it is 0 */
-    void (*keep)(void *state, const World *world);        /* what the next step begins with; NULL: nothing */
-    StepMemory *(*memory)(void *state);                   /* where that is; NULL: the next step needs none of it */
+    void (*keep)(void *state, const World *world);        /* notes what the next step begins with; NULL: nothing */
+    StepMemory *(*memory)(void *state);                   /* kept here, and copied by stepper_remember(); NULL: none */
     void (*destroy)(void *state);
 } SteppingKind;
 

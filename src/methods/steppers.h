@@ -39,5 +39,5 @@ void step_memory_free(StepMemory *memory);
    in the first step of a run, and no contact without warm starting. False when memory is short. */
 bool step_memory_match(StepMemory *memory, const World *world, const Step *step);
 
-/* What a stepper with *to knows is then what one with *from does. False when memory is short: it knows nothing. */
+/* Afterwards a stepper with *to knows what one with *from knows. False when memory is short: it then knows nothing. */
 bool step_memory_copy(StepMemory *to, const StepMemory *from);

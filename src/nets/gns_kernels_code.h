@@ -2,16 +2,14 @@
 /* The code of GnsKernels (kernels.h); included by kernels_code.h. Every sum runs over its items in rising order. */
 #include "nets/kernels.h"
 
-enum { WIDE = 8, COLUMNS = 16 };
+/* ROWS_AT_ONCE: as many rows as have the sums of COLUMNS columns in eight registers, of FLOATS (kernels_code.h). */
+enum { WIDE = 8, COLUMNS = 2 * WIDE, VECTORS = COLUMNS / FLOATS, ROWS_AT_ONCE = 8 / VECTORS };
 
 /* Two registers where one holds four floats. */
 typedef float Lanes __attribute__((vector_size(WIDE * sizeof(float)), aligned(sizeof(float)), may_alias));
 
 /* The variance of a row of equal numbers is 0. */
 static const float least_variance = 1e-5f;
-
-/* ROWS_AT_ONCE: as many rows as have the sums of COLUMNS columns in registers. */
-enum { IN_REGISTER = VECTOR_BYTES / sizeof(float), VECTORS = COLUMNS / IN_REGISTER, ROWS_AT_ONCE = 8 / VECTORS };
 
 /* out[rows, columns] += a b[depth, columns], a[row, d] at a[row * row_step + d * depth_step], for COLUMNS columns and
    `rows` rows, a constant after inlining. */
@@ -20,17 +18,16 @@ static inline __attribute__((always_inline)) void multiply_block(float *out, int
                                                                  const float *b, int depth, const int rows) {
     Floats sums[ROWS_AT_ONCE][VECTORS];
     for (int r = 0; r < rows; r++)
-        for (int v = 0; v < VECTORS; v++)
-            sums[r][v] = *(const Floats *)(out + (ptrdiff_t)r * columns + v * IN_REGISTER);
+        for (int v = 0; v < VECTORS; v++) sums[r][v] = *(const Floats *)(out + (ptrdiff_t)r * columns + v * FLOATS);
     for (int d = 0; d < depth; d++) {
         for (int r = 0; r < rows; r++) {
             const float x = a[r * row_step + d * depth_step];
-            for (int v = 0; v < VECTORS; v++) sums[r][v] += x * *(const Floats *)(b + v * IN_REGISTER);
+            for (int v = 0; v < VECTORS; v++) sums[r][v] += x * *(const Floats *)(b + v * FLOATS);
         }
         b += columns;
     }
     for (int r = 0; r < rows; r++)
-        for (int v = 0; v < VECTORS; v++) *(Floats *)(out + (ptrdiff_t)r * columns + v * IN_REGISTER) = sums[r][v];
+        for (int v = 0; v < VECTORS; v++) *(Floats *)(out + (ptrdiff_t)r * columns + v * FLOATS) = sums[r][v];
 }
 
 static void multiply_add(float *out, int rows, int columns, const float *a, ptrdiff_t row_step, ptrdiff_t depth_step,

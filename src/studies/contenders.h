@@ -15,7 +15,7 @@ typedef struct Contender {
     Method method;                    /* both, parsed */
 } Contender;
 
-/* Whether what launches share, all steps before the bomb, need to be taken only once (stepper_memory()). */
+/* Whether the steps before the bomb, which all launches share, are taken only once (stepper_remember()). */
 static inline bool contender_shares(const Contender *contender) {
     return !contender->method.kind->description->external;
 }

@@ -135,13 +135,16 @@ static bool run_part(const Timing *timing, Timed *timed, int part, StepLog *log,
     World *world = scene_world(launched, error);
     if (world == NULL) return false;
     bool ended = false;
-    const bool ok =
-        (part == 0 || shared == 0 ||
-         (world_copy(world, timed->start, error) && stepper_recall(stepper, &timed->memory, error))) &&
-        run_closed(stepper, launched, world, part == 0 ? 1 : shared + 1, part == 0 ? shared : options->last_frame,
-                   timing->overhead, log, &ended, error) &&
-        (part > 0 || (world_copy(timed->start, world, error) && stepper_remember(stepper, &timed->memory, error)));
-    if (part == 0) timed->ended = ended;
+    bool ok = true;
+    if (part == 0) {
+        ok = run_closed(stepper, launched, world, 1, shared, timing->overhead, log, &ended, error) &&
+             world_copy(timed->start, world, error) && stepper_remember(stepper, &timed->memory, error);
+        timed->ended = ended;
+    } else {
+        if (shared > 0) ok = world_copy(world, timed->start, error) && stepper_recall(stepper, &timed->memory, error);
+        ok = ok && run_closed(stepper, launched, world, shared + 1, options->last_frame, timing->overhead, log, &ended,
+                              error);
+    }
     world_destroy(world);
     return ok;
 }
