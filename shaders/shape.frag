@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rounded box from its signed distance. Lengths are integers in 1/65536 pixel, and all arithmetic is on integers: no
-// rounding, fused multiply-add or library function can change a bit of the result on any machine.
+// A rounded box from its signed distance. Lengths are integers in 1/65536 pixel; arithmetic is on integers, or on floats
+// that hold integers below 2^24: no rounding, fused multiply-add or library function can change a bit of the result on
+// any machine.
 #version 330 core
 
 flat in ivec2 corner;        // the pixel that the positions below are relative to
@@ -12,7 +13,7 @@ flat in ivec4 shape_paint;   // fill, outline, band colour, as 0xRRGGBB; band th
 out vec4 color;
 
 const int PIXEL = 65536;
-const int LEVELS = 51; // of coverage; 255 / 51 is an integer, so alpha is exact in eight bits
+const float LEVELS = 51.0; // of coverage; 255 / 51 is an integer, so alpha is exact in eight bits
 
 // Length of v, whose components are at most `limit`.
 int length_of(ivec2 v, int limit) {
@@ -21,8 +22,8 @@ int length_of(ivec2 v, int limit) {
     int square = w.x * w.x + w.y * w.y;
     int root = int(sqrt(float(square)));
     // Correct the root to the exact integer root, however sqrt rounds.
-    if (root * root > square) root--;
-    if ((root + 1) * (root + 1) <= square) root++;
+    int above = square - root * root;
+    root += above < 0 ? -1 : above > 2 * root ? 1 : 0;
     return root << shift;
 }
 
@@ -35,15 +36,16 @@ int box_distance(ivec2 at, ivec2 half_size, int radius) {
 }
 
 // Coverage of a pixel, 0 to LEVELS, from the distance of its centre.
-int coverage(int distance) {
-    int inside = clamp(PIXEL / 2 - distance, 0, PIXEL);
-    return (inside * LEVELS + PIXEL / 2) >> 16;
+float coverage(int distance) {
+    float inside = float(clamp(PIXEL / 2 - distance, 0, PIXEL));
+    return floor((inside * LEVELS + float(PIXEL / 2)) * (1.0 / float(PIXEL)));
 }
 
-ivec3 unpack(int rgb) { return ivec3(rgb >> 16, rgb >> 8, rgb) & 255; }
+vec3 unpack(int rgb) { return vec3(ivec3(rgb >> 16, rgb >> 8, rgb) & 255); }
 
-ivec3 blend(ivec3 below, ivec3 above, int level) {
-    return (below * (LEVELS - level) + above * level + LEVELS / 2) / LEVELS;
+// The mean, rounded. Before it is rounded, it is at least 0.5 / LEVELS away from a half, so the factor's error is none.
+vec3 blend(vec3 below, vec3 above, float level) {
+    return floor((below * LEVELS + (above - below) * level) * (1.0 / LEVELS) + 0.5);
 }
 
 void main() {
@@ -51,9 +53,9 @@ void main() {
     ivec2 axis = shape_axis.xy;
     ivec2 at = shape_axis.zw + ivec2(axis.x * pixel.x + axis.y * pixel.y, axis.y * pixel.x - axis.x * pixel.y);
     int distance = box_distance(at, shape_extents.xy, shape_extents.z);
-    ivec3 inner = blend(unpack(shape_paint.x), unpack(shape_paint.z), coverage(shape_extents.y - shape_paint.w - at.y));
-    int inside = coverage(distance + shape_extents.w);
-    ivec3 painted = blend(unpack(shape_paint.y), inner, inside);
-    int level = coverage(distance) - (shape_paint.x >> 24) * inside;
-    color = vec4(vec3(painted), float(level * (255 / LEVELS))) / 255.0;
+    vec3 inner = blend(unpack(shape_paint.x), unpack(shape_paint.z), coverage(shape_extents.y - shape_paint.w - at.y));
+    float inside = coverage(distance + shape_extents.w);
+    vec3 painted = blend(unpack(shape_paint.y), inner, inside);
+    float level = coverage(distance) - float(shape_paint.x >> 24) * inside;
+    color = vec4(painted, level * (255.0 / LEVELS)) * (1.0 / 255.0); // rounded to bytes
 }

@@ -82,15 +82,14 @@ struct Renderer {
     Painter painter;
     Drawing drawing, before; /* of this frame and of the previous one */
     bool in_sync;            /* the canvas and the caller's image show `drawing` */
-    bool *changed;           /* [height] */
+    Damage damage;           /* of `before` */
 };
 
 Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {
     Renderer *renderer = calloc(1, sizeof *renderer);
     if (renderer == NULL) return error_memory(error, "render"), NULL;
     renderer->picture = *picture;
-    renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
-    if ((renderer->changed != NULL || error_memory(error, "render")) &&
+    if (damage_init(&renderer->damage, options->width, options->height, error) &&
         painter_open(&renderer->painter, options->context, options->width, options->height, true, error))
         return renderer;
     renderer_destroy(renderer);
@@ -110,10 +109,10 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
     return renderer;
 }
 
-/* `changed` NULL: paint everything. */
-static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
+/* `damage` NULL: paint everything. */
+static bool paint(Renderer *renderer, const Damage *damage, Image *image, Error *error) {
     return context_make_current(&renderer->painter.context, error) &&
-           canvas_paint(renderer->painter.canvas, &renderer->drawing, renderer->picture.theme->page, changed, image,
+           canvas_paint(renderer->painter.canvas, &renderer->drawing, renderer->picture.theme->page, damage, image,
                         error);
 }
 
@@ -138,11 +137,11 @@ bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const b
     renderer->in_sync = false; /* until this frame has succeeded */
     renderer->drawing = renderer->before;
     renderer->before = before;
-    *changed = renderer->changed;
+    *changed = renderer->damage.rows;
     if (!compose(renderer, moment, error)) return false;
-    bool part = in_sync && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
-    if (!part) memset(renderer->changed, true, (size_t)image->height);
-    renderer->in_sync = paint(renderer, part ? renderer->changed : NULL, image, error);
+    const bool part = in_sync && damage_find(&renderer->damage, &renderer->before, &renderer->drawing);
+    if (!part) damage_all(&renderer->damage);
+    renderer->in_sync = paint(renderer, part ? &renderer->damage : NULL, image, error);
     return renderer->in_sync;
 }
 
@@ -151,7 +150,7 @@ void renderer_destroy(Renderer *renderer) {
     painter_close(&renderer->painter);
     drawing_free(&renderer->drawing);
     drawing_free(&renderer->before);
-    free(renderer->changed);
+    damage_free(&renderer->damage);
     if (renderer->owns_picture) picture_free(&renderer->picture);
     free(renderer);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shaders, the rows that changed, and the painting of drawings with OpenGL. */
+/* Shaders, and the painting of drawings with OpenGL. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "base/numbers.h"
@@ -54,41 +54,9 @@ static GLuint program_create(const GlFunctions *gl, const char *name, const char
     return program;
 }
 
-static void mark(bool *changed, int height, int top, int bottom) {
-    for (int y = top < 0 ? 0 : top; y < bottom && y < height; y++) changed[y] = true;
-}
-
-/* The n-th shape of one drawing is compared with the n-th of the other, and glyphs likewise. This respects the order
-   of painting: a row that no differing instance touches is painted by the same instances in the same order. */
-bool damage_find(const Drawing *a, const Drawing *b, int height, bool *changed) {
-    /* The static layers, and the bitmaps to which glyphs refer. */
-    const bool equal =
-        a->rect_count == b->rect_count && a->static_shapes == b->static_shapes && a->bitmap_size == b->bitmap_size &&
-        (a->rect_count == 0 || memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) == 0) &&
-        (a->bitmap_size == 0 || memcmp(a->bitmaps, b->bitmaps, a->bitmap_size) == 0) &&
-        (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
-    memset(changed, !equal, (size_t)height);
-    if (!equal) return false;
-    for (size_t i = a->static_shapes; i < size_max(a->shape_count, b->shape_count); i++) {
-        const ShapeInstance *from = i < a->shape_count ? &a->shapes[i] : NULL,
-                            *to = i < b->shape_count ? &b->shapes[i] : NULL;
-        if (from != NULL && to != NULL && memcmp(from, to, sizeof *from) == 0) continue;
-        if (from != NULL) mark(changed, height, from->bounds[1], from->bounds[3]);
-        if (to != NULL) mark(changed, height, to->bounds[1], to->bounds[3]);
-    }
-    for (size_t i = 0; i < size_max(a->glyph_count, b->glyph_count); i++) {
-        const GlyphInstance *from = i < a->glyph_count ? &a->glyphs[i] : NULL,
-                            *to = i < b->glyph_count ? &b->glyphs[i] : NULL;
-        if (from != NULL && to != NULL && memcmp(from, to, sizeof *from) == 0) continue;
-        if (from != NULL) mark(changed, height, from->box[1], from->box[1] + from->box[3]);
-        if (to != NULL) mark(changed, height, to->box[1], to->box[1] + to->box[3]);
-    }
-    return true;
-}
-
 /* The static layer (background, rectangles, static shapes) is painted once into its own framebuffer. A frame blits
-   the changed rows of that layer and adds two instanced draw calls, for shapes and for glyphs, clipped to these
-   rows. Row 0 of a framebuffer is the top row of the picture, so no image is flipped. */
+   the damaged parts of that layer and adds two instanced draw calls, for shapes and for glyphs, clipped to these
+   parts. Row 0 of a framebuffer is the top row of the picture, so no image is flipped. */
 
 /* A program and the instance buffer that feeds it. */
 typedef struct Batch {
@@ -106,7 +74,7 @@ struct Canvas {
     GLuint font_buffer, font_texture; /* the atlas, then bitmaps of the drawing */
     size_t bitmap_capacity;           /* of the drawing's bitmaps there */
     Batch rects, shapes, glyphs;
-    Drawing moving; /* moving instances, clipped to the changed rows */
+    Drawing moving; /* moving instances, clipped to the damaged parts */
 };
 
 static bool check_gl(const GlFunctions *gl, const char *when, Error *error) {
@@ -151,7 +119,7 @@ static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const c
 }
 
 static bool setup_gl(Canvas *canvas, Error *error) {
-    static const int rect[] = {4, 1, 0}, shape[] = {4, 4, 4, 4, 0}, glyph[] = {4, 2, 0};
+    static const int rect[] = {4, 1, 0}, shape[] = {4, 4, 4, 4, 0}, glyph[] = {4, 3, 0};
     const GlFunctions *gl = canvas->gl;
     if (!create_target(canvas, &canvas->static_layer, error) || !create_target(canvas, &canvas->picture, error) ||
         !create_batch(canvas, &canvas->rects, "shaders/rect", shader_rect_vert, shader_rect_frag, rect,
@@ -171,6 +139,7 @@ static bool setup_gl(Canvas *canvas, Error *error) {
     gl->Disable(GL_DITHER);
     gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE); /* alpha stays 1 */
     gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl->PixelStorei(GL_PACK_ROW_LENGTH, canvas->width);
     return check_gl(gl, "in set-up", error);
 }
 
@@ -229,27 +198,20 @@ static void load_bitmaps(Canvas *canvas, const Drawing *drawing) {
     gl->BufferSubData(GL_TEXTURE_BUFFER, font_bitmaps_size, (GLsizeiptr)drawing->bitmap_size, drawing->bitmaps);
 }
 
-/* Consecutive rows to paint. */
-typedef struct Band {
-    int top, bottom;
-} Band;
-
-/* The first band at or below row y; empty if there is none. */
-static Band next_band(const Canvas *canvas, const bool *changed, int y) {
-    if (changed == NULL) return (Band){y, canvas->height};
-    while (y < canvas->height && !changed[y]) y++;
-    Band band = {y, y};
-    while (band.bottom < canvas->height && changed[band.bottom]) band.bottom++;
-    return band;
+/* Without damage, the picture is the only part. */
+static bool next_part(const Canvas *canvas, const Damage *damage, Rect *part) {
+    if (damage != NULL) return damage_next(damage, part);
+    const bool first = part->bottom == 0;
+    *part = (Rect){0, 0, canvas->width, canvas->height};
+    return first;
 }
 
-bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
+bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const Damage *damage, Image *image,
                   Error *error) {
     const GlFunctions *gl = canvas->gl;
-    const int width = canvas->width;
     if (drawing->failed) return error_memory(error, "render");
     load_bitmaps(canvas, drawing);
-    if (changed == NULL) {
+    if (damage == NULL) {
         gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->static_layer.framebuffer);
         gl->ClearColor((float)(background >> 16 & 255) / 255, (float)(background >> 8 & 255) / 255,
                        (float)(background & 255) / 255, 1);
@@ -260,22 +222,23 @@ bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, c
         draw_batch(gl, &canvas->shapes, drawing->shapes, drawing->static_shapes, sizeof *drawing->shapes);
     }
 
-    /* One blit per band, but one draw call per batch for all bands: calls cost more than instances. */
+    /* One blit per part, but one draw call per batch for all parts: calls cost more than instances. */
     Drawing *moving = &canvas->moving;
     drawing_clear(moving);
     gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->static_layer.framebuffer);
     gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->picture.framebuffer);
-    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom)) {
-        gl->BlitFramebuffer(0, b.top, width, b.bottom, 0, b.top, width, b.bottom, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-        drawing_add_rows(moving, drawing, b.top, b.bottom);
+    for (Rect p = {0}; next_part(canvas, damage, &p);) {
+        gl->BlitFramebuffer(p.left, p.top, p.right, p.bottom, p.left, p.top, p.right, p.bottom, GL_COLOR_BUFFER_BIT,
+                            GL_NEAREST);
+        drawing_add_part(moving, drawing, &p);
     }
     draw_batch(gl, &canvas->shapes, moving->shapes, moving->shape_count, sizeof *moving->shapes);
     draw_batch(gl, &canvas->glyphs, moving->glyphs, moving->glyph_count, sizeof *moving->glyphs);
     if (moving->failed) return error_memory(error, "render");
 
     gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->picture.framebuffer);
-    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom))
-        gl->ReadPixels(0, b.top, width, b.bottom - b.top, GL_RGBA, GL_UNSIGNED_BYTE,
-                       image->pixels + (size_t)b.top * (size_t)width * 4);
+    for (Rect p = {0}; next_part(canvas, damage, &p);)
+        gl->ReadPixels(p.left, p.top, p.right - p.left, p.bottom - p.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                       image->pixels + ((size_t)p.top * (size_t)canvas->width + (size_t)p.left) * 4);
     return check_gl(gl, "in a frame", error);
 }

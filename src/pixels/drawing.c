@@ -133,29 +133,32 @@ uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap) {
     return memset(drawing->bitmaps + start, 0, size);
 }
 
-void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom) {
+void drawing_add_part(Drawing *drawing, const Drawing *from, const Rect *part) {
     for (size_t i = from->static_shapes; i < from->shape_count; i++) {
         const ShapeInstance *whole = &from->shapes[i];
-        ShapeInstance *part = whole->bounds[1] < bottom && whole->bounds[3] > top ? next_shape(drawing) : NULL;
-        if (part == NULL) continue;
-        *part = *whole;
-        if (bottom < part->bounds[3]) part->bounds[3] = bottom;
-        if (top > part->bounds[1]) { /* its local position moves by whole steps of the shader */
-            const int64_t rows = top - part->bounds[1];
-            part->bounds[1] = top;
-            part->axis[2] = (int32_t)(part->axis[2] + rows * part->axis[1]);
-            part->axis[3] = (int32_t)(part->axis[3] - rows * part->axis[0]);
-        }
+        const int32_t *bounds = whole->bounds, left = int_max(bounds[0], part->left),
+                      top = int_max(bounds[1], part->top), right = int_min(bounds[2], part->right),
+                      bottom = int_min(bounds[3], part->bottom);
+        ShapeInstance *shape = left < right && top < bottom ? next_shape(drawing) : NULL;
+        if (shape == NULL) continue;
+        /* Its local position moves by whole steps of the shader. */
+        const int64_t x = left - bounds[0], y = top - bounds[1], c = whole->axis[0], s = whole->axis[1];
+        *shape = *whole;
+        memcpy(shape->bounds, (int32_t[]){left, top, right, bottom}, sizeof shape->bounds);
+        shape->axis[2] = (int32_t)(shape->axis[2] + x * c + y * s);
+        shape->axis[3] = (int32_t)(shape->axis[3] + x * s - y * c);
         drawing->shape_count++;
     }
     for (size_t i = 0; i < from->glyph_count; i++) {
-        GlyphInstance part = from->glyphs[i];
-        const int skipped = top > part.box[1] ? top - part.box[1] : 0;
-        part.box[1] += skipped;
-        part.box[3] -= skipped;
-        part.bitmap += (uint32_t)(skipped * part.box[2]);
-        if (part.box[1] + part.box[3] > bottom) part.box[3] = bottom - part.box[1];
-        if (part.box[3] > 0) drawing_add_glyph(drawing, &part);
+        const GlyphInstance *whole = &from->glyphs[i];
+        const int32_t *box = whole->box, left = int_max(box[0], part->left), top = int_max(box[1], part->top),
+                      right = int_min(box[0] + box[2], part->right), bottom = int_min(box[1] + box[3], part->bottom);
+        if (left >= right || top >= bottom) continue;
+        const uint32_t skipped = (uint32_t)(top - box[1]) * whole->stride + (uint32_t)(left - box[0]);
+        drawing_add_glyph(drawing, &(GlyphInstance){{left, top, right - left, bottom - top},
+                                                    whole->bitmap + skipped,
+                                                    whole->stride,
+                                                    whole->color});
     }
 }
 

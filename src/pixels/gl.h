@@ -56,6 +56,7 @@ typedef struct ShapeInstance {
 typedef struct GlyphInstance {
     int32_t box[4];  /* left, top, width, height */
     uint32_t bitmap; /* index of the first texel in font_bitmaps, or after its end in the drawing's own bitmaps */
+    uint32_t stride; /* texels from one row of the bitmap to the next */
     uint32_t color;
 } GlyphInstance;
 
@@ -85,8 +86,8 @@ void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph);
 /* Room for a bitmap of `size` bytes, zeros, with the index for its glyph; NULL if out of memory (`failed`). */
 uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap);
 
-/* Adds the shapes and glyphs of `from`, except its static shapes, clipped to the rows top <= y < bottom. */
-void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom);
+/* Adds what is inside `part` of the shapes and glyphs of `from`, except its static shapes. */
+void drawing_add_part(Drawing *drawing, const Drawing *from, const Rect *part);
 
 /* The glyphs of the most common characters as bitmaps, which tools/make_atlas.c embeds in the binary: the fonts of
    font/ in FONT_SIZES sizes. Others are drawn when they are needed (font.c). */
@@ -134,11 +135,25 @@ int font_add(Drawing *drawing, const Font *font, const char *text, int x, int ba
 int font_add_fitting(Drawing *drawing, const Font *font, const char *text, int x, int baseline, int max_width,
                      uint32_t color);
 
-/* Damage tracking: the rows of the picture that change from one drawing to the next. Most of a frame equals the one
+/* Damage: what may differ from one drawing to the next, as rows and as square tiles. Most of a frame equals the one
    before. */
+typedef struct Damage {
+    int width, height;
+    bool *rows;  /* [height] */
+    bool *tiles; /* row by row, from the top left */
+} Damage;
 
-/* Sets changed[y] for each of `height` rows. Returns false if the static layer has changed; then all rows are set. */
-bool damage_find(const Drawing *before, const Drawing *after, int height, bool *changed);
+/* Also after a failure, damage_free() is needed. */
+bool damage_init(Damage *damage, int width, int height, Error *error);
+void damage_free(Damage *damage);
+
+void damage_all(Damage *damage);
+
+/* Returns false if the static layer has changed; then all is damaged. */
+bool damage_find(Damage *damage, const Drawing *before, const Drawing *after);
+
+/* Goes from one damaged part, a row of tiles, to the next; from zeros to the first. False at the end. */
+bool damage_next(const Damage *damage, Rect *part);
 
 /* Paints drawings with OpenGL and reads back the pixels. */
 
@@ -148,10 +163,10 @@ typedef struct Canvas Canvas;
 Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error);
 void canvas_destroy(Canvas *canvas);
 
-/* Paints a drawing over the background into `image`, which has the canvas's size. `changed` has one flag per row and
-   selects the rows to paint; the image must hold the others already, and the static layer and the background must be
-   those of the last call. NULL: paint everything. */
-bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
+/* Paints a drawing over the background into `image`, which has the canvas's size. `damage` selects the parts to paint;
+   the image must hold the others already, and the static layer and the background must be those of the last call.
+   NULL: paint everything. */
+bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const Damage *damage, Image *image,
                   Error *error);
 
 /* Lines, dots and arrows, all made of Shape, which is pixel-exact on every machine. Pixels, y down. */

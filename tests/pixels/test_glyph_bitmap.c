@@ -59,9 +59,9 @@ TEST(own_glyphs_are_those_of_freetype) {
     assert_true(compared > 4000);
 }
 
-/* A frame that reuses the place of another's bitmap is another frame, and clipped rows begin at the right texel. */
+/* A frame that reuses the place of another's bitmap is another frame, and a part of a glyph begins at its texel. */
 TEST(the_bitmaps_belong_to_the_drawing) {
-    OWN(Drawing) drawing = {0}, rows = {0};
+    OWN(Drawing) drawing = {0}, part = {0};
     const Font font = font_pick(FONT_REGULAR, 20);
     font_add(&drawing, &font,
              "\xC3\x9C"
@@ -72,8 +72,9 @@ TEST(the_bitmaps_belong_to_the_drawing) {
     assert_true(drawing.glyphs[1].bitmap < font_bitmaps_size);
     const GlyphInstance *last = &drawing.glyphs[2];
     assert_int_equal(last->bitmap + (unsigned)(last->box[2] * last->box[3]), font_bitmaps_size + drawing.bitmap_size);
-    drawing_add_rows(&rows, &drawing, last->box[1] + 2, 40);
-    assert_int_equal(rows.glyphs[rows.glyph_count - 1].bitmap, last->bitmap + 2U * (unsigned)last->box[2]);
+    drawing_add_part(&part, &drawing, &(Rect){last->box[0] + 3, last->box[1] + 2, 1000, 40});
+    assert_int_equal(part.glyph_count, 1);
+    assert_int_equal(part.glyphs[0].bitmap, last->bitmap + 2U * (unsigned)last->box[2] + 3);
     drawing_clear(&drawing);
     assert_int_equal(drawing.bitmap_size, 0);
 }
