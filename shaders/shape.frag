@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rounded box from its signed distance. Lengths are integers in 1/65536 pixel; arithmetic is on integers, or on floats
-// that hold integers below 2^24: no rounding, fused multiply-add or library function can change a bit of the result on
-// any machine.
+// A rounded box from its signed distance. Lengths are integers in 1/65536 pixel; arithmetic is on integers, or on
+// floats that hold integers below 2^24: no rounding, fused multiply-add or library function can change a bit of the
+// result on any machine.
 #version 330 core
 
 flat in ivec2 corner;        // the pixel that the positions below are relative to

@@ -126,7 +126,8 @@ static int add_before(Drawing *drawing, const Font *font, const char *text, cons
         const Glyph *outline;
         const FontGlyph glyph = next_glyph(font, &text, &outline);
         int left = x + (pen + PEN_UNIT / 2) / PEN_UNIT + glyph.left;
-        GlyphInstance instance = {{left, baseline - glyph.top, glyph.width, glyph.height}, glyph.offset, (uint32_t)glyph.width, color};
+        GlyphInstance instance = {
+            {left, baseline - glyph.top, glyph.width, glyph.height}, glyph.offset, (uint32_t)glyph.width, color};
         if (outline != NULL) {
             const size_t size = (size_t)glyph.width * (size_t)glyph.height;
             uint8_t *bitmap = drawing_add_bitmap(drawing, size, &instance.bitmap);
