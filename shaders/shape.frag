@@ -4,8 +4,8 @@
 // result on any machine.
 #version 330 core
 
-flat in ivec2 corner;        // the pixel that the positions below are relative to
-flat in ivec4 shape_axis;    // direction of the local x axis (x, y; y down); local position of that pixel's centre
+noperspective in vec2 place; // of the pixel's centre, from the corner of the quad; its whole part counts
+flat in ivec4 shape_axis;    // direction of the local x axis (x, y; y down); local position of the first pixel's centre
 flat in ivec4 shape_extents; // half width, half height, corner radius, outline width
 flat in ivec4 shape_paint;   // fill, outline, band colour, as 0xRRGGBB; band thickness along the local top;
                              // bit 24 of the fill: outline only
@@ -49,7 +49,7 @@ vec3 blend(vec3 below, vec3 above, float level) {
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy) - corner;
+    ivec2 pixel = ivec2(place);
     ivec2 axis = shape_axis.xy;
     ivec2 at = shape_axis.zw + ivec2(axis.x * pixel.x + axis.y * pixel.y, axis.y * pixel.x - axis.x * pixel.y);
     int distance = box_distance(at, shape_extents.xy, shape_extents.z);

@@ -27,13 +27,17 @@ typedef struct BitWriter {
     unsigned count;   /* of pending bits */
 } BitWriter;
 
-/* Writes up to 56 bits. Stores eight bytes (compilers emit one store) and advances by the complete ones. */
+/* The word whose bytes are stored from the lowest up. */
+static inline uint64_t as_stored(uint64_t word) {
+    return __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? word : __builtin_bswap64(word);
+}
+
+/* Writes up to 56 bits. Stores eight bytes and advances by the complete ones. */
 static inline void bits_write(BitWriter *writer, uint64_t bits, unsigned count) {
-    uint8_t *next = writer->next;
     bits = writer->pending | bits << writer->count;
     count += writer->count;
-    for (int i = 0; i < 8; i++) next[i] = (uint8_t)(bits >> (8 * i));
-    writer->next = next + count / 8;
+    memcpy(writer->next, &(uint64_t){as_stored(bits)}, sizeof bits);
+    writer->next += count / 8;
     writer->pending = bits >> (count & ~7u);
     writer->count = count % 8;
 }
@@ -181,11 +185,10 @@ __attribute__((target("avx2"), flatten)) static void compare_rows_avx2(Idat *ida
 }
 #endif
 
-/* Compilers emit one load. */
-static uint64_t load_word(const uint8_t *bytes) {
-    uint64_t word = 0;
-    for (int i = 0; i < WORD_BYTES; i++) word |= (uint64_t)bytes[i] << (8 * i);
-    return word;
+static inline uint64_t load_word(const uint8_t *bytes) {
+    uint64_t word;
+    memcpy(&word, bytes, sizeof word);
+    return as_stored(word);
 }
 
 static void write_code(BitWriter *writer, DeflateCode code) { bits_write(writer, code.bits, code.count); }
