@@ -71,20 +71,17 @@ static void rest_others(const ChartPlan *plan) {
         if (plan->scenes[i].working == 0) scene_study_rest(&plan->scenes[i].study);
 }
 
-/* Times are measured with steppers of their own. */
 static bool chart_work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
     ChartScene *scene = scene_of(context, piece);
-    if (is_times(scene, piece)) {
-        rest_others(context);
-        return scene_times_write(&scene->study, results, progress, error);
-    }
     /* Pieces come scene by scene: the steppers of a scene go when work on another begins. */
 #pragma omp critical(chart_plan)
     {
         scene->working++;
         rest_others(context);
     }
-    const bool ok = launch_piece_write(&scene->study, (int)(piece - scene->first), results, progress, error);
+    const bool ok = is_times(scene, piece)
+                        ? scene_times_write(&scene->study, results, progress, error)
+                        : launch_piece_write(&scene->study, (int)(piece - scene->first), results, progress, error);
 #pragma omp critical(chart_plan)
     scene->working--;
     return ok;

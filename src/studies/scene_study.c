@@ -152,6 +152,13 @@ typedef struct LaunchPiece {
     LaunchScores *scores; /* [contenders] */
 } LaunchPiece;
 
+/* Made when it is first needed. For the thread that has locked the contender. */
+static Stepper *stepper_of(SceneStudy *study, int contender, Error *error) {
+    Stepper **stepper = &study->steppers[contender].stepper;
+    if (*stepper == NULL) *stepper = stepper_create(&study->contenders[contender]->method, study->scene, error);
+    return *stepper;
+}
+
 /* Scores a contender of those that are left: the first from piece->first on that no other thread uses, or else one that
    it waits for. */
 static bool score(void *context, int i, Error *error) {
@@ -172,9 +179,8 @@ static bool score(void *context, int i, Error *error) {
     }
     struct SharedStepper *own = &study->steppers[contender];
     if (!free) omp_set_lock(&own->taken);
-    if (own->stepper == NULL) own->stepper = stepper_create(&study->contenders[contender]->method, study->scene, error);
     LaunchScores *scores = &piece->scores[contender];
-    Stepper *stepper = own->stepper;
+    Stepper *stepper = stepper_of(study, contender, error);
     Rollout rollout = {0};
     bool ok = stepper != NULL;
     if (study->shared_steps > 0 && contender_shares(study->contenders[contender])) {
@@ -237,12 +243,13 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
     return ok;
 }
 
-bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *progress, Error *error) {
+bool scene_times_write(SceneStudy *study, FILE *results, const Progress *progress, Error *error) {
     const int count = scene_study_timed(study), contenders = study->contender_count;
     Scene *launches = calloc((size_t)count, sizeof *launches);
+    Stepper **steppers = calloc((size_t)contenders + 1, sizeof *steppers);
     SnapshotList frozen = {0};
     StepCost(*costs[PROTOCOLS])[PHASES];
-    bool ok = launches != NULL;
+    bool ok = launches != NULL && steppers != NULL;
     for (int p = 0; p < PROTOCOLS; p++)
         ok = (costs[p] = calloc((size_t)contenders + 1, sizeof *costs[p])) != NULL && ok;
     if (!ok) error_memory(error, "study");
@@ -251,11 +258,13 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
         launches[i] = launch_scene(study->scene, &study->launches[launch]);
         ok = snapshots_add(&frozen, &launches[i], &study->size.frozen, error);
     }
+    for (int i = 0; ok && i < contenders; i++) ok = (steppers[i] = stepper_of(study, i, error)) != NULL;
     const TimingOptions options = {.launches = launches,
                                    .launch_count = count,
                                    .repetitions = study->size.repetitions,
                                    .last_frame = study->scene->frames,
-                                   .shared_steps = study->shared_steps};
+                                   .shared_steps = study->shared_steps,
+                                   .steppers = steppers};
     ok = ok && timing_measure(study->contenders, contenders, &options, &frozen, costs[PROTOCOL_CLOSED],
                               costs[PROTOCOL_FROZEN], progress, error);
     for (int i = 0; ok && i < contenders; i++)
@@ -268,6 +277,7 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
             }
     for (int p = 0; p < PROTOCOLS; p++) free(costs[p]);
     snapshots_free(&frozen);
+    free(steppers);
     free(launches);
     return ok;
 }

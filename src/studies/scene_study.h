@@ -73,7 +73,7 @@ typedef struct MethodTimes {
 } MethodTimes;
 
 /* Measures the contenders of the study on some of its launches, and writes their times. */
-bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *progress, Error *error);
+bool scene_times_write(SceneStudy *study, FILE *results, const Progress *progress, Error *error);
 
 /* The stored times of the contenders, to be freed. ERROR_INPUT if they are damaged. path: for messages. */
 MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error);

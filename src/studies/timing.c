@@ -253,8 +253,10 @@ static void summarise_all(const Timing *timing) {
 
 static bool make_timed(const Timing *timing, const Contender *contender, Timed *timed, Error *error) {
     const Scene *scene = &timing->options->launches[0];
+    Stepper *const *steppers = timing->options->steppers;
     const size_t parts = (size_t)timing->parts, repetitions = (size_t)timing->options->repetitions;
-    timed->stepper = stepper_create(&contender->method, scene, error);
+    timed->stepper =
+        steppers != NULL ? steppers[timed - timing->items] : stepper_create(&contender->method, scene, error);
     timed->world = timed->stepper != NULL ? scene_world(scene, error) : NULL;
     timed->start = timed->world != NULL ? scene_world(scene, error) : NULL;
     if (timed->start == NULL) return false;
@@ -304,7 +306,7 @@ bool timing_measure(const Contender *const *contenders, int count, const TimingO
     for (int i = 0; timing.items != NULL && i < count; i++) {
         Timed *timed = &timing.items[i];
         for (int k = 0; timed->logs != NULL && k < timing.parts * options->repetitions; k++) free(timed->logs[k].items);
-        stepper_destroy(timed->stepper);
+        if (options->steppers == NULL) stepper_destroy(timed->stepper);
         world_destroy(timed->world);
         world_destroy(timed->start);
         step_memory_free(&timed->memory);
