@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shapes and glyphs pixel by pixel, in both kinds of context. */
-#include "owned.h"
+#include "owned_drawings.h"
 
 #include "pictures/mesa.h"
 #include "pixels/gl.h"
@@ -209,6 +209,36 @@ TEST(nothing_is_painted_outside_the_clip) {
     Shape shape = turned(box(40, 40, 400, 400), 0.3);
     drawing_add_shape(&drawing, &shape, &(Rect){10, 20, 33, 35});
     assert_only(painted(), (Rect){10, 20, 33, 35}, WHITE);
+}
+
+/* Boxes of all angles and text, over which a dot goes from place to place: only the tiles that it leaves or enters are
+   painted again, which cut the boxes and the text, and the picture is the one that is painted whole. */
+TEST(damaged_parts_are_those_of_the_whole) {
+    const Font font = font_pick(FONT_SEMIBOLD, 33);
+    OWN(Drawing) before = {0}, after = {0};
+    Damage damage;
+    assert_ok(damage_init(&damage, SCREEN_SIDE, SCREEN_SIDE, &error), error);
+    const Screen *s = &screens[0];
+    assert_ok(context_make_current(&s->context, &error), error);
+    for (int i = 0; i < 64; i++) {
+        const Drawing painted_before = before;
+        before = after, after = painted_before;
+        drawing_clear(&after);
+        for (int k = 0; k < 4; k++) {
+            Shape shape = turned(box(20 + 24 * k, 30 + 14 * k, 60, 30), 0.4 + 1.7 * k);
+            shape.outline = 3, shape.line = 0x3366cc, shape.band = 6, shape.band_color = 0xcc9933;
+            drawing_add_shape(&after, &shape, &everything);
+        }
+        font_add(&after, &font, "WWW", 4, 76, 0x33cc66);
+        Shape dot = box(6 + i * 11 % 84, 6 + i * 37 % 84, 9, 9);
+        drawing_add_shape(&after, &dot, &everything);
+        assert_true(damage_find(&damage, &before, &after));
+        assert_ok(canvas_paint(s->canvas, &after, BLACK, i > 0 ? &damage : NULL, s->image, &error), error);
+        const uint64_t hash = image_hash(s->image);
+        assert_ok(canvas_paint(s->canvas, &after, BLACK, NULL, s->image, &error), error);
+        assert_true(image_hash(s->image) == hash);
+    }
+    damage_free(&damage);
 }
 
 /* Upper edge at y = 10, in a box of up to 1000 km. */
