@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A quad over the whole pixels that a shape can touch. Attributes are passed flat, as integers: interpolated values differ
-// in their last bits between CPUs. Only the place is interpolated, which is half a pixel away from a wrong one.
+// A quad over the whole pixels that a shape can touch. Attributes are passed flat, as integers: interpolated values
+// differ in their last bits between CPUs. Only the place is interpolated, which is half a pixel away from a wrong one.
 #version 330 core
 
 uniform ivec2 size; // of the picture, in pixels

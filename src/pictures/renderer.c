@@ -139,8 +139,7 @@ bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const b
     renderer->before = before;
     *changed = renderer->damage.rows;
     if (!compose(renderer, moment, error)) return false;
-    const bool part = in_sync && damage_find(&renderer->damage, &renderer->before, &renderer->drawing);
-    if (!part) damage_all(&renderer->damage);
+    const bool part = damage_find(&renderer->damage, in_sync ? &renderer->before : NULL, &renderer->drawing);
     renderer->in_sync = paint(renderer, part ? &renderer->damage : NULL, image, error);
     return renderer->in_sync;
 }

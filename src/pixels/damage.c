@@ -24,11 +24,6 @@ void damage_free(Damage *damage) {
     free(damage->tiles);
 }
 
-static void set_all(Damage *damage, bool value) {
-    memset(damage->rows, value, (size_t)damage->height);
-    memset(damage->tiles, value, (size_t)tiles_of(damage->width) * (size_t)tiles_of(damage->height));
-}
-
 static void mark(Damage *damage, int left, int top, int right, int bottom) {
     left = int_max(left, 0), top = int_max(top, 0);
     right = int_min(right, damage->width), bottom = int_min(bottom, damage->height);
@@ -49,33 +44,34 @@ static void mark_glyph(Damage *damage, const GlyphInstance *glyph) {
     mark(damage, box[0], box[1], box[0] + box[2], box[1] + box[3]);
 }
 
-void damage_all(Damage *damage) { set_all(damage, true); }
-
 /* The n-th shape of one drawing is compared with the n-th of the other, and glyphs likewise. This respects the order
    of painting: a pixel that no differing instance touches is painted by the same instances in the same order. */
 bool damage_find(Damage *damage, const Drawing *a, const Drawing *b) {
     /* The static layers, and the bitmaps to which glyphs refer. */
     const bool equal =
-        a->rect_count == b->rect_count && a->static_shapes == b->static_shapes && a->bitmap_size == b->bitmap_size &&
+        a != NULL && a->rect_count == b->rect_count && a->static_shapes == b->static_shapes &&
+        a->bitmap_size == b->bitmap_size &&
         (a->rect_count == 0 || memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) == 0) &&
         (a->bitmap_size == 0 || memcmp(a->bitmaps, b->bitmaps, a->bitmap_size) == 0) &&
         (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
-    set_all(damage, !equal);
-    for (size_t i = a->static_shapes; equal && i < size_max(a->shape_count, b->shape_count); i++) {
+    memset(damage->rows, !equal, (size_t)damage->height);
+    memset(damage->tiles, !equal, (size_t)tiles_of(damage->width) * (size_t)tiles_of(damage->height));
+    if (!equal) return false;
+    for (size_t i = a->static_shapes; i < size_max(a->shape_count, b->shape_count); i++) {
         const ShapeInstance *from = i < a->shape_count ? &a->shapes[i] : NULL,
                             *to = i < b->shape_count ? &b->shapes[i] : NULL;
         if (from != NULL && to != NULL && memcmp(from, to, sizeof *from) == 0) continue;
         if (from != NULL) mark_shape(damage, from);
         if (to != NULL) mark_shape(damage, to);
     }
-    for (size_t i = 0; equal && i < size_max(a->glyph_count, b->glyph_count); i++) {
+    for (size_t i = 0; i < size_max(a->glyph_count, b->glyph_count); i++) {
         const GlyphInstance *from = i < a->glyph_count ? &a->glyphs[i] : NULL,
                             *to = i < b->glyph_count ? &b->glyphs[i] : NULL;
         if (from != NULL && to != NULL && memcmp(from, to, sizeof *from) == 0) continue;
         if (from != NULL) mark_glyph(damage, from);
         if (to != NULL) mark_glyph(damage, to);
     }
-    return equal;
+    return true;
 }
 
 bool damage_next(const Damage *damage, Rect *part) {

@@ -147,9 +147,8 @@ typedef struct Damage {
 bool damage_init(Damage *damage, int width, int height, Error *error);
 void damage_free(Damage *damage);
 
-void damage_all(Damage *damage);
-
-/* Returns false if the static layer has changed; then all is damaged. */
+/* Returns false if the static layer has changed, or nothing is known of the drawing before (NULL): then all is
+   damaged. */
 bool damage_find(Damage *damage, const Drawing *before, const Drawing *after);
 
 /* Goes from one damaged part, a row of tiles, to the next; from zeros to the first. False at the end. */
