@@ -111,8 +111,8 @@ static inline Norms totals(const Lanes parts[NORMS]) {
 
 /* `rows`: up to NORMS, a constant after inlining. */
 static inline __attribute__((always_inline)) void normalise_rows(float *values, float *inverse, float *out,
-                                                                 const float *gain, const float *offset,
-                                                                 const int rows, int width) {
+                                                                 const float *gain, const float *offset, const int rows,
+                                                                 int width) {
     Lanes sums[NORMS] = {{0}}, squares[NORMS] = {{0}};
     for (int j = 0; j < width; j += WIDE)
         for (int r = 0; r < rows; r++) sums[r] += *(Lanes *)(values + r * width + j);
