@@ -17,8 +17,8 @@ typedef struct Start {
     ptrdiff_t step;
 } Start;
 
-/* out[rows, columns] = start + a b[depth, columns], a[row, d] at a[row * row_step + d * depth_step], for COLUMNS columns
-   and `rows` rows, a constant after inlining. */
+/* out[rows, columns] = start + a b[depth, columns], a[row, d] at a[row * row_step + d * depth_step], for COLUMNS
+   columns and `rows` rows, a constant after inlining. */
 static inline __attribute__((always_inline)) void multiply_block(float *out, int columns, Start from, const float *a,
                                                                  ptrdiff_t row_step, ptrdiff_t depth_step,
                                                                  const float *b, int depth, const int rows) {
