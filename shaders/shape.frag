@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rounded box from its signed distance. Lengths are integers in 1/65536 pixel; arithmetic is on integers, or on
-// floats that hold integers below 2^24: no rounding, fused multiply-add or library function can change a bit of the
-// result on any machine.
+// A rounded box from its signed distance. Lengths are integers in 1/65536 pixel. Arithmetic is on integers, on floats
+// that hold integers below 2^24, or ends in rounding far from a border: no rounding error, fused multiply-add or
+// library function can change a bit of the result on any machine.
 #version 330 core
 
 noperspective in vec2 place; // of the pixel's centre, from the corner of the quad; its whole part counts
@@ -43,7 +43,7 @@ float coverage(int distance) {
 
 vec3 unpack(int rgb) { return vec3(ivec3(rgb >> 16, rgb >> 8, rgb) & 255); }
 
-// The mean, rounded. Before it is rounded, it is at least 0.5 / LEVELS away from a half, so the factor's error is none.
+// The mean, rounded. It is at least 0.5 / LEVELS away from a half, so the error of the factor does not show.
 vec3 blend(vec3 below, vec3 above, float level) {
     return floor((below * LEVELS + (above - below) * level) * (1.0 / LEVELS) + 0.5);
 }

@@ -93,6 +93,7 @@ static inline float gns_total(const Lanes *parts) {
     return ((p[0] + p[4]) + (p[2] + p[6])) + ((p[1] + p[5]) + (p[3] + p[7]));
 }
 
+/* Rows that share divisions and roots. */
 enum { NORMS = 4 };
 typedef float Norms __attribute__((vector_size(NORMS * sizeof(float))));
 

@@ -82,7 +82,7 @@ struct Renderer {
     Painter painter;
     Drawing drawing, before; /* of this frame and of the previous one */
     bool in_sync;            /* the canvas and the caller's image show `drawing` */
-    Damage damage;           /* of `before` */
+    Damage damage;           /* since `before` */
 };
 
 Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {

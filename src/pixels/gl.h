@@ -151,7 +151,7 @@ void damage_free(Damage *damage);
    damaged. */
 bool damage_find(Damage *damage, const Drawing *before, const Drawing *after);
 
-/* Goes from one damaged part, a row of tiles, to the next; from zeros to the first. False at the end. */
+/* Replaces *part, all zeros at first, by the next damaged part: tiles side by side. False at the end. */
 bool damage_next(const Damage *damage, Rect *part);
 
 /* Paints drawings with OpenGL and reads back the pixels. */

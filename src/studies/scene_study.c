@@ -152,7 +152,7 @@ typedef struct LaunchPiece {
     LaunchScores *scores; /* [contenders] */
 } LaunchPiece;
 
-/* Made when it is first needed. For the thread that has locked the contender. */
+/* Made when it is first needed. For the thread that has locked the contender, or for a piece that runs alone. */
 static Stepper *stepper_of(SceneStudy *study, int contender, Error *error) {
     Stepper **stepper = &study->steppers[contender].stepper;
     if (*stepper == NULL) *stepper = stepper_create(&study->contenders[contender]->method, study->scene, error);

@@ -34,7 +34,7 @@ typedef struct TimingOptions {
     int launch_count, repetitions; /* each repetition runs all launches */
     int last_frame;                /* of each run, which ends with the phase after the impact */
     int shared_steps;              /* of all launches: measured once (contender_shares()) */
-    Stepper *const *steppers;      /* [contenders] the caller's; NULL: some are made for it */
+    Stepper *const *steppers;      /* [contenders] the caller's; NULL: they are made, and destroyed */
 } TimingOptions;
 
 /* Fills closed[count][PHASES] (closed loop) and frozen[count][PHASES] (frozen steps). */
