@@ -22,12 +22,13 @@
    Fails where passes are few: bodies move by what their neighbours did before, so momentum is not conserved until the
    passes have converged, and a shock moves up a stack one box a pass. New contacts begin soft; so do those of a single
    step of unknown past, which lacks the penalties that a run keeps: on a pyramid that costs it two thirds of its
-   accuracy. A pass is scalar code and takes as long as six sweeps, which are not. */
+   accuracy. */
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/impulses.h"
+#include "methods/lanes.h"
 #include "methods/methods.h"
 #include "methods/steppers.h"
-#include "methods/sweeps.h"
 #include "scenes/scenes.h"
 
 #include <math.h>
@@ -43,14 +44,17 @@ typedef struct Vec3 {
     float x, y, turn;
 } Vec3;
 
+/* Begins with two rows of four floats. */
 typedef struct AvbdBody {
-    Vec3 moved, free;    /* displacement in this step; without contacts */
-    Vec2 start;          /* m/s, velocity at the start of the step */
-    float mass, inertia; /* over dt^2; 0: static */
-    int first, count;    /* its visits */
+    Vec3 moved;       /* displacement in this step */
+    float mass;       /* over dt^2; 0: static */
+    Vec3 free;        /* displacement without contacts */
+    float inertia;    /* over dt^2 */
+    Vec2 start;       /* m/s, velocity at the start of the step */
+    int first, count; /* its contacts */
 } AvbdBody;
 
-/* Along the normal or the tangent of a contact. */
+/* Along the normal or the tangent of a contact. The last four floats are a row for lanes. */
 typedef struct AvbdRow {
     Vec3 of_a, of_b; /* gradient of the gap */
     float start;     /* m, gap at the start of the step */
@@ -71,12 +75,15 @@ typedef struct Avbd {
     int iterations;
     float alpha, beta, gamma; /* alpha < 0: post-stabilization */
     StepMemory memory;        /* of each contact: an AvbdContact; of each body: its velocity at the start of the step */
-    AvbdBody *bodies;
-    Mat22 *rotations; /* [bodies] */
-    BodyPose *poses;  /* [bodies] */
-    AvbdContact *contacts;
-    int *visits; /* [2 contacts] contacts of a body, body after body */
-    int body_count, contact_count;
+    AvbdBody *bodies;         /* [bodies + 1] the last one is spare */
+    Mat22 *rotations;         /* [bodies] */
+    BodyPose *poses;          /* [bodies] */
+    AvbdContact *contacts;    /* [contacts + LANES] with spare ones */
+    int *of_bodies;           /* [2 contacts] contacts of a body, body after body */
+    int *level;               /* [bodies] */
+    int *next;                /* [bodies + 1] of each level the end in `order` */
+    int *order;               /* [order_count] bodies by level; a level begins with new lanes */
+    int body_count, contact_count, order_count;
     ArrayBlock arrays; /* of this step */
 } Avbd;
 
@@ -151,7 +158,7 @@ static void begin_contact(Avbd *avbd, const ContactPoint *point, int i, float dt
 }
 
 /* The contacts of each body, in their order. */
-static void list_visits(Avbd *avbd) {
+static void list_contacts(Avbd *avbd) {
     for (int i = 0; i < avbd->contact_count; i++) {
         avbd->bodies[avbd->contacts[i].a].count++;
         avbd->bodies[avbd->contacts[i].b].count++;
@@ -163,9 +170,38 @@ static void list_visits(Avbd *avbd) {
     }
     for (int i = 0; i < avbd->contact_count; i++) {
         AvbdBody *a = &avbd->bodies[avbd->contacts[i].a], *b = &avbd->bodies[avbd->contacts[i].b];
-        avbd->visits[a->first + a->count++] = i;
-        avbd->visits[b->first + b->count++] = i;
+        avbd->of_bodies[a->first + a->count++] = i;
+        avbd->of_bodies[b->first + b->count++] = i;
     }
+}
+
+/* A pass visits bodies from the last to the first, as the 2D program does: gravity enters a stack at its top. Bodies of
+   a level do not touch each other, and come after those that they touch and that are visited before them. */
+static void order_bodies(Avbd *avbd) {
+    int *next = avbd->next, levels = 0;
+    for (int i = avbd->body_count - 1; i >= 0; i--) {
+        const AvbdBody *body = &avbd->bodies[i];
+        if (!(body->mass > 0)) continue;
+        int level = 0;
+        for (int v = body->first; v < body->first + body->count; v++) {
+            const AvbdContact *contact = &avbd->contacts[avbd->of_bodies[v]];
+            const int other = contact->a == i ? contact->b : contact->a;
+            if (other > i && avbd->bodies[other].mass > 0 && avbd->level[other] >= level)
+                level = avbd->level[other] + 1;
+        }
+        if (level == levels) next[levels++] = 0;
+        next[level]++;
+        avbd->level[i] = level;
+    }
+    avbd->order_count = 0;
+    for (int i = 0; i < levels; i++) {
+        const int lanes = (next[i] + LANES - 1) / LANES * LANES;
+        next[i] = avbd->order_count;
+        avbd->order_count += lanes;
+    }
+    for (int k = 0; k < avbd->order_count; k++) avbd->order[k] = avbd->body_count;
+    for (int i = avbd->body_count - 1; i >= 0; i--)
+        if (avbd->bodies[i].mass > 0) avbd->order[next[avbd->level[i]]++] = i;
 }
 
 /* Fills the state for a step of the world that has begun. False when memory is short. */
@@ -173,108 +209,196 @@ static bool begin(Avbd *avbd, const BegunStep *begun) {
     const ContactProblem *problem = begun->problem;
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     if (!step_memory_match(&avbd->memory, begun->world, begun->step) ||
-        !ARRAY_BLOCK_RESERVE(&avbd->arrays, ARRAY_PART(avbd->bodies, bodies), ARRAY_PART(avbd->rotations, bodies),
-                             ARRAY_PART(avbd->poses, bodies), ARRAY_PART(avbd->contacts, contacts),
-                             ARRAY_PART(avbd->visits, 2 * contacts)))
+        !ARRAY_BLOCK_RESERVE(&avbd->arrays, ARRAY_PART(avbd->bodies, bodies + 1), ARRAY_PART(avbd->rotations, bodies),
+                             ARRAY_PART(avbd->poses, bodies), ARRAY_PART(avbd->contacts, contacts + LANES),
+                             ARRAY_PART(avbd->of_bodies, 2 * contacts), ARRAY_PART(avbd->level, bodies),
+                             ARRAY_PART(avbd->next, bodies), ARRAY_PART(avbd->order, LANES * bodies)))
         return false;
     avbd->body_count = problem->body_count;
     avbd->contact_count = problem->contact_count;
     for (int i = 0; i < avbd->body_count; i++)
         begin_body(avbd, &world_bodies(begun->world)[i], i, begun->step->scene->gravity, problem->dt);
     for (int i = 0; i < avbd->contact_count; i++) begin_contact(avbd, &problem->contacts[i], i, problem->dt);
-    list_visits(avbd);
+    list_contacts(avbd);
+    order_bodies(avbd);
+    /* A lane without a body has the spare one, which stays where it is. One without a contact adds -0 to all sums, which
+       changes none of them, not even one that is -0. */
+    avbd->bodies[bodies] = (AvbdBody){.mass = 1, .inertia = 1};
+    const Vec3 none = {-0.0f, -0.0f, -0.0f};
+    const AvbdRow row = {.of_a = none, .of_b = none, .penalty = -0.0f};
+    for (int i = 0; i < LANES; i++)
+        avbd->contacts[contacts + (size_t)i] =
+            (AvbdContact){.a = avbd->body_count, .b = avbd->body_count, .normal = row, .tangent = row};
     return true;
 }
 
-/* The passes over all bodies. */
+/* The passes over all bodies: a body in each lane, then a contact in each lane. */
 
-static float dot(const Vec3 *a, const Vec3 *b) { return a->x * b->x + a->y * b->y + a->turn * b->turn; }
+typedef struct LaneVec3 {
+    Lanes x, y, turn;
+} LaneVec3;
+
+typedef struct LaneRow {
+    LaneVec3 of_a, of_b;
+    Lanes start, mass, penalty, force;
+} LaneRow;
+
+/* Some contacts, a body in each lane. */
+typedef struct LaneContacts {
+    int32_t at[LANES]; /* offsets of the contacts, in floats */
+    LaneVec3 moved_a, moved_b;
+    Lanes friction;
+    LaneRow normal, tangent;
+} LaneContacts;
+
+enum { BODY_FLOATS = sizeof(AvbdBody) / sizeof(float), CONTACT_FLOATS = sizeof(AvbdContact) / sizeof(float) };
+
+static inline LaneRow load_row(const AvbdRow *first, const int32_t *at) {
+    Lanes a[4], b[4], rest[4];
+    load_rows(a, &first->of_a.x, at);
+    load_rows(b, &first->of_b.x, at);
+    load_rows(rest, &first->start, at);
+    return (LaneRow){{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, rest[0], rest[1], rest[2], rest[3]};
+}
+
+static inline LaneVec3 load_moved(const AvbdBody *bodies, const int32_t *at) {
+    Lanes rows[4];
+    load_rows(rows, &bodies->moved.x, at);
+    return (LaneVec3){rows[0], rows[1], rows[2]};
+}
+
+static inline LaneContacts load_contacts(const Avbd *avbd, const int *contacts) {
+    LaneContacts loaded;
+    int32_t a[LANES], b[LANES];
+    for (int lane = 0; lane < LANES; lane++) {
+        const AvbdContact *contact = &avbd->contacts[contacts[lane]];
+        loaded.at[lane] = contacts[lane] * CONTACT_FLOATS;
+        loaded.friction[lane] = contact->friction;
+        a[lane] = contact->a * BODY_FLOATS;
+        b[lane] = contact->b * BODY_FLOATS;
+    }
+    loaded.moved_a = load_moved(avbd->bodies, a);
+    loaded.moved_b = load_moved(avbd->bodies, b);
+    loaded.normal = load_row(&avbd->contacts->normal, loaded.at);
+    loaded.tangent = load_row(&avbd->contacts->tangent, loaded.at);
+    return loaded;
+}
+
+static inline Lanes dot3(LaneVec3 a, LaneVec3 b) { return a.x * b.x + a.y * b.y + a.turn * b.turn; }
+static inline LaneVec3 where3(LaneMask mask, LaneVec3 a, LaneVec3 b) {
+    return (LaneVec3){lanes_where(mask, a.x, b.x), lanes_where(mask, a.y, b.y), lanes_where(mask, a.turn, b.turn)};
+}
+static inline Lanes clamped(Lanes x, Lanes low, Lanes high) { return lanes_max(low, lanes_min(x, high)); }
 
 /* The gap, with this share of what it was at the start. */
-static float gap(const Avbd *avbd, const AvbdContact *contact, const AvbdRow *row, float share) {
-    return share * row->start + dot(&row->of_a, &avbd->bodies[contact->a].moved) +
-           dot(&row->of_b, &avbd->bodies[contact->b].moved);
+static inline Lanes gap(const LaneContacts *contacts, const LaneRow *row, float share) {
+    return share * row->start + dot3(row->of_a, contacts->moved_a) + dot3(row->of_b, contacts->moved_b);
 }
 
-static float normal_force(const AvbdRow *row, float gap) {
-    float force = row->force - row->penalty * gap;
-    return 0.0f > force ? 0.0f : force;
+static inline Lanes normal_force(const LaneRow *row, Lanes gap) {
+    return lanes_max((Lanes){0}, row->force - row->penalty * gap);
 }
 
-static float tangent_force(const AvbdRow *row, float gap, float most) {
-    return contact_clamp(row->force - row->penalty * gap, -most, most);
+static inline Lanes tangent_force(const LaneRow *row, Lanes gap, Lanes most) {
+    return clamped(row->force - row->penalty * gap, -most, most);
 }
 
 /* The symmetric system of a body: rows of the lower triangle and the right-hand side. */
 typedef struct System {
-    float xx, yx, yy, tx, ty, tt;
-    Vec3 right;
+    Lanes xx, yx, yy, tx, ty, tt;
+    LaneVec3 right;
 } System;
 
-static void add_row(System *system, const Vec3 *j, float penalty, float force) {
-    const Vec3 scaled = {penalty * j->x, penalty * j->y, penalty * j->turn};
-    system->xx += scaled.x * j->x;
-    system->yx += scaled.y * j->x;
-    system->yy += scaled.y * j->y;
-    system->tx += scaled.turn * j->x;
-    system->ty += scaled.turn * j->y;
-    system->tt += scaled.turn * j->turn;
-    system->right.x += force * j->x;
-    system->right.y += force * j->y;
-    system->right.turn += force * j->turn;
+static inline void add_row(System *system, LaneVec3 j, Lanes penalty, Lanes force) {
+    const LaneVec3 scaled = {penalty * j.x, penalty * j.y, penalty * j.turn};
+    system->xx += scaled.x * j.x;
+    system->yx += scaled.y * j.x;
+    system->yy += scaled.y * j.y;
+    system->tx += scaled.turn * j.x;
+    system->ty += scaled.turn * j.y;
+    system->tt += scaled.turn * j.turn;
+    system->right.x += force * j.x;
+    system->right.y += force * j.y;
+    system->right.turn += force * j.turn;
 }
 
-static void visit_body(Avbd *avbd, int i, float share) {
-    AvbdBody *body = &avbd->bodies[i];
-    System system = {.xx = body->mass, .yy = body->mass, .tt = body->inertia};
-    system.right = (Vec3){body->mass * (body->free.x - body->moved.x), body->mass * (body->free.y - body->moved.y),
-                          body->inertia * (body->free.turn - body->moved.turn)};
-    for (int v = body->first; v < body->first + body->count; v++) {
-        const AvbdContact *contact = &avbd->contacts[avbd->visits[v]];
-        const AvbdRow *normal = &contact->normal, *tangent = &contact->tangent;
-        const bool is_a = contact->a == i;
-        const float most = contact->friction * normal->force;
-        add_row(&system, is_a ? &normal->of_a : &normal->of_b, normal->penalty,
-                normal_force(normal, gap(avbd, contact, normal, share)));
-        const float slid = gap(avbd, contact, tangent, share);
+/* By its factors L D L^T. */
+static inline LaneVec3 solve_system(const System *system) {
+    const Lanes d1 = system->xx, l21 = system->yx / d1, l31 = system->tx / d1;
+    const Lanes d2 = system->yy - l21 * l21 * d1, l32 = (system->ty - l21 * l31 * d1) / d2;
+    const Lanes d3 = system->tt - l31 * l31 * d1 - l32 * l32 * d2;
+    const Lanes y1 = system->right.x, y2 = system->right.y - l21 * y1, y3 = system->right.turn - l31 * y1 - l32 * y2;
+    const Lanes turn = y3 / d3, y = y2 / d2 - l32 * turn, x = y1 / d1 - l21 * y - l31 * turn;
+    return (LaneVec3){x, y, turn};
+}
+
+/* bodies[LANES] */
+static void visit_bodies(Avbd *avbd, const int *bodies, float share) {
+    int32_t at[LANES];
+    int contact_count = 0;
+    LaneMask number;
+    for (int lane = 0; lane < LANES; lane++) {
+        const int count = avbd->bodies[bodies[lane]].count;
+        at[lane] = bodies[lane] * BODY_FLOATS;
+        number[lane] = bodies[lane];
+        if (count > contact_count) contact_count = count;
+    }
+    Lanes moved[4], free[4]; /* with mass and inertia */
+    load_rows(moved, &avbd->bodies->moved.x, at);
+    load_rows(free, &avbd->bodies->free.x, at);
+    const Lanes mass = moved[3], inertia = free[3];
+    System system = {.xx = mass, .yy = mass, .tt = inertia};
+    system.right = (LaneVec3){mass * (free[0] - moved[0]), mass * (free[1] - moved[1]), inertia * (free[2] - moved[2])};
+    for (int v = 0; v < contact_count; v++) {
+        int chosen[LANES];
+        LaneMask a;
+        for (int lane = 0; lane < LANES; lane++) {
+            const AvbdBody *body = &avbd->bodies[bodies[lane]];
+            chosen[lane] = v < body->count ? avbd->of_bodies[body->first + v] : avbd->contact_count;
+            a[lane] = avbd->contacts[chosen[lane]].a;
+        }
+        const LaneContacts contacts = load_contacts(avbd, chosen);
+        const LaneRow *normal = &contacts.normal, *tangent = &contacts.tangent;
+        const LaneMask is_a = a == number;
+        add_row(&system, where3(is_a, normal->of_a, normal->of_b), normal->penalty,
+                normal_force(normal, gap(&contacts, normal, share)));
+        const Lanes most = contacts.friction * normal->force, slid = gap(&contacts, tangent, share);
         /* N/m: at its bound a force hardly resists more, the less the further the contact slides (its secant). The 2D
            program has the penalty there, too: then each pass gives a box that slides only a part of its friction. */
-        const float way = fabsf(slid), stiffness = tangent->penalty * way > most ? most / way : tangent->penalty;
-        add_row(&system, is_a ? &tangent->of_a : &tangent->of_b, stiffness, tangent_force(tangent, slid, most));
+        const Lanes way = lanes_abs(slid);
+        const Lanes stiffness = lanes_where(tangent->penalty * way > most, most / way, tangent->penalty);
+        add_row(&system, where3(is_a, tangent->of_a, tangent->of_b), stiffness, tangent_force(tangent, slid, most));
     }
-    /* By its factors L D L^T. */
-    const float d1 = system.xx, l21 = system.yx / d1, l31 = system.tx / d1;
-    const float d2 = system.yy - l21 * l21 * d1, l32 = (system.ty - l21 * l31 * d1) / d2;
-    const float d3 = system.tt - l31 * l31 * d1 - l32 * l32 * d2;
-    const float y1 = system.right.x, y2 = system.right.y - l21 * y1, y3 = system.right.turn - l31 * y1 - l32 * y2;
-    const float turn = y3 / d3, y = y2 / d2 - l32 * turn, x = y1 / d1 - l21 * y - l31 * turn;
-    body->moved = (Vec3){body->moved.x + x, body->moved.y + y, body->moved.turn + turn};
+    const LaneVec3 more = solve_system(&system);
+    store_rows(&avbd->bodies->moved.x, at,
+               (const Lanes[4]){moved[0] + more.x, moved[1] + more.y, moved[2] + more.turn, mass});
 }
 
-/* From the last body to the first, as the 2D program does: gravity enters a stack at its top. */
-static void visit_bodies(Avbd *avbd, float share) {
-    for (int i = avbd->body_count - 1; i >= 0; i--)
-        if (avbd->bodies[i].mass > 0) visit_body(avbd, i, share);
+static void pass_bodies(Avbd *avbd, float share) {
+    for (int k = 0; k < avbd->order_count; k += LANES) visit_bodies(avbd, &avbd->order[k], share);
 }
 
-static void raise_penalty(const Avbd *avbd, AvbdRow *row, float gap) {
-    row->penalty = contact_clamp(row->penalty + avbd->beta * row->mass * fabsf(gap), PENALTY_MIN * row->mass,
+/* The multiplier takes the force; the penalty rises where that is inside its bounds. */
+static inline void store_row(const Avbd *avbd, AvbdRow *first, const int32_t *at, const LaneRow *row, Lanes force,
+                             LaneMask inside, Lanes gap) {
+    const Lanes raised = clamped(row->penalty + avbd->beta * row->mass * lanes_abs(gap), PENALTY_MIN * row->mass,
                                  PENALTY_MAX * row->mass);
+    store_rows(&first->start, at,
+               (const Lanes[4]){row->start, row->mass, lanes_where(inside, raised, row->penalty), force});
 }
 
 /* The friction bound is that of the normal force before this update, as in the visits. */
 static void update_multipliers(Avbd *avbd, float share) {
-    for (int i = 0; i < avbd->contact_count; i++) {
-        AvbdContact *contact = &avbd->contacts[i];
-        AvbdRow *normal = &contact->normal, *tangent = &contact->tangent;
-        const float most = contact->friction * normal->force;
-        const float apart = gap(avbd, contact, normal, share), slid = gap(avbd, contact, tangent, share);
-        normal->force = normal_force(normal, apart);
-        tangent->force = tangent_force(tangent, slid, most);
-        if (normal->force > 0) raise_penalty(avbd, normal, apart);
-        if (fabsf(tangent->force) < most) raise_penalty(avbd, tangent, slid);
-        contact->sticks =
-            fabsf(tangent->force) < contact->friction * normal->force && fabsf(tangent->start) < STICK_DISTANCE;
+    for (int i = 0; i < avbd->contact_count; i += LANES) {
+        int chosen[LANES];
+        for (int lane = 0; lane < LANES; lane++) chosen[lane] = i + lane;
+        const LaneContacts contacts = load_contacts(avbd, chosen);
+        const LaneRow *normal = &contacts.normal, *tangent = &contacts.tangent;
+        const Lanes most = contacts.friction * normal->force;
+        const Lanes apart = gap(&contacts, normal, share), slid = gap(&contacts, tangent, share);
+        const Lanes pushed = normal_force(normal, apart), dragged = tangent_force(tangent, slid, most);
+        store_row(avbd, &avbd->contacts->normal, contacts.at, normal, pushed, pushed > 0.0f, apart);
+        store_row(avbd, &avbd->contacts->tangent, contacts.at, tangent, dragged, lanes_abs(dragged) < most, slid);
     }
 }
 
@@ -284,7 +408,7 @@ static void make_passes(Avbd *avbd, const Step *step, const ContactProblem *prob
     const bool correct = step->scene->position_correction, stabilize = avbd->alpha < 0 && correct;
     const float share = avbd->alpha < 0 || !correct ? 0.0f : 1.0f - avbd->alpha, inverse_dt = 1.0f / problem->dt;
     for (int k = 0; k < avbd->iterations; k++) {
-        visit_bodies(avbd, share);
+        pass_bodies(avbd, share);
         update_multipliers(avbd, share);
     }
     for (int i = 0; i < avbd->body_count; i++) {
@@ -294,7 +418,7 @@ static void make_passes(Avbd *avbd, const Step *step, const ContactProblem *prob
             (BodyVelocity){vec2_scale(inverse_dt, vec2(moved->x, moved->y)), inverse_dt * moved->turn};
         if (!(body->inv_mass > 0)) solution->velocities[i] = (BodyVelocity){body->velocity, body->angular_velocity};
     }
-    if (stabilize) visit_bodies(avbd, 1);
+    if (stabilize) pass_bodies(avbd, 1);
 }
 
 static const SettingSpec settings[] = {
@@ -334,8 +458,8 @@ static void measure(void *state, const BegunStep *begun) {
         if (!(body->inv_mass > 0)) continue;
         Vec2 change = vec2_scale(1.0f / body->inv_mass, vec2_sub(solution->velocities[i].linear, body->velocity));
         for (int v = avbd->bodies[i].first; v < avbd->bodies[i].first + avbd->bodies[i].count; v++) {
-            const ContactPoint *point = &problem->contacts[avbd->visits[v]];
-            const ContactImpulse *impulse = &solution->impulses[avbd->visits[v]];
+            const ContactPoint *point = &problem->contacts[avbd->of_bodies[v]];
+            const ContactImpulse *impulse = &solution->impulses[avbd->of_bodies[v]];
             Vec2 given = vec2_add(vec2_scale(impulse->normal, point->normal),
                                   vec2_scale(impulse->tangent, vec2_cross_scalar(point->normal, 1.0f)));
             change = point->b == i ? vec2_sub(change, given) : vec2_add(change, given);
@@ -357,10 +481,11 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
     begun->poses = avbd->poses;
     bool finite = true;
     for (int i = 0; i < avbd->contact_count; i++) {
-        const AvbdContact *contact = &avbd->contacts[i];
+        AvbdContact *contact = &avbd->contacts[i];
+        const float pushed = contact->normal.force, dragged = contact->tangent.force;
+        contact->sticks = fabsf(dragged) < contact->friction * pushed && fabsf(contact->tangent.start) < STICK_DISTANCE;
         ContactImpulse *impulse = &begun->solution->impulses[i];
-        *impulse =
-            (ContactImpulse){begun->problem->dt * contact->normal.force, begun->problem->dt * contact->tangent.force};
+        *impulse = (ContactImpulse){begun->problem->dt * pushed, begun->problem->dt * dragged};
         finite &= isfinite(impulse->normal) && isfinite(impulse->tangent);
     }
     return finite || error_failure(error, FAILURE_NOT_FINITE, "avbd", "an impulse is NaN or infinite");

@@ -19,6 +19,11 @@ typedef int32_t LaneMask __attribute__((vector_size(LANES * sizeof(int32_t))));
 /* Four floats that follow each other in memory. */
 typedef float Row __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
 
+static inline Lanes lanes_where(LaneMask mask, Lanes a, Lanes b) {
+    return (Lanes)((mask & (LaneMask)a) | (~mask & (LaneMask)b));
+}
+static inline Lanes lanes_abs(Lanes a) { return (Lanes)((LaneMask)a & INT32_MAX); }
+
 /* b where the sign of `by` is negative; a > b ? a : b and a < b ? a : b, also for zeros of either sign. Each is one
    instruction of AVX, where GCC 12 takes two or three for the general form: a tenth of a sweep's time. */
 #ifdef __AVX2__
@@ -27,9 +32,6 @@ static inline Lanes lanes_max(Lanes a, Lanes b) { return _mm256_max_ps(a, b); }
 static inline Lanes lanes_min(Lanes a, Lanes b) { return _mm256_min_ps(a, b); }
 static inline bool lanes_any_positive(Lanes a) { return _mm256_movemask_ps(a) != 0xff; }
 #else
-static inline Lanes lanes_where(LaneMask mask, Lanes a, Lanes b) {
-    return (Lanes)((mask & (LaneMask)a) | (~mask & (LaneMask)b));
-}
 static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) { return lanes_where((LaneMask)by < 0, b, a); }
 static inline Lanes lanes_max(Lanes a, Lanes b) { return lanes_where(a > b, a, b); }
 static inline Lanes lanes_min(Lanes a, Lanes b) { return lanes_where(a < b, a, b); }
