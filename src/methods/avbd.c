@@ -71,6 +71,30 @@ typedef struct AvbdContact {
     AvbdRow normal, tangent;
 } AvbdContact;
 
+typedef struct LaneVec3 {
+    Lanes x, y, turn;
+} LaneVec3;
+
+/* The last four of an AvbdRow. */
+typedef struct LaneForce {
+    Lanes start, mass, penalty, force;
+} LaneForce;
+
+/* Of the gap, by the displacement of the lane's body and by that of the other one. */
+typedef struct LaneGradient {
+    LaneVec3 own, other;
+} LaneGradient;
+
+/* A contact of a body in each lane. */
+typedef struct LaneVisit {
+    int32_t contact[LANES], own[LANES], other[LANES]; /* offsets of contacts and bodies, in floats */
+    LaneMask is_a;                                    /* the lane's body is the contact's a */
+    Lanes friction;
+    LaneGradient normal, tangent;
+} LaneVisit;
+
+enum { BODY_FLOATS = sizeof(AvbdBody) / sizeof(float), CONTACT_FLOATS = sizeof(AvbdContact) / sizeof(float) };
+
 typedef struct Avbd {
     int iterations;
     float alpha, beta, gamma; /* alpha < 0: post-stabilization */
@@ -83,6 +107,9 @@ typedef struct Avbd {
     int *level;               /* [bodies] */
     int *next;                /* [bodies + 1] of each level the end in `order` */
     int *order;               /* [order_count] bodies by level; a level begins with new lanes */
+    LaneVisit *visits;        /* of all bodies in that order */
+    int *visits_end;          /* [order_count / LANES] of each LANES bodies */
+    LaneVisit *updates;       /* of all contacts, as visits of their a */
     int body_count, contact_count, order_count;
     ArrayBlock arrays; /* of this step */
 } Avbd;
@@ -212,7 +239,9 @@ static bool begin(Avbd *avbd, const BegunStep *begun) {
         !ARRAY_BLOCK_RESERVE(&avbd->arrays, ARRAY_PART(avbd->bodies, bodies + 1), ARRAY_PART(avbd->rotations, bodies),
                              ARRAY_PART(avbd->poses, bodies), ARRAY_PART(avbd->contacts, contacts + LANES),
                              ARRAY_PART(avbd->of_bodies, 2 * contacts), ARRAY_PART(avbd->level, bodies),
-                             ARRAY_PART(avbd->next, bodies), ARRAY_PART(avbd->order, LANES * bodies)))
+                             ARRAY_PART(avbd->next, bodies), ARRAY_PART(avbd->order, LANES * bodies),
+                             ARRAY_PART(avbd->visits, 2 * contacts), ARRAY_PART(avbd->visits_end, bodies),
+                             ARRAY_PART(avbd->updates, contacts)))
         return false;
     avbd->body_count = problem->body_count;
     avbd->contact_count = problem->contact_count;
@@ -234,73 +263,85 @@ static bool begin(Avbd *avbd, const BegunStep *begun) {
 
 /* The passes over all bodies: a body in each lane, then a contact in each lane. */
 
-typedef struct LaneVec3 {
-    Lanes x, y, turn;
-} LaneVec3;
-
-typedef struct LaneRow {
-    LaneVec3 of_a, of_b;
-    Lanes start, mass, penalty, force;
-} LaneRow;
-
-/* Some contacts, a body in each lane. */
-typedef struct LaneContacts {
-    int32_t at[LANES]; /* offsets of the contacts, in floats */
-    LaneVec3 moved_a, moved_b;
-    Lanes friction;
-    LaneRow normal, tangent;
-} LaneContacts;
-
-enum { BODY_FLOATS = sizeof(AvbdBody) / sizeof(float), CONTACT_FLOATS = sizeof(AvbdContact) / sizeof(float) };
-
-static inline LaneRow load_row(const AvbdRow *first, const int32_t *at) {
-    Lanes a[4], b[4], rest[4];
-    load_rows(a, &first->of_a.x, at);
-    load_rows(b, &first->of_b.x, at);
-    load_rows(rest, &first->start, at);
-    return (LaneRow){{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, rest[0], rest[1], rest[2], rest[3]};
-}
-
-static inline LaneVec3 load_moved(const AvbdBody *bodies, const int32_t *at) {
-    Lanes rows[4];
-    load_rows(rows, &bodies->moved.x, at);
-    return (LaneVec3){rows[0], rows[1], rows[2]};
-}
-
-static inline LaneContacts load_contacts(const Avbd *avbd, const int *contacts) {
-    LaneContacts loaded;
-    int32_t a[LANES], b[LANES];
-    for (int lane = 0; lane < LANES; lane++) {
-        const AvbdContact *contact = &avbd->contacts[contacts[lane]];
-        loaded.at[lane] = contacts[lane] * CONTACT_FLOATS;
-        loaded.friction[lane] = contact->friction;
-        a[lane] = contact->a * BODY_FLOATS;
-        b[lane] = contact->b * BODY_FLOATS;
-    }
-    loaded.moved_a = load_moved(avbd->bodies, a);
-    loaded.moved_b = load_moved(avbd->bodies, b);
-    loaded.normal = load_row(&avbd->contacts->normal, loaded.at);
-    loaded.tangent = load_row(&avbd->contacts->tangent, loaded.at);
-    return loaded;
-}
-
 static inline Lanes dot3(LaneVec3 a, LaneVec3 b) { return a.x * b.x + a.y * b.y + a.turn * b.turn; }
 static inline LaneVec3 where3(LaneMask mask, LaneVec3 a, LaneVec3 b) {
     return (LaneVec3){lanes_where(mask, a.x, b.x), lanes_where(mask, a.y, b.y), lanes_where(mask, a.turn, b.turn)};
 }
 static inline Lanes clamped(Lanes x, Lanes low, Lanes high) { return lanes_max(low, lanes_min(x, high)); }
 
+static inline LaneVec3 load3(const Vec3 *first, const int32_t *at) {
+    Lanes rows[4];
+    load_rows(rows, &first->x, at);
+    return (LaneVec3){rows[0], rows[1], rows[2]};
+}
+
+static inline LaneForce load_force(const AvbdRow *first, const int32_t *at) {
+    Lanes rows[4];
+    load_rows(rows, &first->start, at);
+    return (LaneForce){rows[0], rows[1], rows[2], rows[3]};
+}
+
+static inline LaneGradient load_gradient(const AvbdRow *first, const int32_t *at, LaneMask is_a) {
+    const LaneVec3 of_a = load3(&first->of_a, at), of_b = load3(&first->of_b, at);
+    return (LaneGradient){where3(is_a, of_a, of_b), where3(is_a, of_b, of_a)};
+}
+
+/* A contact of a body in each lane. */
+static LaneVisit make_visit(const Avbd *avbd, const int contacts[LANES], const int bodies[LANES]) {
+    LaneVisit visit;
+    for (int lane = 0; lane < LANES; lane++) {
+        const AvbdContact *contact = &avbd->contacts[contacts[lane]];
+        const bool is_a = contact->a == bodies[lane];
+        visit.contact[lane] = contacts[lane] * CONTACT_FLOATS;
+        visit.own[lane] = bodies[lane] * BODY_FLOATS;
+        visit.other[lane] = (is_a ? contact->b : contact->a) * BODY_FLOATS;
+        visit.is_a[lane] = is_a ? -1 : 0;
+        visit.friction[lane] = contact->friction;
+    }
+    visit.normal = load_gradient(&avbd->contacts->normal, visit.contact, visit.is_a);
+    visit.tangent = load_gradient(&avbd->contacts->tangent, visit.contact, visit.is_a);
+    return visit;
+}
+
+static void make_visits(Avbd *avbd) {
+    int visits = 0, contacts[LANES], bodies[LANES];
+    for (int k = 0; k < avbd->order_count; k += LANES) {
+        int most = 0;
+        for (int lane = 0; lane < LANES; lane++) {
+            const int count = avbd->bodies[avbd->order[k + lane]].count;
+            if (count > most) most = count;
+        }
+        for (int n = 0; n < most; n++) {
+            for (int lane = 0; lane < LANES; lane++) {
+                const AvbdBody *body = &avbd->bodies[avbd->order[k + lane]];
+                contacts[lane] = n < body->count ? avbd->of_bodies[body->first + n] : avbd->contact_count;
+            }
+            avbd->visits[visits++] = make_visit(avbd, contacts, &avbd->order[k]);
+        }
+        avbd->visits_end[k / LANES] = visits;
+    }
+    for (int i = 0; i < avbd->contact_count; i += LANES) {
+        for (int lane = 0; lane < LANES; lane++) {
+            contacts[lane] = i + lane;
+            bodies[lane] = avbd->contacts[i + lane].a;
+        }
+        avbd->updates[i / LANES] = make_visit(avbd, contacts, bodies);
+    }
+}
+
 /* The gap, with this share of what it was at the start. */
-static inline Lanes gap(const LaneContacts *contacts, const LaneRow *row, float share) {
-    return share * row->start + dot3(row->of_a, contacts->moved_a) + dot3(row->of_b, contacts->moved_b);
+static inline Lanes gap(const LaneVisit *visit, const LaneGradient *gradient, Lanes start, LaneVec3 own, LaneVec3 other,
+                        float share) {
+    const Lanes by_own = dot3(gradient->own, own), by_other = dot3(gradient->other, other);
+    return share * start + lanes_where(visit->is_a, by_own, by_other) + lanes_where(visit->is_a, by_other, by_own);
 }
 
-static inline Lanes normal_force(const LaneRow *row, Lanes gap) {
-    return lanes_max((Lanes){0}, row->force - row->penalty * gap);
+static inline Lanes normal_force(const LaneForce *normal, Lanes gap) {
+    return lanes_max((Lanes){0}, normal->force - normal->penalty * gap);
 }
 
-static inline Lanes tangent_force(const LaneRow *row, Lanes gap, Lanes most) {
-    return clamped(row->force - row->penalty * gap, -most, most);
+static inline Lanes tangent_force(const LaneForce *tangent, Lanes gap, Lanes most) {
+    return clamped(tangent->force - tangent->penalty * gap, -most, most);
 }
 
 /* The symmetric system of a body: rows of the lower triangle and the right-hand side. */
@@ -332,73 +373,67 @@ static inline LaneVec3 solve_system(const System *system) {
     return (LaneVec3){x, y, turn};
 }
 
-/* bodies[LANES] */
-static void visit_bodies(Avbd *avbd, const int *bodies, float share) {
+/* bodies[LANES], with their visits up to `end`. */
+static void visit_bodies(Avbd *avbd, const int *bodies, const LaneVisit *visit, const LaneVisit *end, float share) {
     int32_t at[LANES];
-    int contact_count = 0;
-    LaneMask number;
-    for (int lane = 0; lane < LANES; lane++) {
-        const int count = avbd->bodies[bodies[lane]].count;
-        at[lane] = bodies[lane] * BODY_FLOATS;
-        number[lane] = bodies[lane];
-        if (count > contact_count) contact_count = count;
-    }
+    for (int lane = 0; lane < LANES; lane++) at[lane] = bodies[lane] * BODY_FLOATS;
     Lanes moved[4], free[4]; /* with mass and inertia */
     load_rows(moved, &avbd->bodies->moved.x, at);
     load_rows(free, &avbd->bodies->free.x, at);
-    const Lanes mass = moved[3], inertia = free[3];
-    System system = {.xx = mass, .yy = mass, .tt = inertia};
-    system.right = (LaneVec3){mass * (free[0] - moved[0]), mass * (free[1] - moved[1]), inertia * (free[2] - moved[2])};
-    for (int v = 0; v < contact_count; v++) {
-        int chosen[LANES];
-        LaneMask a;
-        for (int lane = 0; lane < LANES; lane++) {
-            const AvbdBody *body = &avbd->bodies[bodies[lane]];
-            chosen[lane] = v < body->count ? avbd->of_bodies[body->first + v] : avbd->contact_count;
-            a[lane] = avbd->contacts[chosen[lane]].a;
-        }
-        const LaneContacts contacts = load_contacts(avbd, chosen);
-        const LaneRow *normal = &contacts.normal, *tangent = &contacts.tangent;
-        const LaneMask is_a = a == number;
-        add_row(&system, where3(is_a, normal->of_a, normal->of_b), normal->penalty,
-                normal_force(normal, gap(&contacts, normal, share)));
-        const Lanes most = contacts.friction * normal->force, slid = gap(&contacts, tangent, share);
+    const LaneVec3 own = {moved[0], moved[1], moved[2]};
+    System system = {.xx = moved[3], .yy = moved[3], .tt = free[3]};
+    system.right =
+        (LaneVec3){moved[3] * (free[0] - own.x), moved[3] * (free[1] - own.y), free[3] * (free[2] - own.turn)};
+    for (; visit < end; visit++) {
+        const LaneVec3 other = load3(&avbd->bodies->moved, visit->other);
+        const LaneForce normal = load_force(&avbd->contacts->normal, visit->contact),
+                        tangent = load_force(&avbd->contacts->tangent, visit->contact);
+        const Lanes apart = gap(visit, &visit->normal, normal.start, own, other, share),
+                    slid = gap(visit, &visit->tangent, tangent.start, own, other, share);
+        add_row(&system, visit->normal.own, normal.penalty, normal_force(&normal, apart));
         /* N/m: at its bound a force hardly resists more, the less the further the contact slides (its secant). The 2D
            program has the penalty there, too: then each pass gives a box that slides only a part of its friction. */
-        const Lanes way = lanes_abs(slid);
-        const Lanes stiffness = lanes_where(tangent->penalty * way > most, most / way, tangent->penalty);
-        add_row(&system, where3(is_a, tangent->of_a, tangent->of_b), stiffness, tangent_force(tangent, slid, most));
+        const Lanes most = visit->friction * normal.force, way = lanes_abs(slid);
+        const Lanes stiffness = lanes_where(tangent.penalty * way > most, most / way, tangent.penalty);
+        add_row(&system, visit->tangent.own, stiffness, tangent_force(&tangent, slid, most));
     }
     const LaneVec3 more = solve_system(&system);
-    store_rows(&avbd->bodies->moved.x, at,
-               (const Lanes[4]){moved[0] + more.x, moved[1] + more.y, moved[2] + more.turn, mass});
+    const Lanes rows[4] = {own.x + more.x, own.y + more.y, own.turn + more.turn, moved[3]};
+    store_rows(&avbd->bodies->moved.x, at, rows);
 }
 
-static void pass_bodies(Avbd *avbd, float share) {
-    for (int k = 0; k < avbd->order_count; k += LANES) visit_bodies(avbd, &avbd->order[k], share);
+static void visit_all(Avbd *avbd, float share) {
+    for (int k = 0, begin = 0; k < avbd->order_count; k += LANES) {
+        const int end = avbd->visits_end[k / LANES];
+        visit_bodies(avbd, &avbd->order[k], &avbd->visits[begin], &avbd->visits[end], share);
+        begin = end;
+    }
 }
 
 /* The multiplier takes the force; the penalty rises where that is inside its bounds. */
-static inline void store_row(const Avbd *avbd, AvbdRow *first, const int32_t *at, const LaneRow *row, Lanes force,
-                             LaneMask inside, Lanes gap) {
-    const Lanes raised = clamped(row->penalty + avbd->beta * row->mass * lanes_abs(gap), PENALTY_MIN * row->mass,
-                                 PENALTY_MAX * row->mass);
-    store_rows(&first->start, at,
-               (const Lanes[4]){row->start, row->mass, lanes_where(inside, raised, row->penalty), force});
+static inline void store_force(const Avbd *avbd, AvbdRow *first, const int32_t *at, const LaneForce *last, Lanes force,
+                               LaneMask inside, Lanes gap) {
+    const Lanes raised = clamped(last->penalty + avbd->beta * last->mass * lanes_abs(gap), PENALTY_MIN * last->mass,
+                                 PENALTY_MAX * last->mass);
+    const Lanes rows[4] = {last->start, last->mass, lanes_where(inside, raised, last->penalty), force};
+    store_rows(&first->start, at, rows);
 }
 
 /* The friction bound is that of the normal force before this update, as in the visits. */
 static void update_multipliers(Avbd *avbd, float share) {
     for (int i = 0; i < avbd->contact_count; i += LANES) {
-        int chosen[LANES];
-        for (int lane = 0; lane < LANES; lane++) chosen[lane] = i + lane;
-        const LaneContacts contacts = load_contacts(avbd, chosen);
-        const LaneRow *normal = &contacts.normal, *tangent = &contacts.tangent;
-        const Lanes most = contacts.friction * normal->force;
-        const Lanes apart = gap(&contacts, normal, share), slid = gap(&contacts, tangent, share);
-        const Lanes pushed = normal_force(normal, apart), dragged = tangent_force(tangent, slid, most);
-        store_row(avbd, &avbd->contacts->normal, contacts.at, normal, pushed, pushed > 0.0f, apart);
-        store_row(avbd, &avbd->contacts->tangent, contacts.at, tangent, dragged, lanes_abs(dragged) < most, slid);
+        const LaneVisit *update = &avbd->updates[i / LANES];
+        const LaneVec3 own = load3(&avbd->bodies->moved, update->own),
+                       other = load3(&avbd->bodies->moved, update->other);
+        const LaneForce normal = load_force(&avbd->contacts->normal, update->contact),
+                        tangent = load_force(&avbd->contacts->tangent, update->contact);
+        const Lanes apart = gap(update, &update->normal, normal.start, own, other, share),
+                    slid = gap(update, &update->tangent, tangent.start, own, other, share);
+        const Lanes most = update->friction * normal.force;
+        const Lanes pushed = normal_force(&normal, apart), dragged = tangent_force(&tangent, slid, most);
+        store_force(avbd, &avbd->contacts->normal, update->contact, &normal, pushed, pushed > 0.0f, apart);
+        store_force(avbd, &avbd->contacts->tangent, update->contact, &tangent, dragged, lanes_abs(dragged) < most,
+                    slid);
     }
 }
 
@@ -407,8 +442,9 @@ static void update_multipliers(Avbd *avbd, float share) {
 static void make_passes(Avbd *avbd, const Step *step, const ContactProblem *problem, ContactSolution *solution) {
     const bool correct = step->scene->position_correction, stabilize = avbd->alpha < 0 && correct;
     const float share = avbd->alpha < 0 || !correct ? 0.0f : 1.0f - avbd->alpha, inverse_dt = 1.0f / problem->dt;
+    make_visits(avbd);
     for (int k = 0; k < avbd->iterations; k++) {
-        pass_bodies(avbd, share);
+        visit_all(avbd, share);
         update_multipliers(avbd, share);
     }
     for (int i = 0; i < avbd->body_count; i++) {
@@ -418,7 +454,7 @@ static void make_passes(Avbd *avbd, const Step *step, const ContactProblem *prob
             (BodyVelocity){vec2_scale(inverse_dt, vec2(moved->x, moved->y)), inverse_dt * moved->turn};
         if (!(body->inv_mass > 0)) solution->velocities[i] = (BodyVelocity){body->velocity, body->angular_velocity};
     }
-    if (stabilize) pass_bodies(avbd, 1);
+    if (stabilize) visit_all(avbd, 1);
 }
 
 static const SettingSpec settings[] = {
