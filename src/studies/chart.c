@@ -210,12 +210,12 @@ static const StudySize full_size = {.launches = 40,
                                     .closed = {.after = 6, .rest = 30},
                                     .frozen = {.after = 6, .rest = 60},
                                     .timed_launches = 20,
-                                    .repetitions = 3};
+                                    .repetitions = 2};
 static const StudySize quick_size = {.launches = 5,
                                      .closed = {.after = 20, .rest = 120},
                                      .frozen = {.after = 20, .rest = 120},
                                      .timed_launches = 1,
-                                     .repetitions = 3};
+                                     .repetitions = 2};
 
 typedef struct Run {
     const SpeedAccuracyOptions *options;

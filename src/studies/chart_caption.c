@@ -86,7 +86,7 @@ static void add_curves(const Caption *caption) {
     text_add(
         caption->text, caption->size,
         " A curve joins the settings of a method that no other of its settings beats in both time and error; chart.csv "
-        "has all. Shaded: what no solver reaches. Bars: quartiles of the time over repetitions of the same steps.");
+        "has all. Shaded: what no solver reaches.");
     if (baseline != NULL)
         text_add(caption->text, caption->size,
                  " Ring and dotted lines: %s with as many sweeps as the scene sets, with whose time and error the "
@@ -133,7 +133,6 @@ void chart_caption(const Chart *chart, const char *title, const bool *named, cha
     if (separator[0] == ',') text_add(text, size, ".");
     add_counts(&caption, " Unstable before the impact, and left out: ", offsetof(ChartLine, lost));
     add_counts(&caption, " Without time or error: ", offsetof(ChartLine, left_out));
-    add_counts(&caption, " Times here that vary: ", offsetof(ChartLine, varying));
     add_floors(&caption);
     if (chart->floored > 0) text_add(text, size, " Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
     if (chart->times[0] != '\0') text_add(text, size, " %s", chart->times);

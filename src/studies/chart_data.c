@@ -231,8 +231,8 @@ static bool rank(Chart *chart, const ChartLook *look) {
 }
 
 static void widen(Chart *chart, const ChartMark *mark) {
-    chart->us_least = fmin(chart->us_least, mark->us_q1);
-    chart->us_most = fmax(chart->us_most, mark->us_q3);
+    chart->us_least = fmin(chart->us_least, mark->us);
+    chart->us_most = fmax(chart->us_most, mark->us);
     chart->error_least = fmin(chart->error_least, mark->error);
     chart->error_most = fmax(chart->error_most, mark->error);
 }
@@ -285,21 +285,17 @@ static bool add_rows(Chart *chart, const CsvTable *table, const char *scene, con
         }
         if (row->protocol != protocol || row->phase == PHASE_REST) continue;
         if (row->floor > PARETO_RESOLUTION) chart->floor[p] = row->floor;
-        /* A program has no quartiles: it reports one time a step. */
         const bool own_clock = isnan(row->us_solver) && !isnan(row->us_engine);
         const ChartMark mark = {.line = k,
                                 .us = own_clock ? row->us_engine : row->us_solver,
-                                .us_q1 = own_clock ? row->us_engine : row->us_solver_q1,
-                                .us_q3 = own_clock ? row->us_engine : row->us_solver_q3,
                                 .error = fmax(row->error_mean, chart_row_resolution(row)),
                                 .floored = row->error_mean < PARETO_RESOLUTION && !(row->floor > PARETO_RESOLUTION),
-                                .varies = row->us_varies > 0,
                                 .lost = !chart->frozen && chart_row_lost(table->rows, table->count, row),
                                 .baseline = method != NULL && method->baseline && row->setting[0] == '\0',
                                 .method = row->method,
                                 .setting = row->setting};
         if (!mark.lost && row->launches > chart->launches) chart->launches = row->launches;
-        if (mark.us_q1 > 0 && mark.us > 0 && mark.us_q3 > 0 && !isnan(row->error_mean))
+        if (mark.us > 0 && !isnan(row->error_mean))
             chart->panels[p].marks[chart->panels[p].count++] = mark;
         else
             line->left_out += !mark.lost;
@@ -354,7 +350,6 @@ static void fit_axes(Chart *chart) {
                 continue;
             }
             line->marks[p]++;
-            line->varying += mark.varies;
             chart->floored += mark.floored;
             widen(chart, &mark);
             panel->marks[kept++] = mark;

@@ -36,7 +36,6 @@ typedef struct ChartLine {
     RunColours colours;
     bool asked;                        /* named by the reader */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
-    int varying;                       /* number of marks drawn whose time varies (ChartRow.us_varies) */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
     bool competes;                     /* or unknown; baselines and the reference do not */
     int beyond;                        /* number of marks left out because they are far from the coloured ones, and */
@@ -45,11 +44,9 @@ typedef struct ChartLine {
 
 typedef struct ChartMark {
     int line;
-    double us, us_q1,
-        us_q3;    /* solver time per step: median and quartiles, microseconds; of a program what it reports */
+    double us;    /* solver time per step, microseconds; of a program what it reports */
     double error; /* mean velocity error, m/s; at least chart_row_resolution() */
     bool floored; /* it was less, and PARETO_RESOLUTION is that */
-    bool varies;  /* ChartRow.us_varies */
     bool on_front;
     bool beaten;   /* another setting of its line beats it in both time and error */
     bool lost;     /* the method lost the scene; only of lines that are asked for */

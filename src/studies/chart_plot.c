@@ -147,16 +147,6 @@ static void draw_curve(ChartDrawing *drawing, int first, int end) {
         sketch_line(drawing->sketch, from, to, &pen);
         label_add_segment(&drawing->field, (Segment){from.x, from.y, to.x, to.y});
     }
-    /* The quartiles of a coloured mark's time; a bar shorter than its mark would only blur it. */
-    const Pen bar = pen_line(style.colour, 1, NULL);
-    for (int i = first; coloured && i < end; i++) {
-        const Point at = chart_place(drawing, &marks[i]);
-        const double left = plot_axis_place(&drawing->plot->x, marks[i].us_q1),
-                     right = plot_axis_place(&drawing->plot->x, marks[i].us_q3);
-        if (right - at.x <= MARK_RADIUS && at.x - left <= MARK_RADIUS) continue;
-        sketch_line(drawing->sketch, (Point){left, at.y}, (Point){right, at.y}, &bar);
-        label_add_segment(&drawing->field, (Segment){left, at.y, right, at.y});
-    }
 }
 
 static void draw_mark(ChartDrawing *drawing, const ChartMark *mark) {

@@ -49,19 +49,13 @@ bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {
 void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count) {
     const char *cpu = NULL;
     bool others = false;
-    int times = 0, vary = 0;
     for (int i = 0; i < count; i++) {
-        times += !isnan(rows[i].us_solver);
-        vary += rows[i].us_varies > 0;
         if (rows[i].cpu[0] == '\0') continue;
         if (cpu == NULL) cpu = rows[i].cpu;
         others |= strcmp(rows[i].cpu, cpu) != 0;
     }
     note[0] = '\0';
-    if (cpu == NULL) return;
-    snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.", cpu, others ? " and others" : "");
-    if (vary > 0)
-        text_add(note, CHART_TIMES_SIZE, " %d of %d vary more than the others, also when measured again.", vary, times);
+    if (cpu != NULL) snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.", cpu, others ? " and others" : "");
 }
 
 static const char *const protocol_words[] = {"frozen", "closed", NULL};
@@ -79,8 +73,6 @@ static const CsvColumn columns[] = {
     WORD(phase, phase_words),
     CSV_MEMBER(ChartRow, launches, CSV_INTEGER, .maximum = INT_MAX),
     FIGURE(us_solver, 0, INFINITY),
-    FIGURE(us_solver_q1, 0, INFINITY),
-    FIGURE(us_solver_q3, 0, INFINITY),
     FIGURE(us_step, 0, INFINITY),
     FIGURE(error_mean, 0, INFINITY),
     FIGURE(error_median, 0, INFINITY),
@@ -93,7 +85,6 @@ static const CsvColumn columns[] = {
     FIGURE(moved, 0, INFINITY),
     CSV_MEMBER(ChartRow, cpu, CSV_TEXT, .maximum = CPU_NAME_SIZE - 1, .optional = true),
     CSV_MEMBER(ChartRow, us_engine, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
-    CSV_MEMBER(ChartRow, us_varies, CSV_OPTIONAL, .maximum = 1, .optional = true),
     CSV_MEMBER(ChartRow, signorini, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, cone, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, dissipation, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
@@ -101,18 +92,5 @@ static const CsvColumn columns[] = {
     CSV_MEMBER(ChartRow, floor, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
 };
 
-enum { SOLVER_MEDIAN = 6 };
-
-/* Comparisons with NAN are false: a missing time is not checked. */
-static bool check_times(const CsvTable *table, Error *error) {
-    for (int i = 0; i < table->count; i++) {
-        const ChartRow *row = chart_row(table, i);
-        if (row->us_solver_q1 > row->us_solver || row->us_solver > row->us_solver_q3 ||
-            row->us_solver_q1 > row->us_solver_q3)
-            return csv_table_error(table, i, SOLVER_MEDIAN, error, "us_solver: the median is outside the quartiles");
-    }
-    return true;
-}
-
-const CsvLayout chart_layout = CSV_LAYOUT("chart", columns, ChartRow, .min_rows = 1, .max_rows = CHART_MAX_ROWS,
-                                          .header = CSV_EXACT, .check = check_times);
+const CsvLayout chart_layout =
+    CSV_LAYOUT("chart", columns, ChartRow, .min_rows = 1, .max_rows = CHART_MAX_ROWS, .header = CSV_EXACT);

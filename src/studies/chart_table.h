@@ -25,20 +25,16 @@ typedef struct ChartRow {
     ChartProtocol protocol;
     Phase phase;
     int launches;
-    double us_solver, us_solver_q1, us_solver_q3; /* time in the solver per step: median, quartiles; microseconds */
-    double us_step;                               /* of the whole step, median; microseconds */
-    double error_mean, error_median, error_p95;   /* m/s */
-    double error_worst;                           /* mean of the worst launch, m/s */
-    double share_right;                           /* of bodies, 0 to 1 */
-    double penetration_max, drift;                /* m */
-    double energy;                                /* above the converged run's, J */
-    double moved;                                 /* boxes that moved more than 0.5 m */
+    double us_solver, us_step;                  /* microseconds a step: in the solver, in all (studies/timing.h) */
+    double error_mean, error_median, error_p95; /* m/s */
+    double error_worst;                         /* mean of the worst launch, m/s */
+    double share_right;                         /* of bodies, 0 to 1 */
+    double penetration_max, drift;              /* m */
+    double energy;                              /* above the converged run's, J */
+    double moved;                               /* boxes that moved more than 0.5 m */
     const char *cpu; /* processor that times were measured on; "": not measured, or not known */
-    /* of an external method, which has no other times: what its engine says that a step took; median */
+    /* of an external method, which has no other times: what its engine says that a step took */
     double us_engine;
-    /* 1: us_solver varies more than the times of other rows, also when measured again (StepCost); else 0. NaN:
-       unknown */
-    double us_varies;
     /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps with impulses. NaN: none
        has. */
     double signorini, cone, dissipation;
@@ -49,8 +45,7 @@ typedef struct ChartRow {
     int worst_launch; /* of error_worst, of the study's; not in the table */
 } ChartRow;
 
-/* The header is exact, but that the last columns, from cpu on, may be missing. Refused: a median time outside its
-   quartiles. */
+/* The header is exact, but that the last columns, from cpu on, may be missing. */
 extern const CsvLayout chart_layout;
 
 static inline const ChartRow *chart_row(const CsvTable *table, int i) { return (const ChartRow *)table->rows + i; }
@@ -74,6 +69,5 @@ double chart_row_resolution(const ChartRow *row);
 /* True if the boxes drifted by half a metre before the bomb came: the method was scored on another scene. */
 bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row);
 
-/* "Times measured on PROCESSOR.", and how many vary
-   (us_varies); "" if no row names one. */
+/* "Times measured on PROCESSOR."; "" if no row names one. */
 void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count);

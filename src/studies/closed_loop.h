@@ -53,7 +53,7 @@ typedef struct ClosedLoop {
 bool closed_loop_run(const Method *method, const Scene *launches, const ConvergedLogs *converged, int count,
                      ClosedLoop *result, Error *error);
 
-/* Microseconds per step of a method and of the engine, measured in turns on engine states: mean over the states of the
-   median over the repetitions. */
+/* Microseconds per step of a method and of the engine, measured in turns on engine states: as in
+   studies/timing.h. */
 bool closed_loop_time(const Method *method, const SnapshotList *states, int repetitions, double *us_step,
                       double *us_step_engine, Error *error);

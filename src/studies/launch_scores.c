@@ -230,8 +230,6 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .phase = (Phase)phase,
                       .launches = launches,
                       .us_solver = NAN,
-                      .us_solver_q1 = NAN,
-                      .us_solver_q3 = NAN,
                       .us_step = NAN,
                       .error_worst = NAN,
                       .penetration_max = NAN,
@@ -240,7 +238,6 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .moved = NAN,
                       .cpu = "",
                       .us_engine = NAN,
-                      .us_varies = NAN,
                       .signorini = NAN,
                       .cone = NAN,
                       .dissipation = NAN,
@@ -250,10 +247,7 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
 
 void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
     row->us_solver = cost->solver;
-    row->us_solver_q1 = cost->solver_q1;
-    row->us_solver_q3 = cost->solver_q3;
     row->us_step = cost->step;
     row->us_engine = cost->engine;
-    row->us_varies = isnan(cost->solver) ? (double)NAN : cost->varies;
     if (!isnan(cost->solver) || !isnan(cost->engine)) row->cpu = cpu;
 }

@@ -271,8 +271,7 @@ bool scene_times_write(SceneStudy *study, FILE *results, const Progress *progres
         for (int p = 0; p < PROTOCOLS; p++)
             for (int phase = 0; phase < PHASES; phase++) {
                 const StepCost *cost = &costs[p][i][phase];
-                const double stored[] = {cost->solver, cost->solver_q1, cost->solver_q3,
-                                         cost->step,   cost->engine,    cost->varies};
+                const double stored[] = {cost->solver, cost->step, cost->engine};
                 fwrite(stored, sizeof stored, 1, results);
             }
     for (int p = 0; p < PROTOCOLS; p++) free(costs[p]);
@@ -283,7 +282,7 @@ bool scene_times_write(SceneStudy *study, FILE *results, const Progress *progres
 }
 
 MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error) {
-    double stored[6];
+    double stored[3];
     const size_t count = (size_t)study->contender_count;
     MethodTimes *times = calloc(count + 1, sizeof *times);
     if (times == NULL) return error_memory(error, path), NULL;
@@ -291,10 +290,9 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
     for (size_t i = 0; whole && i < count * PROTOCOLS * PHASES; i++) {
         memcpy(stored, bytes + i * sizeof stored, sizeof stored);
         StepCost *cost = &times[i / (PROTOCOLS * PHASES)].costs[i / PHASES % PROTOCOLS][i % PHASES];
-        *cost = (StepCost){stored[0], stored[1], stored[2], stored[3], .engine = stored[4], .varies = stored[5] == 1};
+        *cost = (StepCost){.solver = stored[0], .step = stored[1], .engine = stored[2]};
         /* What chart.csv can have; NAN is no time. */
-        whole = !(cost->solver_q1 < 0) && !(cost->solver_q1 > cost->solver) && !(cost->solver > cost->solver_q3) &&
-                !(cost->step < 0) && !(cost->engine < 0) && (stored[5] == 0 || stored[5] == 1);
+        whole = !(cost->solver < 0) && !(cost->step < 0) && !(cost->engine < 0);
     }
     if (whole) return times;
     error_input(error, path, "is no result of times; delete it, and run the command again");

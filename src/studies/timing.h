@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The cost of contenders, measured in turns on one core, with repetitions: on two cores at once, one method or another
-   takes a third longer. The first steps of each, those of one launch, do not count.
-
-   A time varies if the distance of its quartiles, as a share of its median, is more than TIMES_VARY_FACTOR that of
-   the middle one of the other contenders in the same protocol and phase, more than TIMES_VARY_LEAST, and more than a
-   clock's own error, TIMES_VARY_US. Its launches that vary so are measured again, and have the
-   times of the second measurement only; so are its frozen steps. */
+/* The cost of contenders. The time of a step is the least of its repetitions, as what interrupts a step only adds to
+   its time. Contenders take turns launch by launch, on one core, so that a slow second of the machine is one of all of
+   them; on two cores at once, one method or another takes a third longer. The first steps of each do not count. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -15,18 +11,12 @@
 
 #include <stdbool.h>
 
-#define TIMES_VARY_FACTOR 3.0
-#define TIMES_VARY_LEAST 0.1
-#define TIMES_VARY_US 0.1
-
-/* Microseconds per step in one phase: means over the steps of the median and the quartiles that each step has over the
-   repetitions. NaN if the phase does not occur. */
+/* Microseconds per step in one phase, means over the steps. NaN if the phase does not occur. */
 typedef struct StepCost {
-    double solver, solver_q1, solver_q3; /* of the solver alone: median, quartiles */
-    double step;                         /* of the whole step: median */
-    double engine;                       /* of an external method, instead of all others: median; else NaN */
-    int steps;                           /* of the phase, in each repetition */
-    bool varies;                         /* also when it was measured again */
+    double solver; /* of the solver alone */
+    double step;   /* of the whole step */
+    double engine; /* of an external method, instead of both: what it reports; else NaN */
+    int steps;     /* of the phase, in each repetition */
 } StepCost;
 
 typedef struct TimingOptions {

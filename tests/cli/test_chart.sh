@@ -23,7 +23,6 @@ for row in csv.DictReader(open("quick/chart.csv")):
     # A phase that a method's run never came to has neither.
     assert (row["us_solver"] == "") == (row["error_mean"] == "") == (row["cpu"] == ""), row
     if row["us_solver"]:
-        assert float(row["us_solver_q1"]) <= float(row["us_solver"]) <= float(row["us_solver_q3"]), row
         assert float(row["us_step"]) > 0, row
 PYTHON
 

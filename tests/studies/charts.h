@@ -2,8 +2,8 @@
 #pragma once
 #include "testing.h"
 
-#define CHART_HEADER                                                                            \
-    "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step," \
+#define CHART_HEADER                                                  \
+    "scene,method,setting,protocol,phase,launches,us_solver,us_step," \
     "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved"
 
 /* Writes a table with the header of a chart that names no processor; the lines follow it as they are. */

@@ -71,7 +71,7 @@ TEST(a_picture_and_its_caption_are_written) {
                "assert len(found) > 3 and told.issuperset(found), set(found) - told\n",
                drawn_file("pyramid_settled", "svg"));
     FREED char *caption = read_drawn("pyramid_settled", "txt", &size);
-    assert_non_null(strstr(caption, " Beyond the axes: reference (2232 to 2400 µs, below 0.0001 m/s)."));
+    assert_non_null(strstr(caption, " Beyond the axes: reference (2232 to 2400 µs, below 0.0001 m/s), constant (0.56 µs,"));
     assert_non_null(strstr(caption, "Ring and dotted lines: engine with as many sweeps as the scene sets"));
 }
 
@@ -95,8 +95,8 @@ TEST(sizes_are_those_of_a_column_and_a_slide) {
     assert_non_null(strstr(svg, "Velocity error:"));
 }
 
-#define HEADER                                                                                  \
-    "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step," \
+#define HEADER                                                        \
+    "scene,method,setting,protocol,phase,launches,us_solver,us_step," \
     "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved\n"
 
 static const char *write_rows(const char *lines) {
@@ -116,18 +116,18 @@ static void expect_refused(const char *lines, const char *scene, const char *mes
 
 TEST(tables_without_a_mark_are_refused) {
     static const char none[] = "rows.csv: error: no row of the scene 'single' in closed loop has a time and an error";
-    expect_refused("stack,engine,,closed,impact,40,5,4,6,,1,,,,,,,,\n", "single", none);
-    expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,1,,,,,,,,\n"
-                   "single,engine,,closed,rest,40,5,4,6,,1,,,,,,,,\n"
-                   "single,engine,k=30,closed,impact,40,5,4,6,,,,,,,,,,\n"
-                   "single,engine,k=40,closed,impact,40,,,,,1,,,,,,,,\n"
-                   "single,engine,k=50,closed,impact,40,0,0,0,,1,,,,,,,,\n",
+    expect_refused("stack,engine,,closed,impact,40,5,,1,,,,,,,,\n", "single", none);
+    expect_refused("single,engine,k=10,frozen,impact,40,5,,1,,,,,,,,\n"
+                   "single,engine,,closed,rest,40,5,,1,,,,,,,,\n"
+                   "single,engine,k=30,closed,impact,40,5,,,,,,,,,,\n"
+                   "single,engine,k=40,closed,impact,40,,,1,,,,,,,,\n"
+                   "single,engine,k=50,closed,impact,40,0,,1,,,,,,,,\n",
                    "single", none);
-    expect_refused("single,engine,,closed,impact,40,5,4,6,,-1,,,,,,,,\n", "single", "error_mean: '-1' is less than 0");
-    expect_refused("../x,engine,,closed,impact,40,5,4,6,,1,,,,,,,,\n", "../x", "is not a valid scene name");
+    expect_refused("single,engine,,closed,impact,40,5,,-1,,,,,,,,\n", "single", "error_mean: '-1' is less than 0");
+    expect_refused("../x,engine,,closed,impact,40,5,,1,,,,,,,,\n", "../x", "is not a valid scene name");
     char many[8000] = "";
     for (int i = 0; i <= CHART_MAX_LINES; i++)
-        snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,1,,,,,,,,\n", i);
+        snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,,1,,,,,,,,\n", i);
     expect_refused(many, "single", "at most 32 methods");
 }
 
@@ -145,24 +145,11 @@ static void expect_caption(const char *path, const char *wanted, const char *unw
     if (unwanted != NULL) assert_null(strstr(caption, unwanted));
 }
 
-TEST(times_that_vary_are_noted) {
-    const char *path = temporary_path("chart.csv");
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    fputs(CHART_HEADER ",cpu,us_engine,us_varies\n"
-                       "stack,engine,,closed,impact,40,5,5,5,,1,,,,,,,,,AMD,,0\n"
-                       "stack,engine,k=20,closed,impact,40,9,5,9,,0.5,,,,,,,,,AMD,,1\n",
-          file);
-    assert_int_equal(fclose(file), 0);
-    expect_caption(path, "Times measured on AMD. 1 of 2 vary more than the others, also when measured again.", NULL);
-    expect_caption(path, "Times here that vary: engine (1).", NULL);
-}
-
 /* The caption names the methods whose errors have another target. */
 TEST(a_target_without_push_out_is_noted) {
-    static const char rows[] = "stack,engine,,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                               "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                               "stack,avbd,k=10,closed,impact,40,5,5,5,,1,,,,,,,,\n";
+    static const char rows[] = "stack,engine,,closed,impact,40,5,,1,,,,,,,,\n"
+                               "stack,soft-step,substeps=4,closed,impact,40,5,,1,,,,,,,,\n"
+                               "stack,avbd,k=10,closed,impact,40,5,,1,,,,,,,,\n";
     const char *engine = printed("%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
     expect_caption(write_rows(rows), "soft-step, avbd: error against the solution without the velocity that pushes",
                    NULL);
@@ -171,17 +158,17 @@ TEST(a_target_without_push_out_is_noted) {
 
 /* Above what is drawn at all, the floor is a line, and errors below it are drawn on it: neither is ranked. */
 TEST(the_floor_is_a_line_below_which_nothing_is_ranked) {
-    static const char head[] = CHART_HEADER ",cpu,us_engine,us_varies,signorini,cone,dissipation,rollout_mse,floor\n";
-    static const char row[] = "stack,%s,,closed,impact,40,%d,%d,%d,,%g,,,,,,,,,,,,,,,,%g\n";
+    static const char head[] = CHART_HEADER ",cpu,us_engine,signorini,cone,dissipation,rollout_mse,floor\n";
+    static const char row[] = "stack,%s,,closed,impact,40,%d,,%g,,,,,,,,,,,,,,,%g\n";
     for (int k = 0; k < 2; k++) {
         const double floor = k == 0 ? 1e-5 : 0.003;
         const char *path = temporary_path("chart.csv");
         FILE *file = fopen(path, "wb");
         assert_non_null(file);
         fputs(head, file);
-        fprintf(file, row, "engine", 5, 5, 5, 1.0, floor);
-        fprintf(file, row, "momentum", 9, 9, 9, 0.0025, floor);
-        fprintf(file, row, "interior", 20, 20, 20, 0.0005, floor);
+        fprintf(file, row, "engine", 5, 1.0, floor);
+        fprintf(file, row, "momentum", 9, 0.0025, floor);
+        fprintf(file, row, "interior", 20, 0.0005, floor);
         assert_int_equal(fclose(file), 0);
         OWN(CsvTable) table;
         Chart chart;
@@ -239,12 +226,12 @@ static void free_chart(Chart *chart, CsvTable *table) {
 
 TEST(marks_are_gathered_by_line_and_time) {
     CsvTable table;
-    Chart chart = gather(&table, "single,engine,k=5,closed,impact,9,2,2,2,,3,,,,,,,,\n"
-                                 "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,2,,,,,,,,\n"
-                                 "stack,engine,,closed,impact,40,5,4,6,,3,,,,,,,,\n"
-                                 "stack,engine,k=5,closed,impact,39,2,2,2,,3,,,,,,,,\n"
-                                 "stack,engine,k=5,closed,after,39,2,2,2,,1e-9,,,,,,,,\n"
-                                 "stack,engine,k=6,closed,after,39,2,2,2,,1e-4,,,,,,,,\n");
+    Chart chart = gather(&table, "single,engine,k=5,closed,impact,9,2,,3,,,,,,,,\n"
+                                 "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,,2,,,,,,,,\n"
+                                 "stack,engine,,closed,impact,40,5,,3,,,,,,,,\n"
+                                 "stack,engine,k=5,closed,impact,39,2,,3,,,,,,,,\n"
+                                 "stack,engine,k=5,closed,after,39,2,,1e-9,,,,,,,,\n"
+                                 "stack,engine,k=6,closed,after,39,2,,1e-4,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
     assert_string_equal(chart.lines[0].name, "momentum:warm=off");
     assert_string_equal(chart.lines[1].name, "engine");
@@ -260,20 +247,20 @@ TEST(marks_are_gathered_by_line_and_time) {
     assert_true(impact->marks[1].on_front && !impact->marks[1].baseline);
     assert_string_equal(impact->marks[2].label, "");
     assert_true(!impact->marks[2].on_front && impact->marks[2].baseline && impact->marks[2].beaten);
-    assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
+    assert_true(chart.us_least == 2 && chart.us_most == 5 && chart.error_least == 1e-4 && chart.error_most == 3);
     free_chart(&chart, &table);
 }
 
 /* A baseline a thousand times faster would push the coloured curves into a corner. */
 TEST(the_axes_show_the_coloured_curves) {
     CsvTable table;
-    Chart chart = gather(&table, "stack,engine,k=5,closed,impact,40,20,19,21,,1,,,,,,,,\n"
-                                 "stack,engine,k=100,closed,impact,40,200,190,210,,0.1,,,,,,,,\n"
-                                 "stack,playback,launches=25,closed,impact,40,0.2,0.1,0.3,,0.05,,,,,,,,\n"
-                                 "stack,playback,launches=100,closed,after,40,0.4,0.3,0.5,,0.01,,,,,,,,\n"
-                                 "stack,pair-net,net=off,closed,impact,40,5,4,6,,3,,,,,,,,\n"
-                                 "stack,reference,,closed,impact,40,400,390,410,,0,,,,,,,,\n");
-    assert_true(chart.us_least == 4 && chart.us_most == 210); /* pair-net is near */
+    Chart chart = gather(&table, "stack,engine,k=5,closed,impact,40,20,,1,,,,,,,,\n"
+                                 "stack,engine,k=100,closed,impact,40,200,,0.1,,,,,,,,\n"
+                                 "stack,playback,launches=25,closed,impact,40,0.2,,0.05,,,,,,,,\n"
+                                 "stack,playback,launches=100,closed,after,40,0.4,,0.01,,,,,,,,\n"
+                                 "stack,pair-net,net=off,closed,impact,40,5,,3,,,,,,,,\n"
+                                 "stack,reference,,closed,impact,40,400,,0,,,,,,,,\n");
+    assert_true(chart.us_least == 5 && chart.us_most == 200); /* pair-net is near */
     assert_true(chart.error_least == 0.1 && chart.error_most == 3);
     assert_int_equal(chart.panels[0].count, 3);
     assert_int_equal(chart.panels[1].count, 0);
@@ -303,11 +290,11 @@ TEST(a_method_has_one_style_in_all_charts) {
 /* A curve has the settings that no other setting of the method beats. */
 TEST(what_is_beaten_is_left_out) {
     CsvTable table;
-    Chart chart = gather(&table, "stack,momentum,k=10,closed,impact,40,2,2,2,,3,,,,,,,,\n"
-                                 "stack,momentum,near=0.5,closed,impact,40,3,3,3,,1,,,,,,,,\n"
-                                 "stack,momentum,k=20,closed,impact,40,5,5,5,,2,,,,,,,,\n"
-                                 "stack,engine,k=5,closed,impact,40,2,2,2,,2,,,,,,,,\n"
-                                 "stack,engine,,closed,impact,40,4,4,4,,3,,,,,,,,\n");
+    Chart chart = gather(&table, "stack,momentum,k=10,closed,impact,40,2,,3,,,,,,,,\n"
+                                 "stack,momentum,near=0.5,closed,impact,40,3,,1,,,,,,,,\n"
+                                 "stack,momentum,k=20,closed,impact,40,5,,2,,,,,,,,\n"
+                                 "stack,engine,k=5,closed,impact,40,2,,2,,,,,,,,\n"
+                                 "stack,engine,,closed,impact,40,4,,3,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
     assert_int_equal(chart.lines[0].marks[0], 2); /* k=20 is slower and less accurate than near=0.5 */
     assert_string_equal(chart.panels[0].marks[1].label, "near=0.5");
@@ -319,11 +306,11 @@ TEST(what_is_beaten_is_left_out) {
 /* Settings that all marks with the same keys have are not in their labels. */
 TEST(labels_name_what_differs) {
     CsvTable table;
-    Chart chart = gather(&table, "stack,momentum,\"k=2,near=0.5,more=400\",closed,impact,40,2,2,2,,3,,,,,,,,\n"
-                                 "stack,momentum,\"k=2,near=0.1,more=400\",closed,impact,40,3,3,3,,1,,,,,,,,\n"
-                                 "stack,momentum,k=100,closed,impact,40,4,4,4,,0.5,,,,,,,,\n"
-                                 "stack,momentum,\"k=2,near=0.02,more=400\",closed,after,40,4,4,4,,0.5,,,,,,,,\n"
-                                 "stack,nncg,\"k=20,more=9\",closed,impact,40,5,5,5,,2,,,,,,,,\n");
+    Chart chart = gather(&table, "stack,momentum,\"k=2,near=0.5,more=400\",closed,impact,40,2,,3,,,,,,,,\n"
+                                 "stack,momentum,\"k=2,near=0.1,more=400\",closed,impact,40,3,,1,,,,,,,,\n"
+                                 "stack,momentum,k=100,closed,impact,40,4,,0.5,,,,,,,,\n"
+                                 "stack,momentum,\"k=2,near=0.02,more=400\",closed,after,40,4,,0.5,,,,,,,,\n"
+                                 "stack,nncg,\"k=20,more=9\",closed,impact,40,5,,2,,,,,,,,\n");
     static const char *const labels[] = {"near=0.5", "near=0.1", "k=100", "k=20,more=9"};
     for (int i = 0; i < 4; i++) assert_string_equal(chart.panels[0].marks[i].label, labels[i]);
     assert_string_equal(chart.panels[1].marks[0].label, "near=0.02");
@@ -332,15 +319,15 @@ TEST(labels_name_what_differs) {
 
 /* Which lines are in colour. */
 
-static const char many_methods[] = "stack,engine,k=10,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                                   "stack,nncg,k=10,closed,impact,40,4,4,4,,2,,,,,,,,\n"
-                                   "stack,avbd,k=10,closed,impact,40,5,5,5,,0.9,,,,,,,,\n"
-                                   "stack,avbd,k=20,closed,impact,40,8,8,8,,0.5,,,,,,,,\n"
-                                   "stack,scene-net,,closed,impact,40,5,5,5,,0.1,,,,,,,,\n"
-                                   "stack,scene-net,net=off,closed,impact,40,5,5,5,,0.2,,,,,,,,\n"
-                                   "stack,sain,,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                                   "stack,sain,net=off,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                                   "stack,interior,near=0.002,closed,impact,40,5,5,5,,0.01,,,,,,,,\n";
+static const char many_methods[] = "stack,engine,k=10,closed,impact,40,5,,1,,,,,,,,\n"
+                                   "stack,nncg,k=10,closed,impact,40,4,,2,,,,,,,,\n"
+                                   "stack,avbd,k=10,closed,impact,40,5,,0.9,,,,,,,,\n"
+                                   "stack,avbd,k=20,closed,impact,40,8,,0.5,,,,,,,,\n"
+                                   "stack,scene-net,,closed,impact,40,5,,0.1,,,,,,,,\n"
+                                   "stack,scene-net,net=off,closed,impact,40,5,,0.2,,,,,,,,\n"
+                                   "stack,sain,,closed,impact,40,5,,1,,,,,,,,\n"
+                                   "stack,sain,net=off,closed,impact,40,5,,1,,,,,,,,\n"
+                                   "stack,interior,near=0.002,closed,impact,40,5,,0.01,,,,,,,,\n";
 
 static void expect_ranks(const char *rows, ChartLook look, const int *ranks, int count) {
     Error error = {0};
@@ -367,16 +354,16 @@ TEST(six_lines_at_most_are_in_colour) {
     /* All are, by --methods, with the least of the table for the last: there is no room for a twin. */
     expect_ranks(many_methods, (ChartLook){.chosen = true}, (const int[]){C, C, C, C, H, C, H, C}, 8);
     /* A network that is named by its file is the scene's own, too. */
-    expect_ranks("stack,scene-net,network=a/b.npz,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                 "stack,scene-net,\"network=a/b.npz,net=off\",closed,impact,40,5,5,5,,2,,,,,,,,\n",
+    expect_ranks("stack,scene-net,network=a/b.npz,closed,impact,40,5,,1,,,,,,,,\n"
+                 "stack,scene-net,\"network=a/b.npz,net=off\",closed,impact,40,5,,2,,,,,,,,\n",
                  page, (const int[]){C, C}, 2);
 }
 
 /* What lost the scene is drawn if it is asked for. */
 TEST(lost_methods_are_shown_on_request) {
-    static const char rows[] = "stack,engine,,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                               "stack,pair-net,,closed,impact,40,6,6,6,,2,,,,,,,,\n"
-                               "stack,pair-net,,closed,rest,40,6,6,6,,2,,,,,,0.6,,\n";
+    static const char rows[] = "stack,engine,,closed,impact,40,5,,1,,,,,,,,\n"
+                               "stack,pair-net,,closed,impact,40,6,,2,,,,,,,,\n"
+                               "stack,pair-net,,closed,rest,40,6,,2,,,,,,0.6,,\n";
     const ChartLook asked = {.highlight = "pair-net"};
     size_t size;
     expect_caption(write_rows(rows), "Unstable before the impact, and left out: pair-net (1).", "Crosses");
@@ -386,13 +373,12 @@ TEST(lost_methods_are_shown_on_request) {
     assert_null(strstr(caption, "left out: pair-net"));
 }
 
-/* What lost the scene is no part of what is reached: its front, and its curve. Bars go from quartile to quartile: in
-   logarithms these are as far from the mark on both sides. */
+/* What lost the scene is no part of what is reached: its front, and its curve. */
 TEST(curves_and_fronts_join_what_held) {
-    static const char rows[] = "stack,engine,k=1,closed,impact,40,10,2,50,,3,,,,,,,,\n"
-                               "stack,engine,k=5,closed,impact,40,100,100,100,,1,,,,,,,,\n"
-                               "stack,engine,k=5,closed,rest,40,6,6,6,,2,,,,,,0.6,,\n"
-                               "stack,engine,k=50,closed,impact,40,1000,1000,1000,,0.5,,,,,,,,\n";
+    static const char rows[] = "stack,engine,k=1,closed,impact,40,10,,3,,,,,,,,\n"
+                               "stack,engine,k=5,closed,impact,40,100,,1,,,,,,,,\n"
+                               "stack,engine,k=5,closed,rest,40,6,,2,,,,,,0.6,,\n"
+                               "stack,engine,k=50,closed,impact,40,1000,,0.5,,,,,,,,\n";
     CsvTable table;
     Chart chart = gather(&table, rows);
     assert_int_equal(chart.front_count[0], 2);
@@ -402,21 +388,17 @@ TEST(curves_and_fronts_join_what_held) {
         "import re, sys\n"
         "lines = [tuple(map(float, line)) for line in re.findall(r'd=\"M(\\S+) (\\S+)L(\\S+) (\\S+)\" fill=\"none\" '\n"
         "         r'stroke=\"#0072B2\"', open(sys.argv[1]).read())]\n"
-        "points = [(x, y) for x, y, to_x, to_y in lines if (x, y) == (to_x, to_y)]\n"
-        "bars = [line for line in lines if line[1] == line[3] and line[2] - line[0] > 3 and line[1] == points[0][1]]\n"
-        "joined = [line for line in lines if line[:2] == points[0] and line[1] != line[3]]\n"
-        "decade = (bars[0][2] - bars[0][0]) / 1.39794 # from 2 to 50; the curve goes from 10 to 1000\n"
-        "assert len(joined) == 1 and abs(joined[0][2] - joined[0][0] - 2 * decade) < 0.05, lines\n"
-        "assert len(bars) == 1 and abs((bars[0][0] + bars[0][2]) / 2 - points[0][0]) < 0.02, lines\n",
+        "joined = [line for line in lines if line[2] - line[0] > 3] # not the strokes of a cross\n"
+        "assert len(joined) == 1 and joined[0][:2] == lines[0][:2] == lines[0][2:], lines\n",
         drawn_file("stack", "svg"));
 }
 
 /* The picture itself says what it leaves out; on recorded steps nothing is lost. */
 TEST(what_is_left_out_is_in_the_picture) {
-    static const char rows[] = "stack,engine,,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                               "stack,pair-net,,frozen,impact,40,6,6,6,,2,,,,,,,,\n"
-                               "stack,pair-net,,closed,impact,40,6,6,6,,2,,,,,,,,\n"
-                               "stack,pair-net,,closed,rest,40,6,6,6,,2,,,,,,0.6,,\n";
+    static const char rows[] = "stack,engine,,closed,impact,40,5,,1,,,,,,,,\n"
+                               "stack,pair-net,,frozen,impact,40,6,,2,,,,,,,,\n"
+                               "stack,pair-net,,closed,impact,40,6,,2,,,,,,,,\n"
+                               "stack,pair-net,,closed,rest,40,6,,2,,,,,,0.6,,\n";
     const ChartLook frozen = {.frozen = true};
     size_t size;
     for (int i = 0; i < 2; i++) {
@@ -436,10 +418,10 @@ TEST(programs_are_drawn_with_their_own_time) {
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     fputs(CHART_HEADER ",cpu,us_engine\n"
-                       "stack,engine,,closed,impact,40,5,5,5,,1,,,,,,,,,AMD,\n"
-                       "stack,exec,\"program=node a.mjs,name=Rapier\",closed,impact,40,,,,,0.5,,,,,,,,,,2.5\n"
-                       "stack,exec,program=silent,closed,impact,40,,,,,0.5,,,,,,,,,,\n"
-                       "stack,exec,program=zero,closed,impact,40,,,,,0.5,,,,,,,,,,0\n",
+                       "stack,engine,,closed,impact,40,5,,1,,,,,,,,,AMD,\n"
+                       "stack,exec,\"program=node a.mjs,name=Rapier\",closed,impact,40,,,0.5,,,,,,,,,,2.5\n"
+                       "stack,exec,program=silent,closed,impact,40,,,0.5,,,,,,,,,,\n"
+                       "stack,exec,program=zero,closed,impact,40,,,0.5,,,,,,,,,,0\n",
           file);
     assert_int_equal(fclose(file), 0);
     assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
@@ -460,9 +442,9 @@ TEST(programs_are_drawn_with_their_own_time) {
 /* What the reference reaches is no place that no solver gets to; a baseline solves nothing. */
 TEST(the_front_goes_through_the_reference) {
     CsvTable table;
-    const char *path = write_rows("stack,engine,,closed,impact,40,5,5,5,,1,,,,,,,,\n"
-                                  "stack,reference,,closed,impact,40,50,50,50,,0.0001,,,,,,,,\n"
-                                  "stack,playback,launches=25,closed,impact,40,1,1,1,,0.5,,,,,,,,\n");
+    const char *path = write_rows("stack,engine,,closed,impact,40,5,,1,,,,,,,,\n"
+                                  "stack,reference,,closed,impact,40,50,,0.0001,,,,,,,,\n"
+                                  "stack,playback,launches=25,closed,impact,40,1,,0.5,,,,,,,,\n");
     assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
     Chart chart;
     assert_ok(chart_gather(&chart, &table, "stack", path, &page, &error), error);
@@ -491,8 +473,8 @@ TEST(a_chart_explains_its_words) {
 /* Two networks of one name in different folders. */
 TEST(equal_names_stay_distinct) {
     CsvTable table;
-    Chart chart = gather(&table, "stack,scene-net,network=a/net.npz,closed,impact,9,2,2,2,,3,,,,,,,,\n"
-                                 "stack,scene-net,network=b/net.npz,closed,impact,9,2,2,2,,3,,,,,,,,\n");
+    Chart chart = gather(&table, "stack,scene-net,network=a/net.npz,closed,impact,9,2,,3,,,,,,,,\n"
+                                 "stack,scene-net,network=b/net.npz,closed,impact,9,2,,3,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
     assert_string_equal(chart.lines[0].name, "scene-net:net");
     assert_string_equal(chart.lines[1].name, chart.lines[0].name);

@@ -138,9 +138,9 @@ TEST(a_chart_of_all_methods_has_no_colour_twice) {
         const char *words = names[i][head] != '\0' ? names[i] + head + 1 : "";
         for (int mark = 1; mark <= 2; mark++) {
             const int us = 10 * mark + i;
-            used += (size_t)snprintf(
-                lines + used, sizeof lines - used, "stack,%.*s,\"%s%sk=%d\",closed,impact,40,%d,%d,%d,,%g,,,,,,,,\n",
-                (int)head, names[i], words, words[0] != '\0' ? "," : "", mark, us, us, us, 1.0 / mark + 0.01 * i);
+            used += (size_t)snprintf(lines + used, sizeof lines - used,
+                                     "stack,%.*s,\"%s%sk=%d\",closed,impact,40,%d,,%g,,,,,,,,\n", (int)head, names[i],
+                                     words, words[0] != '\0' ? "," : "", mark, us, 1.0 / mark + 0.01 * i);
         }
     }
     assert_ok(colours_assign(names, count, NULL, colours, &error), error);
