@@ -19,6 +19,8 @@
    Contacts that stick keep their points on both bodies, so that a slope does not creep. The gap ends at
    COLLISION_MARGIN, or resting contacts would come and go.
 
+   Bodies that do not touch each other are visited four at a time; the bits are those of visits one after the other.
+
    Fails where passes are few: bodies move by what their neighbours did before, so momentum is not conserved until the
    passes have converged, and a shock moves up a stack one box a pass. New contacts begin soft; so do those of a single
    step of unknown past, which lacks the penalties that a run keeps: on a pyramid that costs it two thirds of its
@@ -105,7 +107,7 @@ typedef struct Avbd {
     AvbdContact *contacts;    /* [contacts + LANES] with spare ones */
     int *of_bodies;           /* [2 contacts] contacts of a body, body after body */
     int *level;               /* [bodies] */
-    int *next;                /* [bodies + 1] of each level the end in `order` */
+    int *next;                /* [levels] the end of each in `order` */
     int *order;               /* [order_count] bodies by level; a level begins with new lanes */
     LaneVisit *visits;        /* of all bodies in that order */
     int *visits_end;          /* [order_count / LANES] of each LANES bodies */

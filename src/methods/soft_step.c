@@ -78,7 +78,7 @@ typedef struct SoftStep {
     SoftPairs *pairs;       /* [group_count] in the order of levels */
     ContactImpulse *last;   /* [contact_count] N s, of the last substep */
     int *ready;             /* [body_count] the first level that may visit the body */
-    int *level, *next;      /* [pairs] level of each; [levels + 1] the next lane of each level */
+    int *level, *next;      /* [pairs] level of each; [levels] the next lane of each */
     int body_count, contact_count, group_count;
     ArrayBlock arrays; /* of this step */
 } SoftStep;
