@@ -252,8 +252,8 @@ static bool begin(Avbd *avbd, const BegunStep *begun) {
     for (int i = 0; i < avbd->contact_count; i++) begin_contact(avbd, &problem->contacts[i], i, problem->dt);
     list_contacts(avbd);
     order_bodies(avbd);
-    /* A lane without a body has the spare one, which stays where it is. One without a contact adds -0 to all sums, which
-       changes none of them, not even one that is -0. */
+    /* A lane without a body has the spare one, which stays where it is. One without a contact adds -0 to all sums,
+       which changes none of them, not even one that is -0. */
     avbd->bodies[bodies] = (AvbdBody){.mass = 1, .inertia = 1};
     const Vec3 none = {-0.0f, -0.0f, -0.0f};
     const AvbdRow row = {.of_a = none, .of_b = none, .penalty = -0.0f};

@@ -273,8 +273,8 @@ static void put_pair(SoftStep *stepping, const ContactProblem *problem, int i, i
     for (int k = 0; k < points; k++) put_point(stepping, problem, i + k, &to->points[k], lane);
 }
 
-/* Puts each pair into the level after those of the pairs before it that share a moving body with it. A level begins with
-   a new group of lanes. */
+/* Puts each pair into the level after those of the pairs before it that share a moving body with it. A level begins
+   with a new group of lanes. */
 static void put_pairs(SoftStep *stepping, const ContactProblem *problem) {
     int *ready = stepping->ready, *next = stepping->next, levels = 0, pairs = 0;
     memset(ready, 0, (size_t)stepping->body_count * sizeof *ready);

@@ -99,8 +99,8 @@ static bool run_frozen(Stepper *stepper, const SnapshotList *list, int first, in
     return false;
 }
 
-/* One contender. What is measured of it has parts: the steps that all launches share; then of each launch the steps from
-   there on, and as many of the frozen steps. */
+/* One contender. What is measured of it has parts: the steps that all launches share; then, for each launch, its steps
+   from there on and an equal part of the frozen steps. */
 typedef struct Timed {
     Stepper *stepper;
     World *world;       /* in which it runs */
