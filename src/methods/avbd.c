@@ -222,12 +222,7 @@ static void order_bodies(Avbd *avbd) {
         next[level]++;
         avbd->level[i] = level;
     }
-    avbd->order_count = 0;
-    for (int i = 0; i < levels; i++) {
-        const int lanes = (next[i] + LANES - 1) / LANES * LANES;
-        next[i] = avbd->order_count;
-        avbd->order_count += lanes;
-    }
+    avbd->order_count = lanes_of_levels(next, levels);
     for (int k = 0; k < avbd->order_count; k++) avbd->order[k] = avbd->body_count;
     for (int i = avbd->body_count - 1; i >= 0; i--)
         if (avbd->bodies[i].mass > 0) avbd->order[next[avbd->level[i]]++] = i;

@@ -140,3 +140,15 @@ static inline void keep_where_single(Side *after, const Side *before, Lanes seco
     after->y = lanes_choose(before->y, after->y, second);
     after->spin = lanes_choose(before->spin, after->spin, second);
 }
+
+/* Replaces how many visits each level has by the lane of its first one, with new lanes for each level. Returns the lanes
+   of all. */
+static inline int lanes_of_levels(int *levels, int count) {
+    int lanes = 0;
+    for (int i = 0; i < count; i++) {
+        const int visits = levels[i];
+        levels[i] = lanes;
+        lanes += (visits + LANES - 1) / LANES * LANES;
+    }
+    return lanes;
+}

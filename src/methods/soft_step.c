@@ -289,12 +289,7 @@ static void put_pairs(SoftStep *stepping, const ContactProblem *problem) {
         next[level]++;
         stepping->level[pairs++] = level;
     }
-    stepping->group_count = 0;
-    for (int i = 0; i < levels; i++) {
-        const int groups = (next[i] + LANES - 1) / LANES;
-        next[i] = stepping->group_count * LANES;
-        stepping->group_count += groups;
-    }
+    stepping->group_count = lanes_of_levels(next, levels) / LANES;
     for (SoftPairs *group = stepping->pairs; group < stepping->pairs + stepping->group_count; group++) {
         *group = (SoftPairs){0};
         for (int lane = 0; lane < LANES; lane++) {
