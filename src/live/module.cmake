@@ -58,7 +58,7 @@ set(module_sources ${module_methods}
 # Where most of the time is spent; the rest is made small.
 set(module_fast
     engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior
-    methods/interior_point methods/interior_scalar methods/islands methods/engine methods/momentum methods/soft_step methods/sweeps
+    methods/interior_point methods/interior_scalar methods/islands methods/engine methods/soft_step
     methods/sweeps_lanes
     nets/kernels_scalar)
 

@@ -12,8 +12,7 @@ OWNED_VALUE(EqualTime, equal_time_free)
 /* A row of the impact in closed loop; median and 95th percentile are half and twice the mean. */
 #define IMPACT(method, setting, us, mean, half, twice) \
     "tower," method "," setting ",closed,impact,5," us ",9," mean "," half "," twice ",1,1,0,,0,\n"
-#define DRIFT(method, setting, drift) \
-    "tower," method "," setting ",closed,rest,5,1,9,0.1,0.1,0.1,1,1,0," drift ",0,0\n"
+#define DRIFT(method, setting, drift) "tower," method "," setting ",closed,rest,5,1,9,0.1,0.1,0.1,1,1,0," drift ",0,0\n"
 
 static const char chart[] = IMPACT("engine", "k=10", "4", "2", "1", "4") IMPACT("engine", "k=40", "16", "1", "0.5", "2")
     IMPACT("momentum", "k=20", "8", "0.8", "0.4", "1.6") IMPACT("momentum", "k=50", "20", "0.2", "0.1", "0.4")
