@@ -141,8 +141,8 @@ static inline void keep_where_single(Side *after, const Side *before, Lanes seco
     after->spin = lanes_choose(before->spin, after->spin, second);
 }
 
-/* Replaces how many visits each level has by the lane of its first one, with new lanes for each level. Returns the lanes
-   of all. */
+/* Replaces how many visits each level has by the lane of its first one; each level begins with new lanes. Returns the
+   lanes of all. */
 static inline int lanes_of_levels(int *levels, int count) {
     int lanes = 0;
     for (int i = 0; i < count; i++) {
