@@ -264,7 +264,6 @@ static inline Lanes dot3(LaneVec3 a, LaneVec3 b) { return a.x * b.x + a.y * b.y 
 static inline LaneVec3 where3(LaneMask mask, LaneVec3 a, LaneVec3 b) {
     return (LaneVec3){lanes_where(mask, a.x, b.x), lanes_where(mask, a.y, b.y), lanes_where(mask, a.turn, b.turn)};
 }
-static inline Lanes clamped(Lanes x, Lanes low, Lanes high) { return lanes_max(low, lanes_min(x, high)); }
 
 static inline LaneVec3 load3(const Vec3 *first, const int32_t *at) {
     Lanes rows[4];
@@ -338,7 +337,7 @@ static inline Lanes normal_force(const LaneForce *normal, Lanes gap) {
 }
 
 static inline Lanes tangent_force(const LaneForce *tangent, Lanes gap, Lanes most) {
-    return clamped(tangent->force - tangent->penalty * gap, -most, most);
+    return lanes_clamp(tangent->force - tangent->penalty * gap, -most, most);
 }
 
 /* The symmetric system of a body: rows of the lower triangle and the right-hand side. */
@@ -410,8 +409,8 @@ static void visit_all(Avbd *avbd, float share) {
 /* The multiplier takes the force; the penalty rises where that is inside its bounds. */
 static inline void store_force(const Avbd *avbd, AvbdRow *first, const int32_t *at, const LaneForce *last, Lanes force,
                                LaneMask inside, Lanes gap) {
-    const Lanes raised = clamped(last->penalty + avbd->beta * last->mass * lanes_abs(gap), PENALTY_MIN * last->mass,
-                                 PENALTY_MAX * last->mass);
+    const Lanes raised = lanes_clamp(last->penalty + avbd->beta * last->mass * lanes_abs(gap), PENALTY_MIN * last->mass,
+                                     PENALTY_MAX * last->mass);
     const Lanes rows[4] = {last->start, last->mass, lanes_where(inside, raised, last->penalty), force};
     store_rows(&first->start, at, rows);
 }

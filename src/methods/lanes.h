@@ -41,6 +41,9 @@ static inline bool lanes_any_positive(Lanes a) {
 }
 #endif
 
+/* As contact_clamp(). */
+static inline Lanes lanes_clamp(Lanes x, Lanes low, Lanes high) { return lanes_max(low, lanes_min(x, high)); }
+
 /* In each four lanes: those of a (0 to 3) and b (4 to 7) that the numbers name. */
 #ifdef __AVX2__
 #define LANE_OF(i) ((i) < 4 ? (i) : (i) + 4)
@@ -141,8 +144,8 @@ static inline void keep_where_single(Side *after, const Side *before, Lanes seco
     after->spin = lanes_choose(before->spin, after->spin, second);
 }
 
-/* Replaces how many visits each level has by the lane of its first one; each level begins with new lanes. Returns the
-   lanes of all. */
+/* levels[count]: the number of visits of each, replaced by the lane of its first visit. Each level begins with new
+   lanes. Returns the number of lanes. */
 static inline int lanes_of_levels(int *levels, int count) {
     int lanes = 0;
     for (int i = 0; i < count; i++) {

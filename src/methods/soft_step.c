@@ -147,7 +147,7 @@ static inline void solve_normal(Side *a, Side *b, const SoftPairs *pairs, SoftPo
     const Lanes gap = separation(ways, point, pairs->normal), old = point->impulse.normal;
     const LaneMask apart = gap > 0.0f;
     const Lanes spring = relaxing ? none : pairs->bias_rate * gap;
-    const Lanes bias = lanes_where(apart, gap * inverse_h, lanes_max(none - PUSH_OUT_SPEED, lanes_min(spring, none)));
+    const Lanes bias = lanes_where(apart, gap * inverse_h, lanes_clamp(spring, none - PUSH_OUT_SPEED, none));
     const Lanes mass_share = relaxing ? all : lanes_where(apart, all, pairs->mass_share);
     const Lanes impulse_share = relaxing ? none : lanes_where(apart, none, pairs->impulse_share);
     const Lanes velocity = dot(relative_velocity(a, b, point), pairs->normal);
@@ -162,7 +162,7 @@ static inline void solve_tangent(Side *a, Side *b, const SoftPairs *pairs, SoftP
     const LaneVec tangent = {pairs->normal.y, -pairs->normal.x};
     const Lanes velocity = dot(relative_velocity(a, b, point), tangent), old = point->impulse.tangent;
     const Lanes most = pairs->friction * point->impulse.normal;
-    point->impulse.tangent = lanes_max(-most, lanes_min(old - point->mass_tangent * velocity, most));
+    point->impulse.tangent = lanes_clamp(old - point->mass_tangent * velocity, -most, most);
     const Lanes change = point->impulse.tangent - old;
     point->total.tangent += change;
     apply(a, b, point->arm_a, point->arm_b, scaled(change, tangent));

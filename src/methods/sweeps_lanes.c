@@ -48,7 +48,7 @@ static inline void solve_point(Side *a, Side *b, const Surface *surface, const L
 
     const Lanes along = dot(relative_velocity(a, b, arm_a, arm_b), surface->tangent);
     const Lanes limit = surface->friction * pushed;
-    const Lanes dragged = lanes_max(-limit, lanes_min(*sum_tangent - masses[1] * along, limit));
+    const Lanes dragged = lanes_clamp(*sum_tangent - masses[1] * along, -limit, limit);
     const Lanes tangent = dragged - *sum_tangent;
     *sum_tangent = dragged;
     apply(a, b, arm_a, arm_b, scaled(tangent, surface->tangent));

@@ -132,7 +132,7 @@ static bool run_shared(const Timing *timing, Timed *timed, StepLog *log, Error *
 
 static bool run_launch(const Timing *timing, Timed *timed, int launch, StepLog *log, Error *error) {
     const TimingOptions *options = timing->options;
-    if (timed->shares && timed->ended) return true;
+    if (timed->ended) return true;
     const Scene *launched = &options->launches[launch];
     const int shared = timed->shares ? options->shared_steps : 0;
     World *world = scene_world(launched, error);
