@@ -120,8 +120,8 @@ static bool write_live(const Options *options, Panels *panels, Error *error) {
     if (scene == NULL) return error_input(error, "--live", "needs a scene (.yaml)");
     if (live_module(false).size == 0)
         return error_input(error, "--live",
-                           "this build has no module for live pages; install clang, lld, wasi-libc and "
-                           "libclang-rt-dev-wasm32 (tests/setup does), then configure and build afresh");
+                           "this build has no module for live pages; install clang, lld, wasi-libc, "
+                           "libclang-rt-dev-wasm32 and binaryen (tests/setup does), then configure and build afresh");
 
     /* Simulates the scene by each method here, too: the page compares its own hashes with these. */
     PlayerLive live = {0};

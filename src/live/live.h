@@ -34,7 +34,7 @@
 #endif
 
 /* The methods that a page can run are those of the list METHODS with LIVE or LIVE_NETWORK (methods/methods.h). There
-   are two modules: the plain one has no networks, and is two thirds as large. */
+   are two modules: the plain one has no networks, and is three quarters as large. */
 
 /* The functions of the module. */
 

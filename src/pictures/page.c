@@ -62,22 +62,15 @@ void house_page_end(FILE *out) { fputs("</main>\n</body>\n</html>\n", out); }
 void base64_put(FILE *file, const void *data, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const uint8_t *bytes = data;
-    char text[4096];
-    size_t used = 0;
     for (size_t i = 0; i < size; i += 3) {
         const size_t left = size - i;
         const uint32_t group =
             (uint32_t)bytes[i] << 16 | (left > 1 ? (uint32_t)bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0u);
-        if (used == sizeof text) {
-            fwrite(text, 1, used, file); /* an error stays in the file, for the caller */
-            used = 0;
-        }
-        text[used++] = digits[group >> 18];
-        text[used++] = digits[group >> 12 & 63];
-        text[used++] = left > 1 ? digits[group >> 6 & 63] : '=';
-        text[used++] = left > 2 ? digits[group & 63] : '=';
+        putc_unlocked(digits[group >> 18], file); /* an error stays in the file, for the caller */
+        putc_unlocked(digits[group >> 12 & 63], file);
+        putc_unlocked(left > 1 ? digits[group >> 6 & 63] : '=', file);
+        putc_unlocked(left > 2 ? digits[group & 63] : '=', file);
     }
-    fwrite(text, 1, used, file);
 }
 
 void html_put_script_hash(FILE *file, const unsigned char sha256[32]) {

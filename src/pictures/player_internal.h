@@ -11,7 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Deflated bytes on their way into a page. */
+/* Deflated bytes on their way into a page. There, PACKED_BITS bits are two digits of PACKED_BASE. */
+enum { PACKED_BITS = 13, PACKED_BASE = 91 };
 
 typedef struct Bytes {
     uint8_t *data; /* freed by the caller; NULL: nothing */
@@ -104,7 +105,7 @@ typedef struct Player {
     ContactUnits units;
     PlayerRun runs[RENDER_PANELS_MAX];
     bool left_contacts;
-    Bytes viewer;         /* player_viewer, deflated: it would take more room than some runs */
+    Bytes viewer, data;   /* deflated player_viewer, and the JSON that it reads */
     Bytes module, bundle; /* deflated, of live runs */
 } Player;
 

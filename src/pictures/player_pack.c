@@ -11,28 +11,19 @@
 #include "pictures/player_internal.h"
 #include "runs/trajectory.h"
 
-#include <limits.h>
+#include <libdeflate.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
-
-enum { RAW_WINDOW = -15, MOST_MEMORY = 9 };
 
 bool bytes_deflate(Bytes *bytes, const void *data, size_t size, Error *error) {
-    z_stream stream = {0};
-    *bytes = (Bytes){0};
-    if (size > UINT_MAX / 2 ||
-        deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, RAW_WINDOW, MOST_MEMORY, Z_DEFAULT_STRATEGY) != Z_OK)
-        return error_memory(error, "page");
-    const uLong bound = deflateBound(&stream, (uLong)size);
-    bytes->data = malloc(bound);
-    stream.next_in = (z_const Bytef *)data, stream.avail_in = (uInt)size;
-    stream.next_out = bytes->data, stream.avail_out = (uInt)bound;
-    const bool ok = bytes->data != NULL && deflate(&stream, Z_FINISH) == Z_STREAM_END;
-    bytes->size = ok ? stream.total_out : 0;
-    deflateEnd(&stream);
-    return ok || error_memory(error, "page");
+    enum { LEVEL = 10 }; /* the highest, 12, takes 2.5 times as long for pages that are 1.5% smaller */
+    struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(LEVEL);
+    const size_t bound = compressor != NULL ? libdeflate_deflate_compress_bound(compressor, size) : 0;
+    *bytes = (Bytes){.data = compressor != NULL ? malloc(bound) : NULL};
+    if (bytes->data != NULL) bytes->size = libdeflate_deflate_compress(compressor, data, size, bytes->data, bound);
+    libdeflate_free_compressor(compressor);
+    return bytes->data != NULL || error_memory(error, "page");
 }
 
 enum { COMPONENTS = 6, POSES = 3 }; /* velocities first, then poses */
@@ -198,11 +189,11 @@ static bool contact_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrame
 
 enum { HEAD = 256 << 10 }; /* bytes for all that is no chunk of a run; a frame of a run has hash and distance besides */
 
-static double base64_size(double bytes) { return bytes * 4 / 3; }
+static double packed_size(double bytes) { return 2 * ceil(8 * bytes / PACKED_BITS); }
 
 static double fixed_size(const Player *player) {
-    const double per_frame = base64_size(sizeof(uint64_t) + sizeof(float));
-    const double per_body = base64_size(2 * sizeof(float)) + 1;
+    const double per_frame = packed_size(sizeof(uint64_t) + sizeof(float));
+    const double per_body = packed_size(2 * sizeof(float)) + 1;
     double size = HEAD;
     for (int i = 0; i < player->picture.count; i++)
         size += per_frame * player->runs[i].frames + per_body * player->picture.runs[i]->bodies;
@@ -214,9 +205,9 @@ static double fixed_size(const Player *player) {
 static bool refuse(const Player *player, double size, int done, int chunks, Error *error) {
     double unpacked = fixed_size(player);
     for (int i = 0; i < player->picture.count; i++)
-        unpacked += base64_size(6.0 * sizeof(float)) * player->runs[i].frames * player->picture.runs[i]->bodies;
-    const double all = size * chunks / done, worst = fmin(2 * all, unpacked);
-    const int every = player->frames.every * ((int)(worst / player->most_bytes) + 1);
+        unpacked += packed_size(6.0 * sizeof(float)) * player->runs[i].frames * player->picture.runs[i]->bodies;
+    const double all = HEAD + (size - HEAD) * chunks / done, worst = fmin(2 * all, unpacked);
+    const int every = player->frames.every * (int)ceil((worst - HEAD) / (player->most_bytes - HEAD));
     return error_input(
         error, "page",
         "it would take about %.3g MB, more than %.3g; use --every %d, or keep a part of the run with --frames",
@@ -240,7 +231,7 @@ static bool pack_states(Player *player, double *size, Error *error) {
             if (!state_chunk(&run->states[k], player->picture.runs[i], &player->frames, k * PLAYER_CHUNK,
                              chunk_end(run, k), error))
                 return false;
-            *size += base64_size((double)run->states[k].size);
+            *size += packed_size((double)run->states[k].size);
             if (*size > player->most_bytes) return refuse(player, *size, done + 1, chunks, error);
             done++;
         }
@@ -262,7 +253,7 @@ static bool pack_contacts_of(Player *player, int index, double *size, Error *err
         if (!contact_chunk(&run->contacts[k], player->picture.runs[index], &player->frames, k * PLAYER_CHUNK,
                            chunk_end(run, k), &player->units, error))
             return false;
-        *size += base64_size((double)run->contacts[k].size);
+        *size += packed_size((double)run->contacts[k].size);
     }
     return true;
 }
@@ -289,6 +280,7 @@ void player_free(Player *player) {
         free(player->runs[i].distances);
     }
     free(player->viewer.data);
+    free(player->data.data);
     free(player->module.data);
     free(player->bundle.data);
     picture_free(&player->picture);

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Links of an HTML page, and the data of the player's pages."""
+"""Links of an HTML page, and what they show."""
 import html.parser
-import json
 import os
 import re
 import urllib.parse
+
+import player_page
 
 
 class Links(html.parser.HTMLParser):
@@ -34,16 +35,10 @@ def moment(target):
     return path, float(t), -1 if body is None else int(body)
 
 
-def data(path):
-    """The data of a page that plays runs."""
-    text = open(path).read()
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S).group(1))
-
-
 def check_shown(folder, target):
     """The page is there and shows the moment; its data."""
     path, time, body = moment(target)
-    page = data(os.path.join(folder, path))
+    page = player_page.data(os.path.join(folder, path))
     frame = round(time / page["dt"]) - page["first"]
     assert 0 <= frame < page["frames"] * page["every"], (target, page["first"], page["frames"])
     assert -1 <= body < page["runs"][-1]["bodies"], target

@@ -156,14 +156,14 @@ ln -s "$scenes" typed/scenes
 touch typed/league/large.csv
 printf '#!/bin/sh\nexec twinbox "$@" --shard 1/1000000\n' >typed/bin/piece
 chmod +x typed/bin/piece
-PYTHONPATH=$sources/tests/cli /usr/bin/python3 - "$sources/scenes/article" <<'PYTHON' || fail "the commands"
+PYTHONPATH=$sources/tests/cli:$sources/tests/browser /usr/bin/python3 - "$sources/scenes/article" <<'PYTHON' || fail "the commands"
 import html
 import os
 import re
 import subprocess
 import sys
 
-import pages
+import player_page
 
 page = open("site/index.html", encoding="utf-8").read()
 PATH = f"{os.getcwd()}/typed/bin:{os.environ['PATH']}"
@@ -179,7 +179,7 @@ made = re.findall(r'<a href="([\w-]+\.html)#[^"]*">Open on its own page</a>, mad
 assert len(made) == page.count('class="live"') == len(figures) > 6, made
 for (name, command), methods in zip(made, figures):
     enter(command)
-    assert [run["live"] for run in pages.data(f"typed/{name}")["runs"]] == methods, (command, methods)
+    assert [run["live"] for run in player_page.data(f"typed/{name}")["runs"]] == methods, (command, methods)
     assert open(f"typed/{name}", "rb").read() == open(f"site/{name}", "rb").read(), command
 
 studies = dict(re.findall(r'<li id="(\w+)"><code>([^<]+)</code></li>', page))

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The report of a comparison links to a page that plays both runs, where they differ.
 . "$(dirname "$0")/checks.sh"
-export PYTHONPATH=$sources/tests/cli PYTHONDONTWRITEBYTECODE=1
+export PYTHONPATH=$sources/tests/cli:$sources/tests/browser PYTHONDONTWRITEBYTECODE=1
 
 run 0 simulate "$scenes/stack.yaml" --frames 80 -o one.npz
 run 0 simulate "$scenes/stack.yaml" --frames 80 --no-warm-starting -o other.npz

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Points, verdicts and cells link into a live page of their scene, with what they were measured with.
 . "$(dirname "$0")/checks.sh"
-export PYTHONPATH=$sources/tests/cli PYTHONDONTWRITEBYTECODE=1
+export PYTHONPATH=$sources/tests/cli:$sources/tests/browser PYTHONDONTWRITEBYTECODE=1
 
 chart="--quick --methods engine:k=10,interior,pair-net:net=off,playback"
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o charted $chart --launches 3

@@ -12,6 +12,7 @@ from access import check_tab, check_text, check_tree
 from checks import Checks
 from chromium import Chromium
 from page import ScriptError
+import player_page
 
 METHODS = "engine", "interior"
 SCENES = "single", "stack", "pyramid", "families/gate", "families/wall"
@@ -157,11 +158,6 @@ def check_shell(checks, browser):
             page.close()
 
 
-def framing(path):
-    with open(path, encoding="utf-8") as file:
-        return json.loads(re.search(r'"framing": (\{.*?\})', file.read())[1])
-
-
 def check_framing(checks, browser):
     """After a change of the scene, the view is that of the program."""
     for scene, name, values in (("stability/stack_height", "height", (4, 25)), ("stack", "bomb_x", (1.5, -2.25)),
@@ -173,7 +169,8 @@ def check_framing(checks, browser):
             given = page.run("player.set_text()")
             checks.twinbox("simulate", f"{checks.scenes}/{scene}.yaml", *(["--set", given] if given else []), "-o", "run.npz")
             checks.twinbox("page", "run.npz", "-o", "run.html")
-            wanted = framing("run.html")
+            recorded = player_page.data("run.html")
+            wanted = recorded["framing"]
             near = (f"(found => Object.entries({json.dumps(wanted)}).every(([key, value]) =>"
                     " value === found[key] || Math.abs(value - found[key]) < 1e-6))(player.data.framing)")
             try:
@@ -182,9 +179,7 @@ def check_framing(checks, browser):
             except ScriptError:
                 found = page.run("player.data.framing")
             checks.equal(f"{scene}: the view with {given}", found, wanted)
-            with open("run.html", encoding="utf-8") as file:
-                checks.equal(f"{scene}: the impact with {given}", page.run("player.data.impact"),
-                             int(re.search(r'"impact": (-?\d+)', file.read())[1]))
+            checks.equal(f"{scene}: the impact with {given}", page.run("player.data.impact"), recorded["impact"])
         page.close()
 
 

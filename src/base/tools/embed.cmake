@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Writes the FILES of folder FROM as arrays of TYPE ("char", "unsigned char") into OUTPUT. With PREFIX shader_, shape.vert
 # becomes shader_shape_vert, ended by a 0; beside bytes (unsigned char) stands their number, NAME_size. HEADER declares them.
-# TYPE "script": all FILES are one text PREFIX without their comments, several of them in one scope. Of a C header among them, a table
+# TYPE "script": all FILES are one text PREFIX without their comments and indents, several of them in one scope. Of a C header among them, a table
 # of numbers, lines as `static const double NAME = 1;` become constants of JavaScript. Beside the text stands its SHA-256,
 # PREFIX_sha256, by which the policy of a page allows it.
 set(text "#include \"${HEADER}\"\n")
@@ -10,6 +10,7 @@ if(TYPE STREQUAL "script")
     foreach(file ${FILES})
         file(READ "${FROM}/${file}" part)
         string(REGEX REPLACE "[ ]*/[*][^*]*[*]+([^/*][^*]*[*]+)*/" "" part "${part}")
+        string(REGEX REPLACE "\n[ \n]+" "\n" part "${part}")
         if(file MATCHES "[.]h$")
             string(REGEX REPLACE "static const (double|int) " "const " part "${part}")
             string(REPLACE "#pragma once" "" part "${part}")

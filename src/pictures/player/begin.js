@@ -1,8 +1,15 @@
-/* Unpacks the viewer, one script, and runs it. All elements with data are base64, most of it deflated. */
+/* Unpacks the viewer, one script, and the data that it reads, and runs it. All elements with data are digits of base 91
+   (pictures/player.c), most of them of deflated bytes. */
 "use strict";
+let data;
 function packed(id) {
-  const text = atob(document.getElementById(id).textContent), bytes = new Uint8Array(text.length);
-  for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
+  const text = document.getElementById(id).textContent, pairs = text.length >> 1;
+  const bytes = new Uint8Array((13 * pairs + 6 * (text.length & 1)) >> 3);
+  const digit = i => (text[i] === "#" ? 60 : text.charCodeAt(i)) - 36; /* "#" stands for "<" */
+  for (let i = 0, at = 0, bits = 0, count = 0; i < text.length; i += 2) {
+    bits |= (digit(i) + (i + 1 < text.length ? 91 * digit(i + 1) : 0)) << count;
+    for (count += i + 1 < text.length ? 13 : 6; count >= 8; count -= 8, bits >>= 8) bytes[at++] = bits;
+  }
   return bytes;
 }
 
@@ -19,9 +26,10 @@ const live_parts = document.getElementById("module") && Promise.all([inflated("m
   inflated("bundle")]);
 live_parts?.catch(() => {});
 
-inflated("viewer").then(bytes => {
+Promise.all([inflated("viewer"), inflated("data")]).then(parts => {
   const script = document.createElement("script");
-  script.textContent = new TextDecoder().decode(bytes);
+  [script.textContent, data] = parts.map(bytes => new TextDecoder().decode(bytes));
+  data = JSON.parse(data);
   document.body.append(script);
 }).catch(() => {
   document.getElementById("summary").textContent = "DecompressionStream" in window

@@ -1,6 +1,5 @@
 /* The states and contacts of the runs, as src/pictures/player_pack.c describes them. All scripts are one scope, in the order
    of src/CMakeLists.txt. */
-const data = JSON.parse(document.getElementById("data").textContent);
 const COMPONENTS = ["vx", "vy", "omega", "x", "y", "angle"], POSES = 3;
 const CONTACT_KEYS = 3, CONTACT_VALUES = 7, SEARCH = 16, SHARE = 64;
 const stored_dt = data.dt; /* that of live runs may change */
