@@ -65,7 +65,8 @@ assert sum(contact["impulse"][0] for contact in run["frames"][60]["contacts"]) >
 PYTHON
 # Pages say what kind of method it is, and what the program calls itself.
 run 0 page mine.npz -o mine.html
-grep -q '"note": "external solver: sweeps 1"' mine.html || fail "the page has no 'external solver: sweeps 1'"
+PYTHONPATH=$sources/tests/browser /usr/bin/python3 -B -c 'import player_page
+assert player_page.data("mine.html")["runs"][0]["note"] == "external solver: sweeps 1"' || fail "the page does not name the program"
 sed 's/0.5\]/100]/' rest.yaml >fall.yaml
 rm -f asked
 run 0 simulate fall.yaml --method "$(method keep)"

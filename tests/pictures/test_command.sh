@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # twinbox page: the same bytes, sizes, nothing that is left behind, and whether the scripts are JavaScript.
+export PYTHONPATH=$2/tests/browser PYTHONDONTWRITEBYTECODE=1
 . "$(dirname "$0")/../cli/checks.sh"
 
 names() { find . -mindepth 1 -printf '%P\n' | LC_ALL=C sort | tr '\n' ' '; }
@@ -14,10 +15,16 @@ says "2 runs of 61 frames, "
 mkdir elsewhere
 TZ=Asia/Tokyo LC_ALL=C run 0 page "$PWD/engine.npz" "$PWD/momentum.npz" -o elsewhere/second.html
 cmp -s first.html elsewhere/second.html || fail "the same runs give other bytes"
+/usr/bin/python3 - <<'PYTHON' >texts || fail "the packed texts"
+import player_page
+page = open("first.html", encoding="utf-8").read()
+for element in "data", "viewer":
+    print(player_page.unpacked(page, element).decode())
+PYTHON
 for word in "$PWD" "$sources" "$(date +%Y)-"; do
-    [ "$(grep -cF -- "$word" first.html)" -eq 0 ] || fail "the page holds '$word'"
+    ! grep -qF -- "$word" first.html texts || fail "the page holds '$word'"
 done
-[ "$(grep -cE '(src|href)="?(https?:|//|file:)|@import|url\(' first.html)" -eq 0 ] || fail "the page fetches something"
+! grep -qE '(src|href)="?(https?:|//|file:)|@import|url\(' first.html texts || fail "the page fetches something"
 
 # An older page stays where a run is refused (all that is: tests/cli/refused/render.txt), the disk is full, or files are limited.
 make names nan_velocity
@@ -58,9 +65,8 @@ if ! brief; then
     [ "$bytes" -le 1000000 ] || fail "two runs of the settled pyramid take $bytes bytes"
 fi
 run 0 page names.npz -o names.html
-/usr/bin/python3 - "$sources/tests/browser" <<'PYTHON' || fail "the code"
-import base64, hashlib, re, sys
-sys.path.insert(0, sys.argv[1])
+/usr/bin/python3 - <<'PYTHON' || fail "the code"
+import base64, hashlib, re
 import player_page
 page = open("names.html", encoding="utf-8").read()
 begin, = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)

@@ -2,7 +2,7 @@
 /* What a page leaves out, and what is refused. Runs of noise, which does not pack. */
 #include "base/random.h"
 #include "made.h"
-#include "files.h"
+#include "player_page.h"
 
 #include "pictures/player.h"
 
@@ -69,6 +69,8 @@ TEST(contacts_are_left_out_first) {
     assert_true(less.left_contacts && less.bytes < whole.bytes * 9 / 10);
     FREED char *text = text_of(path);
     assert_null(strstr(text, "id=\"c0-0\""));
+    FREED char *data = page_data(path);
+    assert_non_null(strstr(data, "without contacts"));
 }
 
 /* With the step that the message proposes, the page is small enough. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A method has one colour in film, page, figure and chart, and no two runs of a picture share one. */
 #include "charts.h"
-#include "files.h"
+#include "player_page.h"
 #include "owned.h"
 #include "figures/run_figure.h"
 #include "pictures/mesa.h"
@@ -63,9 +63,9 @@ static void check_page(const Trajectory *const *runs, const RunColours *colours,
     const char *path = temporary_path("page.html");
     PlayerResult result;
     Error error = {0};
-    size_t size;
     assert_ok(player_write(runs, count, &(PlayerOptions){.last = -1}, path, &result, &error), error);
-    char *page = read_whole(path, &size), *next = page;
+    FREED char *data = page_data(path);
+    const char *next = data;
     for (int run = 0; run < count; run++) {
         uint32_t light, dark;
         next = strstr(next + 1, "\"colours\"");
@@ -75,7 +75,6 @@ static void check_page(const Trajectory *const *runs, const RunColours *colours,
         assert_int_equal(light, colours[run].light.fill);
         assert_int_equal(dark, colours[run].dark.fill);
     }
-    free(page);
 }
 
 /* The strip's row of a run has its colour and no other's. */
