@@ -1,22 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # measure.py TWINBOX SCENES [any]: runs twinbox on the files of make_files.py, in the working directory, within the budgets
-# that README.md promises; "any": without limits, for builds with a sanitizer, whose memory and time are not the program's.
+# that README.md promises; "any": without limits, for builds with a sanitizer, whose memory and work are not the program's.
 import os
+import re
 import resource
 import subprocess
 import sys
 import time
-import zlib
 
 twinbox, scenes = os.path.abspath(sys.argv[1]), sys.argv[2]
 limited = len(sys.argv) == 3
 MiB = 1 << 20
-MEMORY, CPU = 64 * MiB, 0.1  # of refused input, beside that of a process that has nothing to do
-PER_BYTE_MEMORY, PER_BYTE_CPU = 2, 50e-9  # of its files
-ATTEMPTS = 20  # other processes only add to processor time, so the least counts
-# Processor time is stated for a machine that inflates 32 MiB of zeros in 109 ms. There the dearest refused input took 59 ms.
-# Another machine, or a busy one, has as much more or less time as it takes for these zeros in the same run.
-YARDSTICK, YARDSTICK_SECONDS = zlib.compress(bytes(32 * MiB), 1), 0.109
+MEMORY, INSTRUCTIONS = 64 * MiB, 400e6  # of refused input, beside those of a process that has nothing to do
+PER_BYTE_MEMORY, PER_BYTE_INSTRUCTIONS = 2, 200  # of its files
 single, stack = f"{scenes}/single.yaml", f"{scenes}/stack.yaml"
 
 # Exit status, a part of the message, the files, and the arguments, among which @ is the next file.
@@ -103,41 +99,36 @@ def idle_memory():
 
 
 def measure(arguments, address):
-    """Exit status, errors, seconds of processor time, resident memory."""
+    """Exit status, errors, resident memory."""
     with open("errors", "wb") as errors:
         process = start(arguments, address, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors)
         _, status, used = os.wait4(process.pid, 0)
         process.returncode = 0
     with open("errors", "rb") as errors:
         words = errors.read().decode("utf-8", "replace")
-    return os.waitstatus_to_exitcode(status), words, used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
+    return os.waitstatus_to_exitcode(status), words, used.ru_maxrss * 1024
 
 
-def slowness():
-    """Processor time of the yardstick over that of the machine for which budgets are stated."""
-    least = float("inf")
-    for _ in range(5):
-        began = time.process_time()
-        zlib.crc32(zlib.decompress(YARDSTICK))
-        least = min(least, time.process_time() - began)
-    return least / YARDSTICK_SECONDS
+def instructions(arguments):
+    """Under valgrind, which no other process disturbs."""
+    counter = ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", "--log-file=counted"]
+    environment = dict(os.environ, OMP_NUM_THREADS="1")
+    subprocess.run([*counter, twinbox, *arguments], env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    with open("counted") as log:
+        return int(re.search(r"I +refs: +([\d,]+)", log.read())[1].replace(",", ""))
 
 
 def check(status, message, words, files, budget, memory, address):
-    """What is wrong with a command; "" if nothing. Without a budget its time is not limited."""
-    slow = first_slowness
-    for _ in range(ATTEMPTS):  # the first may have to load the program; others may be disturbed, as the yardstick then
-        found, errors, used, resident = measure(words.split(), address)
-        if budget is None or used <= slow * budget:
-            break
-        slow = slowness()
+    """What is wrong with a command; "" if nothing. Without a budget its instructions are not limited."""
+    found, errors, resident = measure(words.split(), address)
     resident -= idle[1]
+    used = instructions(words.split()) - started if limited and budget is not None else 0
     if verbose:
-        print(f"{used * 1000:6.0f} ms {resident / MiB:6.1f} of {memory / MiB:.1f} MiB {size_of(files):9} bytes  {words}", flush=True)
+        print(f"{used / 1e6:6.0f} million {resident / MiB:6.1f} of {memory / MiB:.1f} MiB {size_of(files):9} bytes  {words}", flush=True)
     if found != status or message not in errors:
         return f"exit status {found}, not {status}, or no '{message}' in: {errors[:300]}"
-    if limited and budget is not None and used > slow * budget:
-        return f"{used * 1000:.0f} ms of processor time, not {slow * budget * 1000:.0f}"
+    if budget is not None and used > budget:
+        return f"{used / 1e6:.0f} million instructions, not {budget / 1e6:.0f}"
     return f"{resident / MiB:.0f} MiB, not {memory / MiB:.0f}" if limited and resident > memory else ""
 
 
@@ -154,13 +145,13 @@ def size_of(files):
 
 verbose = os.environ.get("VERBOSE") is not None
 idle = idle_memory() if limited else [0, 0]
-first_slowness = slowness()
+started = instructions(["--version"]) if limited else 0
 failed = 0
 for status, message, files, words in CASES:
     names = iter(files * 2)
     words = " ".join(word.replace("@", next(names)) if "@" in word else word for word in words.split())
     memory = MEMORY + PER_BYTE_MEMORY * size_of(files)
-    wrong = check(status, message, words, files, CPU + PER_BYTE_CPU * size_of(files), memory, idle[0] + memory if limited else None)
+    wrong = check(status, message, words, files, INSTRUCTIONS + PER_BYTE_INSTRUCTIONS * size_of(files), memory, idle[0] + memory if limited else None)
     report(words, wrong)
 for status, words, allowed, files in ACCEPTED:
     wrong = check(status, "", words, files, None, MEMORY_BASE + allowed(size_of(files)), None)
