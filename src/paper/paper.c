@@ -71,7 +71,7 @@ const PaperSize paper_quick_size = {
     .system_launches = 1,
     .system_frames = 60,
     .system_timed_frames = 20,
-    .system_repetitions = 1,
+    .system_repetitions = 2,
 };
 
 void launched_free(Launched *launched) {

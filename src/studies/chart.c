@@ -103,7 +103,7 @@ static bool chart_plan_make(ChartPlan *plan, const char *const *paths, int count
                 return error_input(error, paths[i], "another scene has the same name (%s)", study->scene->name);
         const double steps = study->scene->frames * pow(study->scene->body_count + 1, 1.5) * study->contender_count;
         scene->launch_weight = scored_seconds * steps;
-        scene->times_weight = timed_seconds * steps * scene_study_timed(study) * (study->size.repetitions + 1);
+        scene->times_weight = timed_seconds * steps * scene_study_timed(study) * study->size.repetitions;
         scene->first = plan->plan.count;
         plan->plan.count += study->launch_count + 1;
     }

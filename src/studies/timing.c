@@ -145,7 +145,8 @@ static bool run_launch(const Timing *timing, Timed *timed, int launch, StepLog *
     return ok;
 }
 
-static bool run_part(const Timing *timing, Timed *timed, int part, StepLog *log, Error *error) {
+static bool run_part(const Timing *timing, Timed *timed, int part, Error *error) {
+    StepLog *log = &timed->logs[part];
     const int launch = part - 1, launches = timing->parts - 1, frozen = timing->snapshots->count;
     log->next = 0;
     if (part == 0) return run_shared(timing, timed, log, error);
@@ -160,22 +161,11 @@ static bool repeat_all(const Timing *timing, const Progress *progress, Error *er
     for (int r = 0; r < repetitions; r++)
         for (int part = 0; part < timing->parts; part++) {
             for (int i = 0; i < timing->count; i++)
-                if (!run_part(timing, &timing->items[i], part, &timing->items[i].logs[part], error)) return false;
+                if (!run_part(timing, &timing->items[i], part, error)) return false;
             if (!progress_report(progress, r * timing->parts + part + 1, repetitions * timing->parts))
                 return error_interrupted(error, "timing", "stopped in repetition %d of %d", r + 1, repetitions);
         }
     return true;
-}
-
-/* Memory grows and caches fill in the first steps of a stepper: these do not count. */
-static bool warm_up(const Timing *timing, Error *error) {
-    bool ok = true;
-    for (int i = 0; ok && i < timing->count; i++) {
-        StepLog log = {0};
-        for (int part = 0; ok && part < 2; part++) ok = run_part(timing, &timing->items[i], part, &log, error);
-        free(log.items);
-    }
-    return ok;
 }
 
 /* Of the steps in a phase. */
@@ -218,7 +208,7 @@ static bool measure(Timing *timing, const Contender *const *contenders, const Pr
     }
     for (int i = 0; i < timing->count; i++)
         if (!make_timed(timing, contenders[i], &timing->items[i], error)) return false;
-    return warm_up(timing, error) && repeat_all(timing, progress, error);
+    return repeat_all(timing, progress, error);
 }
 
 bool timing_measure(const Contender *const *contenders, int count, const TimingOptions *options,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The cost of contenders. The time of a step is the least of its repetitions, as what interrupts a step only adds to
    its time. Contenders take turns launch by launch, so that a slow second of the machine affects all of them. They run
-   on one core: on two at once, one method or another takes a third longer. The first steps of each do not count. */
+   on one core: on two at once, one method or another takes a third longer. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
