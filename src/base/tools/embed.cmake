@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Writes the FILES of folder FROM as arrays of TYPE ("char", "unsigned char") into OUTPUT. With PREFIX shader_, shape.vert
 # becomes shader_shape_vert, ended by a 0; beside bytes (unsigned char) stands their number, NAME_size. HEADER declares them.
-# TYPE "script": all FILES are one text PREFIX without their comments and indents, several of them in one scope. Of a C header among them, a table
-# of numbers, lines as `static const double NAME = 1;` become constants of JavaScript. Beside the text stands its SHA-256,
-# PREFIX_sha256, by which the policy of a page allows it.
+# TYPE "script": all FILES are one text PREFIX without their comments and indents, several of them in one scope. Of a C header
+# among them, a table of numbers, lines as `static const double NAME = 1;` become constants of JavaScript. Beside the text stands
+# its SHA-256, PREFIX_sha256, by which the policy of a page allows it.
 set(text "#include \"${HEADER}\"\n")
 if(TYPE STREQUAL "script")
     set(script "")
