@@ -42,7 +42,8 @@ static const AdmmKernels *best_kernels(void) {
     return &admm_scalar;
 }
 
-/* x^(1/20) of x > 1 by Newton's method, which falls from x^(1/16) to it. pow() would take 3% of a live page. */
+/* x^(1/20) of x > 1 by Newton's method, which falls from x^(1/16) to it. pow() would take 3% of a live page.
+   With x the condition of the problem, the penalty begins with x^(4/20), and changes by x^(1/20). */
 static double twentieth_root(double x) {
     double root = sqrt(sqrt(sqrt(sqrt(x))));
     for (double before = INFINITY; root < before;) {

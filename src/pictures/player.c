@@ -300,31 +300,6 @@ static void put_head(FILE *file, const Player *player) {
     fprintf(file, "</title>\n<style>\n%s</style>\n</head>\n<body>\n", player_page_css);
 }
 
-/* A digit of base 91 that needs no escape in an element `script`: `$` to `~`, with `#` in place of `<`. */
-static void put_digit(FILE *file, uint32_t digit) {
-    putc_unlocked(digit == '<' - '$' ? '#' : '$' + (int)digit, file); /* an error stays in the file, for the caller */
-}
-
-/* Bytes as text: 13 bits, the first ones lowest, are two digits, the lower one first, as 91^2 > 2^13; up to 6 bits at
-   the end are one. Base64 takes 8% more room. player/begin.js is the decoder. */
-static void put_digits(FILE *file, const void *data, size_t size) {
-    const uint8_t *bytes = data;
-    uint32_t bits = 0;
-    int count = 0;
-    for (size_t i = 0; i < size; i++) {
-        bits |= (uint32_t)bytes[i] << count;
-        count += 8;
-        if (count < PACKED_BITS) continue;
-        const uint32_t pair = bits & ((1u << PACKED_BITS) - 1);
-        put_digit(file, pair % PACKED_BASE);
-        put_digit(file, pair / PACKED_BASE);
-        bits >>= PACKED_BITS;
-        count -= PACKED_BITS;
-    }
-    if (count > 0) put_digit(file, bits % PACKED_BASE);
-    if (count > PACKED_BITS / 2) put_digit(file, bits / PACKED_BASE);
-}
-
 /* An element with data: of a run, of a chunk of it, or of the page. */
 PRINTF_LIKE(4, 5) static void put_packed(FILE *file, const void *data, size_t size, const char *id, ...) {
     va_list numbers;
@@ -333,7 +308,7 @@ PRINTF_LIKE(4, 5) static void put_packed(FILE *file, const void *data, size_t si
     vfprintf(file, id, numbers);
     fputs("\">", file);
     va_end(numbers);
-    put_digits(file, data, size);
+    bytes_put_digits(file, data, size);
     fputs("</script>\n", file);
 }
 
@@ -382,14 +357,6 @@ static void put_page(FILE *file, const void *context) {
 /* Of any size: only names, colours and distances count. */
 enum { WIDTH = 1280, HEIGHT = 720 };
 
-static bool pack_data(Player *player, Error *error) {
-    size_t size;
-    char *text = file_print(put_data, player, &size);
-    const bool ok = text != NULL ? bytes_deflate(&player->data, text, size, error) : error_memory(error, "page");
-    free(text);
-    return ok;
-}
-
 static bool make_plan(Player *player, const Trajectory *const *runs, int count, Error *error) {
     const PlayerOptions *options = player->options;
     const RenderOptions look = {
@@ -417,15 +384,23 @@ static bool make_plan(Player *player, const Trajectory *const *runs, int count, 
     return true;
 }
 
+/* All but the runs. */
+static bool pack_page(Player *player, Error *error) {
+    const PlayerLive *live = player->options->live;
+    size_t size;
+    char *data = file_print(put_data, player, &size);
+    const bool ok = data != NULL ? bytes_deflate(&player->data, data, size, error) : error_memory(error, "page");
+    free(data);
+    return ok && bytes_deflate(&player->viewer, player_viewer, strlen(player_viewer), error) &&
+           (live == NULL || (bytes_deflate(&player->module, live->module.bytes, live->module.size, error) &&
+                             bytes_deflate(&player->bundle, live->bundle, live->bundle_size, error)));
+}
+
 bool player_write(const Trajectory *const *runs, int count, const PlayerOptions *options, const char *path,
                   PlayerResult *result, Error *error) {
-    const PlayerLive *live = options->live;
     Player player = {.options = options,
                      .most_bytes = options->most_bytes > 0 ? (double)options->most_bytes : PLAYER_MAX_BYTES};
-    bool ok = make_plan(&player, runs, count, error) && player_pack(&player, error) && pack_data(&player, error) &&
-              (live == NULL || (bytes_deflate(&player.module, live->module.bytes, live->module.size, error) &&
-                                bytes_deflate(&player.bundle, live->bundle, live->bundle_size, error))) &&
-              bytes_deflate(&player.viewer, player_viewer, strlen(player_viewer), error);
+    bool ok = make_plan(&player, runs, count, error) && player_pack(&player, error) && pack_page(&player, error);
     if (ok) {
         size_t size;
         char *page = file_print(put_page, &player, &size);

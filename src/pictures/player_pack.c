@@ -26,6 +26,33 @@ bool bytes_deflate(Bytes *bytes, const void *data, size_t size, Error *error) {
     return bytes->data != NULL || error_memory(error, "page");
 }
 
+enum { PAIR_BITS = 13, BASE = 91 };
+
+/* `$` to `~`, with `#` in place of `<`. */
+static void put_digit(FILE *file, uint32_t digit) {
+    putc_unlocked(digit == '<' - '$' ? '#' : '$' + (int)digit, file); /* an error stays in the file, for the caller */
+}
+
+void bytes_put_digits(FILE *file, const void *data, size_t size) {
+    const uint8_t *bytes = data;
+    uint32_t bits = 0;
+    int count = 0;
+    for (size_t i = 0; i < size; i++) {
+        bits |= (uint32_t)bytes[i] << count;
+        count += 8;
+        if (count < PAIR_BITS) continue;
+        const uint32_t pair = bits & ((1u << PAIR_BITS) - 1);
+        put_digit(file, pair % BASE);
+        put_digit(file, pair / BASE);
+        bits >>= PAIR_BITS;
+        count -= PAIR_BITS;
+    }
+    if (count > 0) put_digit(file, bits % BASE);
+    if (count > PAIR_BITS / 2) put_digit(file, bits / BASE);
+}
+
+static double digits_size(double bytes) { return 2 * ceil(8 * bytes / PAIR_BITS); }
+
 enum { COMPONENTS = 6, POSES = 3 }; /* velocities first, then poses */
 
 static float component(const Trajectory *run, size_t i, int which) {
@@ -189,23 +216,21 @@ static bool contact_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrame
 
 enum { HEAD = 256 << 10 }; /* bytes for all that is no chunk of a run; a frame of a run has hash and distance besides */
 
-static double packed_size(double bytes) { return 2 * ceil(8 * bytes / PACKED_BITS); }
-
 static double fixed_size(const Player *player) {
-    const double per_frame = packed_size(sizeof(uint64_t) + sizeof(float));
-    const double per_body = packed_size(2 * sizeof(float)) + 1;
+    const double per_frame = digits_size(sizeof(uint64_t) + sizeof(float));
+    const double per_body = digits_size(2 * sizeof(float)) + 1;
     double size = HEAD;
     for (int i = 0; i < player->picture.count; i++)
         size += per_frame * player->runs[i].frames + per_body * player->picture.runs[i]->bodies;
     return size;
 }
 
-/* `done` of all chunks take `size` bytes. If frames are left out, the prediction of poses is worse: they take up to
-   twice the room, but no more than if no state could be packed. */
+/* `done` of all chunks take `size` bytes, with HEAD, which stays if frames are left out. The prediction of poses is
+   worse then: they take up to twice the room, but no more than if no state could be packed. */
 static bool refuse(const Player *player, double size, int done, int chunks, Error *error) {
     double unpacked = fixed_size(player);
     for (int i = 0; i < player->picture.count; i++)
-        unpacked += packed_size(6.0 * sizeof(float)) * player->runs[i].frames * player->picture.runs[i]->bodies;
+        unpacked += digits_size(6.0 * sizeof(float)) * player->runs[i].frames * player->picture.runs[i]->bodies;
     const double all = HEAD + (size - HEAD) * chunks / done, worst = fmin(2 * all, unpacked);
     const int every = player->frames.every * (int)ceil((worst - HEAD) / (player->most_bytes - HEAD));
     return error_input(
@@ -231,7 +256,7 @@ static bool pack_states(Player *player, double *size, Error *error) {
             if (!state_chunk(&run->states[k], player->picture.runs[i], &player->frames, k * PLAYER_CHUNK,
                              chunk_end(run, k), error))
                 return false;
-            *size += packed_size((double)run->states[k].size);
+            *size += digits_size((double)run->states[k].size);
             if (*size > player->most_bytes) return refuse(player, *size, done + 1, chunks, error);
             done++;
         }
@@ -253,7 +278,7 @@ static bool pack_contacts_of(Player *player, int index, double *size, Error *err
         if (!contact_chunk(&run->contacts[k], player->picture.runs[index], &player->frames, k * PLAYER_CHUNK,
                            chunk_end(run, k), &player->units, error))
             return false;
-        *size += packed_size((double)run->contacts[k].size);
+        *size += digits_size((double)run->contacts[k].size);
     }
     return true;
 }

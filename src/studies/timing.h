@@ -21,7 +21,7 @@ typedef struct StepCost {
 
 typedef struct TimingOptions {
     const Scene *launches;         /* [launch_count] launched scenes, run in closed loop */
-    int launch_count, repetitions; /* each repetition runs all launches */
+    int launch_count, repetitions; /* each repetition runs all launches; in the first, caches fill */
     int last_frame;                /* of each run, which ends with the phase after the impact */
     int shared_steps;              /* of all launches: measured once (contender_shares()) */
     Stepper *const *steppers;      /* [contenders] the caller's; NULL: they are made, and destroyed */

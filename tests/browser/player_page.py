@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a page that plays runs carries (src/pictures/player.c)."""
+"""What a page that plays runs carries (src/pictures/player_internal.h)."""
 import json
 import re
 import zlib

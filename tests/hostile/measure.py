@@ -13,6 +13,8 @@ limited = len(sys.argv) == 3
 MiB = 1 << 20
 MEMORY, INSTRUCTIONS = 64 * MiB, 400e6  # of refused input, beside those of a process that has nothing to do
 PER_BYTE_MEMORY, PER_BYTE_INSTRUCTIONS = 2, 200  # of its files
+# One thread: each further one has a stack and an arena of its own.
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", MALLOC_ARENA_MAX="1")
 single, stack = f"{scenes}/single.yaml", f"{scenes}/stack.yaml"
 
 # Exit status, a part of the message, the files, and the arguments, among which @ is the next file.
@@ -76,9 +78,7 @@ def start(arguments, address=None, **streams):
             resource.setrlimit(resource.RLIMIT_AS, (address, address))
         resource.setrlimit(resource.RLIMIT_CPU, (30, 30))  # what hangs is a failure
 
-    # One thread: each further one has a stack and an arena of its own.
-    environment = dict(os.environ, OMP_NUM_THREADS="1", MALLOC_ARENA_MAX="1")
-    return subprocess.Popen([twinbox, *arguments], preexec_fn=limit, env=environment, **streams)
+    return subprocess.Popen([twinbox, *arguments], preexec_fn=limit, env=ENVIRONMENT, **streams)
 
 
 def idle_memory():
@@ -112,8 +112,7 @@ def measure(arguments, address):
 def instructions(arguments):
     """Under valgrind, which no other process disturbs."""
     counter = ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", "--log-file=counted"]
-    environment = dict(os.environ, OMP_NUM_THREADS="1")
-    subprocess.run([*counter, twinbox, *arguments], env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    subprocess.run([*counter, twinbox, *arguments], env=ENVIRONMENT, stdin=subprocess.DEVNULL, capture_output=True, check=False)
     with open("counted") as log:
         return int(re.search(r"I +refs: +([\d,]+)", log.read())[1].replace(",", ""))
 
@@ -122,10 +121,11 @@ def check(status, message, words, files, budget, memory, address):
     """What is wrong with a command; "" if nothing. Without a budget its instructions are not limited."""
     found, errors, resident = measure(words.split(), address)
     resident -= idle[1]
-    used = instructions(words.split()) - started if limited and budget is not None else 0
+    expected = found == status and message in errors
+    used = instructions(words.split()) - started if limited and budget is not None and expected else 0
     if verbose:
         print(f"{used / 1e6:6.0f} million {resident / MiB:6.1f} of {memory / MiB:.1f} MiB {size_of(files):9} bytes  {words}", flush=True)
-    if found != status or message not in errors:
+    if not expected:
         return f"exit status {found}, not {status}, or no '{message}' in: {errors[:300]}"
     if budget is not None and used > budget:
         return f"{used / 1e6:.0f} million instructions, not {budget / 1e6:.0f}"

@@ -1,7 +1,7 @@
 /* Unpacks the viewer, one script, and the data that it reads, and runs it. All elements with data are digits of base 91
-   (pictures/player.c), most of them of deflated bytes. */
+   (pictures/player_internal.h), most of them of deflated bytes. */
 "use strict";
-let data;
+let data; /* the page's, for the viewer */
 function packed(id) {
   const text = document.getElementById(id).textContent, pairs = text.length >> 1;
   const bytes = new Uint8Array((13 * pairs + 6 * (text.length & 1)) >> 3);
@@ -27,9 +27,9 @@ const live_parts = document.getElementById("module") && Promise.all([inflated("m
 live_parts?.catch(() => {});
 
 Promise.all([inflated("viewer"), inflated("data")]).then(parts => {
-  const script = document.createElement("script");
-  [script.textContent, data] = parts.map(bytes => new TextDecoder().decode(bytes));
-  data = JSON.parse(data);
+  const script = document.createElement("script"), [code, json] = parts.map(bytes => new TextDecoder().decode(bytes));
+  data = JSON.parse(json);
+  script.textContent = code;
   document.body.append(script);
 }).catch(() => {
   document.getElementById("summary").textContent = "DecompressionStream" in window
