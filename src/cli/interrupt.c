@@ -10,11 +10,9 @@
 #include <unistd.h>
 
 /* The handler and threads of parallel work use both: only lock-free atomics are defined there. */
-static atomic_bool requested;
+static atomic_llong requested_at; /* ms, by a clock that runs since the machine does; 0: no request */
 static atomic_int held;
-static atomic_llong requested_at; /* ms */
-_Static_assert(ATOMIC_BOOL_LOCK_FREE == 2 && ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LLONG_LOCK_FREE == 2,
-               "a signal handler may wait for a lock");
+_Static_assert(ATOMIC_LLONG_LOCK_FREE == 2 && ATOMIC_INT_LOCK_FREE == 2, "a signal handler may wait for a lock");
 
 /* timeout(1) and schedulers send a signal to the process and then to its group: that is one request. */
 enum { SAME_REQUEST = 1000 /* ms */ };
@@ -23,9 +21,10 @@ static void on_signal(int signal_number) {
     static const char text[] = "twinbox: error: interrupted\n";
     (void)signal_number;
     const long long now = (long long)(1000 * clock_seconds()); /* by a call that handlers may make */
-    const bool first = !atomic_exchange(&requested, true);
-    if (first) atomic_store(&requested_at, now);
-    if (atomic_load(&held) > 0 && (first || now - atomic_load(&requested_at) < SAME_REQUEST)) return;
+    long long earlier = 0; /* two threads may be here at once: one of them is first */
+    const bool first = atomic_compare_exchange_strong(&requested_at, &earlier, now);
+    /* What was held when the request came keeps it until the program ends: its last words come after the release. */
+    if (first ? atomic_load(&held) > 0 : now - earlier < SAME_REQUEST) return;
     const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
     (void)ignored;
     talks_kill();
@@ -46,4 +45,4 @@ void interrupt_hold(void) { atomic_fetch_add(&held, 1); }
 
 void interrupt_release(void) { atomic_fetch_sub(&held, 1); }
 
-bool interrupt_requested(void) { return atomic_load(&requested); }
+bool interrupt_requested(void) { return atomic_load(&requested_at) != 0; }

@@ -247,6 +247,8 @@ bool workers_draw(const WorkerJob *job, int *kept, const Progress *progress, Err
     crew.polls = calloc((size_t)crew.jobs, sizeof *crew.polls);
     for (int i = 0; crew.workers != NULL && i < crew.jobs; i++) crew.workers[i].pipe = -1;
     bool ok = (crew.workers != NULL && crew.polls != NULL) || error_memory(error, "render");
+    /* Signals are held from the first report on: before a worker is forked, which inherits it, and draws. */
+    ok = ok && (progress_report(progress, 0, crew.total) || error_interrupted(error, "render", "stopped"));
     ok = ok && start_workers(&crew, job, error) && wait_for_workers(&crew, progress, error);
     /* After an error, all pipes are closed first, and then the workers end. */
     for (int i = 0; crew.workers != NULL && i < crew.jobs; i++) stop_listening(&crew, &crew.workers[i]);

@@ -122,8 +122,10 @@ rm -r actual
 run 2 compare expected actual --report unread
 equal "files of a comparison that failed" "$(ls unread)" ""
 cp -r expected actual
-(flock 9; sleep 0.3; touch released) 9<unread &
-sleep 0.1
+exec 9<unread
+flock 9
+(sleep 0.3; touch released) & # the lock ends with the last process that has it open
+exec 9<&-
 compare 0 --report unread
 [ -e released ] || fail "a folder that is reserved was written into"
 # A run whose verdict changed: what it was and what it is now, in the report and when it is approved. Traces are approved, too.
