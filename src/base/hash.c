@@ -6,7 +6,8 @@
 #if defined(__wasm__) || defined(TWINBOX_COMPARE_ONLY) /* there is no library to link */
 #define XXH_INLINE_ALL
 #ifdef __wasm__
-#define XXH_VECTOR 0 /* XXH_SCALAR */
+#define XXH_VECTOR 0    /* XXH_SCALAR */
+#undef __wasm_simd128__ /* for which xxHash 0.8.3 includes the header of NEON */
 #endif
 #include <xxhash.h>
 #elif defined(TWINBOX_AVX)
