@@ -24,10 +24,10 @@ REAL neuron(int at, int from, int to, int j) {
     return sum;
 }
 
-// Constant sizes let the compiler unroll loops, and keep x and y in registers.
+// Constant sizes let the compiler unroll loops, and keep x and y in registers. Mesa 25.0 takes x = y for one array.
 #define LAYER(from, to, kind)                                                     \
     for (int j = 0; j < to; j++) y[j] = activate(kind, neuron(at, from, to, j)); \
-    x = y;                                                                        \
+    for (int j = 0; j < to; j++) x[j] = y[j];                                     \
     at += (from + 1) * to;
 
 void main() {

@@ -31,9 +31,11 @@ typedef struct VideoFormat {
     int ahead_frames;           /* how many of full HD it may keep */
 } VideoFormat;
 
-/* Convert to BT.709 and tag the stream: untagged, players guess the matrix from the picture size. */
-#define BT709 \
-    "-vf", "scale=out_color_matrix=bt709", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"
+/* Convert to BT.709 and tag the stream: untagged, players guess the matrix from the picture size. FFmpeg 5 takes the
+   tags from options, FFmpeg 7 from frames. */
+#define BT709                                                                                                      \
+    "-vf", "scale=out_color_matrix=bt709,setparams=color_primaries=bt709:color_trc=bt709", "-colorspace", "bt709", \
+        "-color_primaries", "bt709", "-color_trc", "bt709"
 
 /* GIFs are for pages, where 800 pixels are wide, and their bytes grow with every pixel that changes. */
 #define GIF_SCALE "scale=w='min(800,iw)':h='min(800,ih)':force_original_aspect_ratio=decrease:flags=area"

@@ -29,10 +29,11 @@ static inline bool png_has_signature(const uint8_t *data, size_t size) {
     return size >= PNG_SIGNATURE && memcmp(data, png_signature, PNG_SIGNATURE) == 0;
 }
 
-/* Four letters. */
+/* Four letters, the third a capital, as in all names today (PNG 5.4). Whether libpng accepts others depends on its
+   version. */
 static inline bool png_chunk_has_name(const PngChunk *chunk) {
     for (int i = 0; i < 4; i++) {
-        const uint8_t letter = chunk->type[i] & 0xDF;
+        const uint8_t letter = i == 2 ? chunk->type[i] : chunk->type[i] & 0xDF;
         if (letter < 'A' || letter > 'Z') return false;
     }
     return true;

@@ -175,7 +175,10 @@ static bool open_decoder(Decoder *decoder, const uint8_t *data, size_t size, con
     *decoder = (Decoder){.path = path, .error = error, .data = data, .size = size};
     decoder->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning,
                                             &decoder->memory_short, png_memory_take, png_memory_release);
-    if (decoder->png != NULL) decoder->info = png_create_info_struct(decoder->png);
+    if (decoder->png != NULL) {
+        png_set_check_for_invalid_index(decoder->png, 0); /* check_palette() has the same words for every version */
+        decoder->info = png_create_info_struct(decoder->png);
+    }
     return decoder->info != NULL || error_memory(error, path);
 }
 
