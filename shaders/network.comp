@@ -24,7 +24,8 @@ REAL neuron(int at, int from, int to, int j) {
     return sum;
 }
 
-// Constant sizes let the compiler unroll loops, and keep x and y in registers. Mesa 25.0 takes x = y for one array.
+// Constant sizes let the compiler unroll loops, and keep x and y in registers. Of x = y, Mesa
+// 25.0 makes one array for all layers.
 #define LAYER(from, to, kind)                                                     \
     for (int j = 0; j < to; j++) y[j] = activate(kind, neuron(at, from, to, j)); \
     for (int j = 0; j < to; j++) x[j] = y[j];                                     \

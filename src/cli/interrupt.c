@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 /* The handler and threads of parallel work use both: only lock-free atomics are defined there. */
-static atomic_llong requested_at; /* ms, by a clock that runs since the machine does; 0: no request */
+static atomic_llong requested_at; /* ms since the machine started; 0: no request */
 static atomic_int held;
 _Static_assert(ATOMIC_LLONG_LOCK_FREE == 2 && ATOMIC_INT_LOCK_FREE == 2, "a signal handler may wait for a lock");
 
@@ -23,7 +23,7 @@ static void on_signal(int signal_number) {
     const long long now = (long long)(1000 * clock_seconds()); /* by a call that handlers may make */
     long long earlier = 0; /* two threads may be here at once: one of them is first */
     const bool first = atomic_compare_exchange_strong(&requested_at, &earlier, now);
-    /* What was held when the request came keeps it until the program ends: its last words come after the release. */
+    /* Not whether they are held now: the last words come after the release. */
     if (first ? atomic_load(&held) > 0 : now - earlier < SAME_REQUEST) return;
     const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
     (void)ignored;

@@ -10,8 +10,8 @@
 /* Handles both signals from here on, also where the shell has a background process ignore them. */
 void interrupt_handle(void);
 
-/* While held, a signal only requests a stop. All that follow within a second belong to this request, whatever is
-   released meanwhile; a later one ends the program at once. The calls nest. */
+/* While held, a signal only requests a stop. Those that follow within a second belong to this request, also
+   after the release; a later one ends the program at once. The calls nest. */
 void interrupt_hold(void);
 void interrupt_release(void);
 

@@ -247,7 +247,7 @@ bool workers_draw(const WorkerJob *job, int *kept, const Progress *progress, Err
     crew.polls = calloc((size_t)crew.jobs, sizeof *crew.polls);
     for (int i = 0; crew.workers != NULL && i < crew.jobs; i++) crew.workers[i].pipe = -1;
     bool ok = (crew.workers != NULL && crew.polls != NULL) || error_memory(error, "render");
-    /* Signals are held from the first report on: before a worker is forked, which inherits it, and draws. */
+    /* Signals are held from the first report on. A worker that is forked before would end at a signal to its group. */
     ok = ok && (progress_report(progress, 0, crew.total) || error_interrupted(error, "render", "stopped"));
     ok = ok && start_workers(&crew, job, error) && wait_for_workers(&crew, progress, error);
     /* After an error, all pipes are closed first, and then the workers end. */

@@ -197,6 +197,7 @@ TEST(chunks_out_of_order_are_refused) {
                  {{"IDAT"}, "unexpected end of file"},
                  {{"IDA1", "teXt", "IDA2", "IEND"}, "not consecutive"},
                  {{"NEWS", "IDAT", "IEND"}, "an unknown critical chunk"},
+                 {{"xxxx", "IDAT", "IEND"}, "no valid chunk at byte 33"},
                  {{"acTL", "IDAT", "IEND"}, "an animated PNG (chunk acTL at byte 33)"},
                  {{"xxXx", "IDA1", "IDA2", "xxXx", "IEND"}, NULL}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -15,7 +15,7 @@ __wasi_errno_t __wasi_fd_write(__wasi_fd_t fd, const __wasi_ciovec_t *data, size
     return (void)fd, (void)data, (void)count, (void)written, __WASI_ERRNO_BADF;
 }
 
-/* Newer versions have it in one object with close(). */
+/* In wasi-libc of 2024, its caller is in one object with close(). */
 __wasi_errno_t __wasi_fd_renumber(__wasi_fd_t fd, __wasi_fd_t to) { return (void)fd, (void)to, __WASI_ERRNO_BADF; }
 
 /* Numbers are read in the C locale, and there is no other here. The locales of wasi-libc read the environment. */
